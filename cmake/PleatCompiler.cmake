@@ -1,0 +1,23 @@
+# Compiler settings shared by every target. Warnings are errors: main always builds clean.
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "" FORCE)
+endif()
+
+find_program(PLEAT_CCACHE ccache)
+if(PLEAT_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PLEAT_CCACHE})
+endif()
+
+# -ffp-contract=off and no -ffast-math: the same bytes in must give the same model bytes out on
+# every build of one source tree (ARCHITECTURE.md, invariants).
+add_compile_options(-Wall -Wextra -Werror -Wno-psabi -ffp-contract=off)
+string(REPLACE "-O2" "-O3" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
+string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
+
+if(PLEAT_SANITIZE)
+  add_compile_options(-fsanitize=${PLEAT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${PLEAT_SANITIZE})
+endif()
+if(PLEAT_BUILD_FUZZERS)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()

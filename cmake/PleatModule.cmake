@@ -1,0 +1,58 @@
+# One module = one folder = one target.
+#
+#   pleat_add_module(gp DEPENDS base math optimize PACKAGES Eigen3::Eigen)
+#
+# compiles src/*.cpp into the target pleat_gp, exports include/ alone, and registers the module.
+# DEPENDS are modules whose headers the module's own public headers or sources may include; the
+# call fails when one of them has not been declared before it, so the declaration order in
+# lib/CMakeLists.txt is the only include order and cycles cannot exist.
+# PRIVATE_PACKAGES stay out of the include path of dependants (Draco, protobuf, ...).
+set_property(GLOBAL PROPERTY PLEAT_MODULES "")
+
+function(pleat_add_module name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;PACKAGES;PRIVATE_PACKAGES" ${ARGN})
+  if(ARG_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "pleat_add_module(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
+  endif()
+  get_property(declared GLOBAL PROPERTY PLEAT_MODULES)
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    if(NOT dependency IN_LIST declared)
+      message(FATAL_ERROR "module ${name} depends on ${dependency}, which is not declared before "
+                          "it: see the include order in ARCHITECTURE.md")
+    endif()
+  endforeach()
+
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/pleat/*/*.h)
+  set(target pleat_${name})
+  if(NOT sources OR NOT headers)
+    message(FATAL_ERROR "module ${name} has no sources or no public headers")
+  endif()
+  add_library(${target} STATIC ${sources})
+  target_sources(${target} PUBLIC FILE_SET HEADERS
+                 BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include FILES ${headers})
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  list(TRANSFORM ARG_DEPENDS PREPEND pleat_)
+  target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} ${ARG_PACKAGES}
+                        PRIVATE ${ARG_PRIVATE_PACKAGES})
+  set_property(GLOBAL APPEND PROPERTY PLEAT_MODULES ${name})
+endfunction()
+
+# pleat_add_tests(gp) builds tests/gp/*_test.cpp into gp_test and registers every case with CTest.
+# LIBRARIES adds what the tests use beyond the module itself and tests/support.
+function(pleat_add_tests name)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cpp)
+  if(NOT sources)
+    message(FATAL_ERROR "tests/${name} has no *_test.cpp")
+  endif()
+  add_executable(${name}_test ${sources})
+  set(module "")
+  if(TARGET pleat_${name})
+    set(module pleat_${name})
+  endif()
+  target_link_libraries(${name}_test PRIVATE ${module} ${ARG_LIBRARIES} pleat_test_support
+                        GTest::gmock_main)
+  gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 600 LABELS ${name})
+endfunction()

@@ -1,0 +1,18 @@
+# Every external package, found once (list: docker/packages.txt).
+# Protobuf works in module mode only on Debian 12; gRPC in config mode only.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(absl REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(Protobuf REQUIRED)
+find_package(gRPC CONFIG REQUIRED)
+find_package(draco CONFIG REQUIRED)
+find_package(spdlog CONFIG REQUIRED)
+find_package(CLI11 CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
+find_package(SQLite3 REQUIRED)
+find_package(nanoflann CONFIG REQUIRED)
+find_path(PLEAT_STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
+add_library(pleat_stb INTERFACE)
+target_include_directories(pleat_stb SYSTEM INTERFACE ${PLEAT_STB_INCLUDE_DIR})

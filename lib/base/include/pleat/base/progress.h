@@ -1,0 +1,47 @@
+// Progress and cooperative cancellation of a long computation, in one token.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace pleat {
+
+// One report: where a computation stands.
+struct ProgressUpdate {
+  std::string stage;                // e.g. "rig", "fit", "learn"
+  double fraction = 0;              // of the whole computation, 0..1
+  std::optional<double> objective;  // of the running optimiser, when there is one
+};
+
+// Handed down by value to everything that may run longer than a second. The default token reports
+// to nobody and is never cancelled. Copies share the sink and the cancellation test; the sink is
+// called from the thread that computes.
+class Progress {
+ public:
+  using Sink = std::function<void(const ProgressUpdate&)>;
+  using CancelTest = std::function<bool()>;
+
+  Progress() = default;
+  Progress(Sink sink, CancelTest cancel_test);
+
+  // Reports that `fraction` (0..1) of this token's range is done. Returns kCancelled when the
+  // caller asked to stop: pass that status on at once.
+  absl::Status Report(double fraction, std::optional<double> objective = std::nullopt) const;
+
+  // The token of a sub-step named `stage` that covers [begin, end] of this token's range.
+  Progress Stage(const std::string& stage, double begin, double end) const;
+
+  // True when the caller asked to stop. Cheap; call at least every 100 ms of work.
+  bool cancelled() const;
+
+ private:
+  Sink sink_;
+  CancelTest cancel_test_;
+  std::string stage_;
+  double begin_ = 0, end_ = 1;  // this token's range in the whole computation
+};
+
+}  // namespace pleat

@@ -1,0 +1,35 @@
+// SHA-256 content ids and checksums (OpenSSL's implementation).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace pleat {
+
+using Sha256Digest = std::array<uint8_t, 32>;
+
+// Incremental hash for data that arrives in chunks.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) noexcept;
+
+  void Update(std::string_view bytes);
+  Sha256Digest Finish();  // call once
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
+
+Sha256Digest ComputeSha256(std::string_view bytes);
+
+// 64 lower-case hexadecimal digits.
+std::string ToHex(const Sha256Digest& digest);
+
+}  // namespace pleat

@@ -1,0 +1,21 @@
+// Status helpers shared by every module: absl::Status carries what, where, why and what to do.
+#pragma once
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+// Returns from the enclosing function when `expression` (an absl::Status) is not OK.
+#define PLEAT_RETURN_IF_ERROR(expression)                                                  \
+  do {                                                                                     \
+    if (absl::Status pleat_status = (expression); !pleat_status.ok()) return pleat_status; \
+  } while (false)
+
+#define PLEAT_STATUS_CONCAT_INNER(a, b) a##b
+#define PLEAT_STATUS_CONCAT(a, b) PLEAT_STATUS_CONCAT_INNER(a, b)
+
+// PLEAT_ASSIGN_OR_RETURN(auto mesh, ReadMesh(path)); assigns the value or returns the error.
+#define PLEAT_ASSIGN_OR_RETURN(declaration, expression)                         \
+  auto PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__) = (expression);          \
+  if (!PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__).ok())                    \
+    return std::move(PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__)).status(); \
+  declaration = std::move(PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__)).value()

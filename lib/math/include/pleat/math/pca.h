@@ -1,0 +1,27 @@
+// Principal components of a data matrix with many more columns than rows.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pleat {
+
+// data ~ 1 mean^T + scores * basis^T, rows are samples.
+struct PrincipalComponents {
+  Eigen::VectorXd mean;    // D
+  Eigen::MatrixXd basis;   // D x r, orthonormal columns, by falling variance
+  Eigen::MatrixXd scores;  // N x r
+  double kept_energy = 1;  // share of the centred sum of squares that r components carry, 0..1
+};
+
+struct PcaOptions {
+  int max_components = 1 << 30;
+  double min_energy = 1;  // stop at the first r that keeps this share
+};
+
+// Principal components of `data` (N x D) through the N x N or D x D Gram matrix, whichever is
+// smaller. Signs are fixed (largest entry of each basis vector positive), so the result does not
+// depend on the solver. Directions below 1e-12 of the largest variance are dropped.
+PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
+                               const PcaOptions& options = {});
+
+}  // namespace pleat

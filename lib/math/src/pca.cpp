@@ -1,0 +1,56 @@
+#include "pleat/math/pca.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace pleat {
+namespace {
+
+// Flips each column so that its entry of largest magnitude is positive; `partner` follows.
+void FixSigns(Eigen::MatrixXd& basis, Eigen::MatrixXd& partner) {
+  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
+    Eigen::Index row;
+    basis.col(c).cwiseAbs().maxCoeff(&row);
+    if (basis(row, c) < 0) {
+      basis.col(c) = -basis.col(c);
+      partner.col(c) = -partner.col(c);
+    }
+  }
+}
+
+}  // namespace
+
+PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
+                               const PcaOptions& options) {
+  PrincipalComponents pca;
+  pca.mean = data.colwise().mean().transpose();
+  const Eigen::MatrixXd centred = data.rowwise() - pca.mean.transpose();
+  const bool by_rows = data.rows() <= data.cols();
+  const Eigen::MatrixXd gram = by_rows ? Eigen::MatrixXd(centred * centred.transpose())
+                                       : Eigen::MatrixXd(centred.transpose() * centred);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+  const Eigen::VectorXd values = solver.eigenvalues().reverse().cwiseMax(0);
+  const double total = values.sum();
+
+  Eigen::Index rank = 0;
+  double energy = 0;
+  while (rank < std::min<Eigen::Index>(values.size(), options.max_components) &&
+         values[rank] > 1e-12 * values[0] && (rank == 0 || energy < options.min_energy * total)) {
+    energy += values[rank++];
+  }
+  pca.kept_energy = total > 0 ? energy / total : 1;
+  const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse().leftCols(rank);
+  const Eigen::VectorXd lengths = values.head(rank).cwiseSqrt();
+  if (by_rows) {  // left singular vectors: basis = centred^T U / sigma
+    pca.scores = vectors * lengths.asDiagonal();
+    pca.basis = centred.transpose() * vectors * lengths.cwiseInverse().asDiagonal();
+  } else {
+    pca.basis = vectors;
+    pca.scores = centred * vectors;
+  }
+  FixSigns(pca.basis, pca.scores);
+  return pca;
+}
+
+}  // namespace pleat

@@ -1,0 +1,64 @@
+// A mesh animation: one connectivity, many frames. Valid by construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/mesh/topology.h"
+
+namespace pleat {
+
+// Frames per second as an exact fraction (30000/1001 stays what it is).
+struct FrameRate {
+  int32_t numerator = 30;
+  int32_t denominator = 1;
+  double fps() const { return static_cast<double>(numerator) / denominator; }
+  friend bool operator==(const FrameRate&, const FrameRate&) = default;
+};
+
+struct MeshSequenceOptions {
+  std::string name;  // for messages and reports
+  FrameRate frame_rate;
+  MeshAppearance appearance;
+  std::vector<std::string> frame_names;  // per frame, for messages; empty = "frame N"
+};
+
+// A sequence that exists has at least one frame, V finite positions in each, and positive frame
+// rate; nobody downstream checks again. Positions are metres, Y up, float32 (what captures hold);
+// computations widen to double. Cheap to copy: the data are shared and immutable.
+class MeshSequence {
+ public:
+  // frames: T matrices of 3 x V, V = topology.num_vertices(). kInvalidArgument names the first
+  // faulty frame and vertex.
+  static absl::StatusOr<MeshSequence> Create(Topology topology,
+                                             std::vector<Eigen::Matrix3Xf> frames,
+                                             MeshSequenceOptions options = {});
+
+  int num_frames() const { return static_cast<int>(data_->frames.size()); }
+  int num_vertices() const { return data_->topology.num_vertices(); }
+  const Topology& topology() const { return data_->topology; }
+  const MeshAppearance& appearance() const { return data_->options.appearance; }
+  const std::string& name() const { return data_->options.name; }
+  FrameRate frame_rate() const { return data_->options.frame_rate; }
+  const Eigen::Matrix3Xf& frame(int t) const { return data_->frames[t]; }  // 3 x V
+  Eigen::Matrix3Xd FrameAsDouble(int t) const { return data_->frames[t].cast<double>(); }
+
+  // The frames `frame_indices` of this sequence, in that order. Indices must be in range and the
+  // list not empty.
+  MeshSequence Subset(const std::vector<int>& frame_indices) const;
+
+ private:
+  struct Data {
+    Topology topology;
+    std::vector<Eigen::Matrix3Xf> frames;
+    MeshSequenceOptions options;
+  };
+  explicit MeshSequence(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,46 @@
+#include "pleat/mesh/error_metrics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace pleat {
+
+void ErrorAccumulator::AddFrame(const Eigen::Ref<const Eigen::Matrix3Xd>& predicted,
+                                const Eigen::Ref<const Eigen::Matrix3Xd>& truth,
+                                bool follows_previous) {
+  assert(predicted.cols() == truth.cols());
+  const Eigen::Matrix3Xd difference = predicted - truth;
+  const Eigen::VectorXd distances = difference.colwise().norm().transpose();
+  for (const double distance : distances) distances_m_.push_back(static_cast<float>(distance));
+  sum_m_ += distances.sum();
+  sum_squared_m2_ += distances.squaredNorm();
+  frame_mean_m_.push_back(distances.mean());
+  if (follows_previous && previous_difference_.cols() == difference.cols()) {
+    motion_sum_m_ += (difference - previous_difference_).colwise().norm().sum();
+    motion_count_ += difference.cols();
+  }
+  previous_difference_ = difference;
+}
+
+ErrorSummary ErrorAccumulator::Summarize() const {
+  ErrorSummary summary;
+  if (distances_m_.empty()) return summary;
+  const double to_percent = 100 / diagonal_m_;
+  const double count = static_cast<double>(distances_m_.size());
+  summary.mean_percent = sum_m_ / count * to_percent;
+  summary.rms_percent = std::sqrt(sum_squared_m2_ / count) * to_percent;
+  std::vector<float> sorted = distances_m_;
+  const size_t rank = static_cast<size_t>(0.95 * (count - 1));
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(rank), sorted.end());
+  summary.p95_percent = sorted[rank] * to_percent;
+  summary.max_percent = *std::max_element(sorted.begin(), sorted.end()) * to_percent;
+  summary.mean_mm = sum_m_ / count * 1000;
+  for (const double mean : frame_mean_m_) summary.frame_mean_percent.push_back(mean * to_percent);
+  if (motion_count_ > 0) {
+    summary.motion_mean_percent = motion_sum_m_ / static_cast<double>(motion_count_) * to_percent;
+  }
+  return summary;
+}
+
+}  // namespace pleat

@@ -1,0 +1,43 @@
+// A joint hierarchy in its rest pose.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace pleat {
+
+struct Joint {
+  std::string name;
+  int parent = -1;                // index, smaller than the joint's own; -1 only for the root
+  Eigen::Vector3d rest_position;  // metres, world, Y up
+};
+
+// Joints in parent-before-child order; joint 0 is the root and has no bone. Bone b (b >= 1) is the
+// segment from joint parent(b) to joint b and turns about parent(b) (method.md, 2.1): one rotation
+// per non-root joint, that is per bone.
+class Skeleton {
+ public:
+  // kInvalidArgument when the order, a parent, a position or a name (empty, twice) is wrong.
+  static absl::StatusOr<Skeleton> Create(std::vector<Joint> joints);
+
+  int num_joints() const { return static_cast<int>(joints_.size()); }
+  const Joint& joint(int j) const { return joints_[j]; }
+  const std::vector<Joint>& joints() const { return joints_; }
+  int parent(int j) const { return joints_[j].parent; }
+  const Eigen::Vector3d& rest_position(int j) const { return joints_[j].rest_position; }
+  const std::vector<int>& children(int j) const { return children_[j]; }
+  int FindJoint(const std::string& name) const;  // index or -1
+
+  // The same hierarchy with other rest positions (3 x J, metres).
+  Skeleton WithRestPositions(const Eigen::Matrix3Xd& positions) const;
+  Eigen::Matrix3Xd RestPositions() const;  // 3 x J
+
+ private:
+  std::vector<Joint> joints_;
+  std::vector<std::vector<int>> children_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,46 @@
+#include "pleat/skeleton/pose.h"
+
+#include <cassert>
+
+namespace pleat {
+
+Pose Pose::Rest(const Skeleton& skeleton) {
+  Pose pose;
+  pose.root_position = skeleton.rest_position(0);
+  pose.rotations.assign(skeleton.num_joints(), Eigen::Quaterniond::Identity());
+  return pose;
+}
+
+void ComputeBoneTransforms(const Skeleton& skeleton, const Pose& pose,
+                           const std::vector<double>& bone_scales, BoneTransforms* transforms) {
+  const int num_joints = skeleton.num_joints();
+  assert(static_cast<int>(pose.rotations.size()) == num_joints);
+  assert(bone_scales.empty() || static_cast<int>(bone_scales.size()) == num_joints);
+  transforms->linear.resize(num_joints);
+  transforms->translation.resize(num_joints);
+  transforms->rotation.resize(num_joints);
+  transforms->joint_positions.resize(3, num_joints);
+
+  transforms->rotation[0] = pose.rotations[0].toRotationMatrix();
+  transforms->linear[0] = transforms->rotation[0];
+  transforms->translation[0] =
+      pose.root_position - transforms->rotation[0] * skeleton.rest_position(0);
+  transforms->joint_positions.col(0) = pose.root_position;
+  for (int b = 1; b < num_joints; ++b) {
+    const int parent = skeleton.parent(b);
+    const Eigen::Vector3d& pivot_rest = skeleton.rest_position(parent);
+    const Eigen::Vector3d bone = skeleton.rest_position(b) - pivot_rest;
+    transforms->rotation[b] = transforms->rotation[parent] * pose.rotations[b].toRotationMatrix();
+    transforms->linear[b] = transforms->rotation[b];
+    const double length_squared = bone.squaredNorm();
+    if (!bone_scales.empty() && length_squared > 0) {  // stretch along the bone's axis
+      transforms->linear[b] += (bone_scales[b] - 1) / length_squared *
+                               (transforms->rotation[b] * bone) * bone.transpose();
+    }
+    const Eigen::Vector3d pivot = transforms->joint_positions.col(parent);
+    transforms->translation[b] = pivot - transforms->linear[b] * pivot_rest;
+    transforms->joint_positions.col(b) = pivot + transforms->linear[b] * bone;
+  }
+}
+
+}  // namespace pleat

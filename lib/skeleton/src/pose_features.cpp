@@ -1,0 +1,110 @@
+#include "pleat/skeleton/pose_features.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "pleat/math/rotations.h"
+
+namespace pleat {
+namespace {
+
+int ValuesPerJoint(RotationRepresentation representation) {
+  return representation == RotationRepresentation::kQuaternion ? 4 : 3;
+}
+
+// The coordinates of `rotation` on the branch nearest to `reference` (3 or 4 values).
+void ToCoordinates(RotationRepresentation representation, const Eigen::Quaterniond& rotation,
+                   const Eigen::Ref<const Eigen::VectorXd>& reference,
+                   Eigen::Ref<Eigen::VectorXd> out) {
+  switch (representation) {
+    case RotationRepresentation::kExponentialMap:
+      out = UnwrapExponentialMap(ExponentialMapFromQuaternion(rotation), reference);
+      return;
+    case RotationRepresentation::kEuler: {
+      const Eigen::Vector3d angles = EulerXyzFromRotation(rotation.toRotationMatrix());
+      for (int i = 0; i < 3; ++i) {
+        const double turns = std::round((reference[i] - angles[i]) / (2 * std::numbers::pi));
+        out[i] = angles[i] + 2 * std::numbers::pi * turns;
+      }
+      return;
+    }
+    case RotationRepresentation::kQuaternion: {
+      Eigen::Vector4d q(rotation.w(), rotation.x(), rotation.y(), rotation.z());
+      out = reference.dot(q) < 0 ? Eigen::Vector4d(-q) : q;
+      return;
+    }
+  }
+}
+
+// A reference that any rotation may be compared with before a track is known.
+Eigen::VectorXd NeutralReference(RotationRepresentation representation, int num_joints) {
+  const int k = ValuesPerJoint(representation);
+  Eigen::VectorXd reference = Eigen::VectorXd::Zero((num_joints - 1) * k);
+  if (k == 4) {
+    for (int j = 0; j + 1 < num_joints; ++j) reference[4 * j] = 1;
+  }
+  return reference;
+}
+
+}  // namespace
+
+PoseFeatures::PoseFeatures(PoseFeatureOptions options, int num_joints, Eigen::VectorXd reference)
+    : options_(options), reference_(std::move(reference)) {
+  assert(reference_.size() == (num_joints - 1) * ValuesPerJoint(options.representation));
+  (void)num_joints;
+}
+
+Eigen::VectorXd PoseFeatures::Reference(const PoseFeatureOptions& options, const PoseTrack& track) {
+  assert(!track.poses.empty());
+  const int num_joints = static_cast<int>(track.poses[0].rotations.size());
+  const int k = ValuesPerJoint(options.representation);
+  Eigen::VectorXd current = NeutralReference(options.representation, num_joints);
+  const Eigen::VectorXd neutral = current;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(current.size());
+  size_t clip = 0;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    if (clip < track.clip_starts.size() && track.clip_starts[clip] == t) {
+      current = neutral;  // a new clip starts on the neutral branch again
+      ++clip;
+    }
+    for (int j = 1; j < num_joints; ++j) {
+      const Eigen::VectorXd before = current.segment((j - 1) * k, k);
+      ToCoordinates(options.representation, track.poses[t].rotations[j], before,
+                    current.segment((j - 1) * k, k));
+    }
+    sum += current;
+  }
+  return sum / track.num_frames();
+}
+
+void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
+                              Eigen::Ref<Eigen::VectorXd> row) const {
+  assert(static_cast<int>(poses.size()) == options_.history && row.size() == num_features());
+  const int k = ValuesPerJoint(options_.representation);
+  const int block = static_cast<int>(reference_.size());
+  for (int h = 0; h < options_.history; ++h) {
+    for (int j = 0; j * k < block; ++j) {
+      ToCoordinates(options_.representation, poses[h]->rotations[j + 1],
+                    reference_.segment(j * k, k), row.segment(h * block + j * k, k));
+    }
+  }
+}
+
+Eigen::MatrixXd PoseFeatures::ComputeTrack(const PoseTrack& track) const {
+  Eigen::MatrixXd rows(track.num_frames(), num_features());
+  Eigen::VectorXd row(num_features());
+  std::vector<const Pose*> poses(options_.history);
+  for (int t = 0; t < track.num_frames(); ++t) {
+    const int clip_start =
+        *(std::upper_bound(track.clip_starts.begin(), track.clip_starts.end(), t) - 1);
+    for (int h = 0; h < options_.history; ++h) poses[h] = &track.poses[std::max(clip_start, t - h)];
+    ComputeRow(poses, row);
+    rows.row(t) = row.transpose();
+  }
+  return rows;
+}
+
+}  // namespace pleat

@@ -1,0 +1,30 @@
+// A rig: skeleton, skinning weights and the mesh in the rest pose; and linear blend skinning.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/skeleton.h"
+#include "pleat/skinning/skin_weights.h"
+
+namespace pleat {
+
+struct Rig {
+  Skeleton skeleton;
+  SkinWeights weights;
+  Eigen::Matrix3Xd rest_positions;  // 3 x V, metres, rest pose
+};
+
+// Linear blend skinning: column v of `positions` = sum_b w_vb (linear_b rest_v + translation_b).
+// rest, positions: 3 x V. No allocation when `positions` has the right size.
+void SkinVertices(const SkinWeights& weights, const Eigen::Ref<const Eigen::Matrix3Xd>& rest,
+                  const BoneTransforms& transforms, Eigen::Matrix3Xd* positions);
+
+// The rotation of every vertex's own blend (unit quaternion: the weighted mean of its bones'
+// rotations, signs aligned with the strongest bone), the axes of "local" details
+// (method.md, section 4). Vertices `vertices` only, in that order.
+void BlendRotations(const SkinWeights& weights, const std::vector<int>& vertices,
+                    const BoneTransforms& transforms, std::vector<Eigen::Quaterniond>* rotations);
+
+}  // namespace pleat

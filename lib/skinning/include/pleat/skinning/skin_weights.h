@@ -1,0 +1,42 @@
+// Skinning weights: at most four bones per vertex.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace pleat {
+
+inline constexpr int kMaxInfluences = 4;
+
+// The bones that move one vertex. Bone b is the bone that ends in joint b (b >= 1).
+struct VertexInfluences {
+  std::array<uint16_t, kMaxInfluences> bones{};
+  std::array<float, kMaxInfluences> weights{};  // >= 0, sum 1, falling; unused entries are 0
+};
+
+// Valid by construction: finite, non-negative, normalised, bones in [1, num_joints).
+class SkinWeights {
+ public:
+  // Keeps the four largest weights of every row of `dense` (V x num_joints, column b = bone b,
+  // column 0 ignored) and normalises them. kInvalidArgument names the first vertex without weight.
+  static absl::StatusOr<SkinWeights> FromDense(const Eigen::Ref<const Eigen::MatrixXd>& dense);
+  // Checks and takes `influences` as they are (sums within 1e-4 of 1).
+  static absl::StatusOr<SkinWeights> Create(int num_joints,
+                                            std::vector<VertexInfluences> influences);
+
+  int num_vertices() const { return static_cast<int>(influences_.size()); }
+  int num_joints() const { return num_joints_; }
+  const VertexInfluences& vertex(int v) const { return influences_[v]; }
+  const std::vector<VertexInfluences>& influences() const { return influences_; }
+  Eigen::MatrixXd ToDense() const;  // V x num_joints
+
+ private:
+  int num_joints_ = 0;
+  std::vector<VertexInfluences> influences_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,75 @@
+#include "pleat/skinning/skin_weights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace pleat {
+
+absl::StatusOr<SkinWeights> SkinWeights::FromDense(const Eigen::Ref<const Eigen::MatrixXd>& dense) {
+  SkinWeights result;
+  result.num_joints_ = static_cast<int>(dense.cols());
+  result.influences_.resize(dense.rows());
+  std::vector<int> order(std::max<Eigen::Index>(0, dense.cols() - 1));
+  const size_t kept = std::min<size_t>(kMaxInfluences, order.size());
+  for (Eigen::Index v = 0; v < dense.rows(); ++v) {
+    std::iota(order.begin(), order.end(), 1);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return dense(v, a) > dense(v, b); });
+    double total = 0;
+    for (size_t k = 0; k < kept; ++k) total += std::max(0.0, dense(v, order[k]));
+    if (!(total > 0) || !std::isfinite(total)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("vertex ", v, " has no positive, finite skinning weight"));
+    }
+    for (size_t k = 0; k < kept; ++k) {
+      const double weight = std::max(0.0, dense(v, order[k])) / total;
+      if (weight <= 0) break;
+      result.influences_[v].bones[k] = static_cast<uint16_t>(order[k]);
+      result.influences_[v].weights[k] = static_cast<float>(weight);
+    }
+  }
+  return result;
+}
+
+absl::StatusOr<SkinWeights> SkinWeights::Create(int num_joints,
+                                                std::vector<VertexInfluences> influences) {
+  for (size_t v = 0; v < influences.size(); ++v) {
+    float total = 0;
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      const float weight = influences[v].weights[k];
+      const int bone = influences[v].bones[k];
+      if (!std::isfinite(weight) || weight < 0 ||
+          (weight > 0 && (bone < 1 || bone >= num_joints))) {
+        return absl::InvalidArgumentError(absl::StrCat("vertex ", v, ": influence ", k, " (bone ",
+                                                       bone, ", weight ", weight, ") is invalid"));
+      }
+      total += weight;
+    }
+    if (std::abs(total - 1) > 1e-4f) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("vertex ", v, ": the skinning weights add up to ", total, ", not 1"));
+    }
+  }
+  SkinWeights result;
+  result.num_joints_ = num_joints;
+  result.influences_ = std::move(influences);
+  return result;
+}
+
+Eigen::MatrixXd SkinWeights::ToDense() const {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(num_vertices(), num_joints_);
+  for (int v = 0; v < num_vertices(); ++v) {
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      if (influences_[v].weights[k] > 0) {
+        dense(v, influences_[v].bones[k]) = influences_[v].weights[k];
+      }
+    }
+  }
+  return dense;
+}
+
+}  // namespace pleat
