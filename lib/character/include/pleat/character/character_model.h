@@ -1,0 +1,86 @@
+// The character: rig, learnt detail and what training recorded. Immutable and shared.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/character/train_options.h"
+#include "pleat/geometry/rbf_upsampling.h"
+#include "pleat/gp/detail_model.h"
+#include "pleat/mesh/error_metrics.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/mesh/topology.h"
+#include "pleat/skeleton/pose_features.h"
+#include "pleat/skinning/rig.h"
+
+namespace pleat {
+
+// What training found out about its own result; kept in the model file.
+struct TrainingRecord {
+  std::string learner;  // the learner that was chosen: "gp" or "sgplvm"
+  int num_frames = 0;   // training frames
+  int rest_frame = 0;
+  double yaw_degrees = 0;       // facing that was found
+  double rig_residual = 0;      // of the embedding; under .03 is trusted
+  double diagonal_m = 0;        // bounding-box diagonal of the first frame, metres
+  ErrorSummary fit;             // skinned only against the input; frame_mean_percent not kept
+  ErrorSummary reconstruction;  // hybrid against the input; frame_mean_percent not kept
+  std::vector<std::string> warnings;
+};
+
+// Never changes after it is made; queries share it without locks.
+class CharacterModel {
+ public:
+  struct Parts {
+    std::string name;
+    FrameRate frame_rate;
+    Topology topology;
+    MeshAppearance appearance;
+    Rig rig;                                // all V vertices, J joints
+    TrainOptions options;                   // as used
+    Eigen::VectorXd feature_reference;      // PoseFeatures::reference()
+    std::vector<int> control_vertices;      // C ascending vertex indices; all V at full resolution
+    std::optional<RbfUpsampler> upsampler;  // V x C; absent at full resolution
+    std::shared_ptr<const DetailModel> detail_model;  // features -> details, 3C outputs
+    TrainingRecord record;
+  };
+
+  // Checks that all parts fit together (counts, ranges): kInvalidArgument names what does not.
+  static absl::StatusOr<std::shared_ptr<const CharacterModel>> Create(Parts parts);
+
+  const Parts& parts() const { return parts_; }
+  const std::string& name() const { return parts_.name; }
+  const Topology& topology() const { return parts_.topology; }
+  const Skeleton& skeleton() const { return parts_.rig.skeleton; }
+  const Rig& rig() const { return parts_.rig; }
+  const TrainOptions& options() const { return parts_.options; }
+  const TrainingRecord& record() const { return parts_.record; }
+  const DetailModel& detail_model() const { return *parts_.detail_model; }
+  const PoseFeatures& features() const { return features_; }
+  FrameRate frame_rate() const { return parts_.frame_rate; }
+  int num_vertices() const { return parts_.topology.num_vertices(); }
+
+  // Control-to-full upsampling folded into the detail basis: details of all vertices =
+  // full_mean + full_basis * coefficients (3V, 3V x r; xyz of vertex 0, of vertex 1, ...).
+  const Eigen::MatrixXf& full_basis() const { return *full_basis_; }
+  const Eigen::VectorXf& full_mean() const { return *full_mean_; }
+
+  // Resident size, what the cache is charged.
+  size_t memory_bytes() const;
+
+ private:
+  CharacterModel(Parts parts, PoseFeatures features);
+
+  Parts parts_;
+  PoseFeatures features_;
+  Eigen::MatrixXf upsampled_basis_;  // empty at full resolution
+  Eigen::VectorXf upsampled_mean_;
+  const Eigen::MatrixXf* full_basis_ = nullptr;  // upsampled_* or the detail model's own
+  const Eigen::VectorXf* full_mean_ = nullptr;
+};
+
+}  // namespace pleat

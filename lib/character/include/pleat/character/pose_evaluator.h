@@ -1,0 +1,56 @@
+// Runtime: pose (with history) -> full mesh. Milliseconds, no allocation after the first frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "pleat/base/progress.h"
+#include "pleat/character/character_model.h"
+#include "pleat/skeleton/pose.h"
+
+namespace pleat {
+
+struct EvaluatedFrame {
+  Eigen::Matrix3Xf positions;  // 3 x V, metres, world
+  // How near the pose is to what training has seen: 1 = seen, 0 = unknown, the mean detail shows.
+  double confidence = 0;
+};
+
+// One evaluator per thread: it owns the scratch memory, the model is shared.
+class PoseEvaluator {
+ public:
+  explicit PoseEvaluator(std::shared_ptr<const CharacterModel> model);
+  ~PoseEvaluator();
+  PoseEvaluator(PoseEvaluator&&) noexcept;
+  PoseEvaluator& operator=(PoseEvaluator&&) noexcept;
+
+  const CharacterModel& model() const;
+
+  // poses[0] is the pose to show, poses[h] the pose h training-frame intervals earlier; missing
+  // history repeats the oldest pose given. bone_scales: J factors on the bone lengths or empty
+  // (retargeting: new proportions, the paper's Figure 6d). kInvalidArgument names a wrong joint
+  // count, a rotation that is not finite or not of unit length, or a scale outside [0.05, 20].
+  absl::Status Evaluate(const std::vector<const Pose*>& poses,
+                        const std::vector<double>& bone_scales, EvaluatedFrame* frame);
+
+  // The same without the learnt detail (skinned only).
+  absl::Status EvaluateSkinned(const Pose& pose, const std::vector<double>& bone_scales,
+                               EvaluatedFrame* frame);
+
+  // Batch form: every frame of `track` in order, history taken from the track itself (interpolated
+  // where its frame rate differs from the model's). `consume` may stop the clip with an error.
+  absl::Status EvaluateClip(
+      const PoseTrack& track, const std::vector<double>& bone_scales,
+      const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
+      const Progress& progress = {});
+
+ private:
+  struct Scratch;
+  std::shared_ptr<const CharacterModel> model_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace pleat

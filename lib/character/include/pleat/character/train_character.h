@@ -1,0 +1,38 @@
+// Offline: mesh sequences -> character model (steps 3 to 7 of the data's way, ARCHITECTURE.md).
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/character/character_model.h"
+#include "pleat/character/train_options.h"
+#include "pleat/mesh/mesh_sequence.h"
+
+namespace pleat {
+
+// Resources, not choices: they never change the result and are not stored.
+struct TrainResources {
+  int num_threads = 0;  // 0 = one per core
+};
+
+// What a training run reports beside the model (the model's record holds the rest).
+struct TrainSummary {
+  std::map<std::string, double> validation_mean_percent;  // per learner, when learner = "auto"
+  int num_components = 0;                                 // of the detail basis
+  int num_control_vertices = 0;
+};
+
+// Trains one character from one or more clips of the same connectivity (checked against the first;
+// kInvalidArgument names clip and first differing face). The rest frame is a frame of the first
+// clip. Errors: kInvalidArgument for bad options or clips, kFailedPrecondition when no human-like
+// rig fits, kCancelled.
+absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
+    const std::vector<MeshSequence>& clips, const TrainOptions& options,
+    const TrainResources& resources = {}, TrainSummary* summary = nullptr,
+    const Progress& progress = {});
+
+}  // namespace pleat

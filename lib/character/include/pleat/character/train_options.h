@@ -1,0 +1,64 @@
+// Every choice of a training run. All of them are written into the model file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace pleat {
+
+struct TrainOptions {
+  std::string learner = "auto";    // "auto" (validated on held-out training frames), "gp", "sgplvm"
+  std::string fit = "all-joints";  // "all-joints" (Levenberg-Marquardt) or "walk" (the paper's)
+  std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
+  std::string rotations = "expmap";   // pose features: "expmap" (paper), "euler", "quaternion"
+  int history = 2;                    // poses per feature row, 1..8 (paper: 2)
+  double resolution_percent = 100;    // share of the vertices that learn, 1..100 (paper: 5)
+  int rest_frame = -1;                // frame to rig, -1 = found automatically
+  double yaw_degrees = -1;            // facing of the character about +y from +z, -1 = automatic
+  int latent_dimensions = 4;          // q of the SGPLVM, 1..32 (its value in the paper is lost)
+  int iterations = 100;               // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
+  double dynamics_weight = 1;         // lambda on the GPDM term, 0..1e6 (paper: 1)
+  double detail_energy = 0.99999;     // share of the details' energy that the PCA basis keeps, 0..1
+  int max_components = 96;            // upper bound of the PCA basis, 1..1024
+  uint64_t seed = 1;                  // of everything random
+
+  // The published settings: sgplvm on a 5 % control mesh, walk, world axes (paper, section IV).
+  static TrainOptions Paper();
+
+  friend bool operator==(const TrainOptions&, const TrainOptions&) = default;
+};
+
+// OK when every option is in the range above; else names option, value and range.
+absl::Status ValidateTrainOptions(const TrainOptions& options);
+
+// One "name=value" line per option, in a fixed order; the exact inverse of ParseTrainOptions.
+std::string FormatTrainOptions(const TrainOptions& options);
+
+// Parses such lines; options that are not mentioned keep their default. kInvalidArgument names an
+// unknown option or a value that does not parse.
+absl::StatusOr<TrainOptions> ParseTrainOptions(absl::string_view text);
+
+// Calls visit(name, member&) for every option: the one list that file, report and flags share.
+template <typename Options, typename Visitor>
+void VisitTrainOptions(Options& options, Visitor&& visit) {
+  visit("learner", options.learner);
+  visit("fit", options.fit);
+  visit("detail_axes", options.detail_axes);
+  visit("rotations", options.rotations);
+  visit("history", options.history);
+  visit("resolution_percent", options.resolution_percent);
+  visit("rest_frame", options.rest_frame);
+  visit("yaw_degrees", options.yaw_degrees);
+  visit("latent_dimensions", options.latent_dimensions);
+  visit("iterations", options.iterations);
+  visit("dynamics_weight", options.dynamics_weight);
+  visit("detail_energy", options.detail_energy);
+  visit("max_components", options.max_components);
+  visit("seed", options.seed);
+}
+
+}  // namespace pleat
