@@ -20,9 +20,8 @@ absl::Status CheckChoice(absl::string_view name, const std::string& value,
   for (const char* choice : choices) {
     if (value == choice) return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(absl::StrCat("option ", name, ": '", value,
-                                                 "' is unknown; choose one of ",
-                                                 absl::StrJoin(choices, ", ")));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "option ", name, ": '", value, "' is unknown; choose one of ", absl::StrJoin(choices, ", ")));
 }
 
 template <typename T>
@@ -76,13 +75,14 @@ TrainOptions TrainOptions::Paper() {
 absl::Status ValidateTrainOptions(const TrainOptions& options) {
   PLEAT_RETURN_IF_ERROR(CheckChoice("learner", options.learner, {"auto", "gp", "sgplvm"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("fit", options.fit, {"all-joints", "walk"}));
-  PLEAT_RETURN_IF_ERROR(CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
+  PLEAT_RETURN_IF_ERROR(
+      CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
   PLEAT_RETURN_IF_ERROR(
       CheckChoice("rotations", options.rotations, {"expmap", "euler", "quaternion"}));
   PLEAT_RETURN_IF_ERROR(CheckRange("history", options.history, 1, 8));
   PLEAT_RETURN_IF_ERROR(CheckRange("resolution_percent", options.resolution_percent, 1.0, 100.0));
-  PLEAT_RETURN_IF_ERROR(CheckRange("rest_frame", options.rest_frame, -1,
-                                   std::numeric_limits<int>::max()));
+  PLEAT_RETURN_IF_ERROR(
+      CheckRange("rest_frame", options.rest_frame, -1, std::numeric_limits<int>::max()));
   if (options.yaw_degrees != -1) {
     PLEAT_RETURN_IF_ERROR(CheckRange("yaw_degrees", options.yaw_degrees, 0.0, 360.0));
   }

@@ -1,12 +1,12 @@
 #include "pleat/skeleton/pose_features.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "pleat/math/rotations.h"
+#include "pleat/skeleton/pose_history.h"
 
 namespace pleat {
 namespace {
@@ -96,11 +96,10 @@ void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
 Eigen::MatrixXd PoseFeatures::ComputeTrack(const PoseTrack& track) const {
   Eigen::MatrixXd rows(track.num_frames(), num_features());
   Eigen::VectorXd row(num_features());
-  std::vector<const Pose*> poses(options_.history);
+  PoseHistory history(track, track.fps, options_.history);
+  std::vector<const Pose*> poses;
   for (int t = 0; t < track.num_frames(); ++t) {
-    const int clip_start =
-        *(std::upper_bound(track.clip_starts.begin(), track.clip_starts.end(), t) - 1);
-    for (int h = 0; h < options_.history; ++h) poses[h] = &track.poses[std::max(clip_start, t - h)];
+    history.At(t, &poses);
     ComputeRow(poses, row);
     rows.row(t) = row.transpose();
   }

@@ -34,7 +34,8 @@ class PoseFeatures {
   // `row` has num_features() entries: current pose first, then its predecessors. No allocation.
   void ComputeRow(const std::vector<const Pose*>& poses, Eigen::Ref<Eigen::VectorXd> row) const;
 
-  // T x num_features. The first frames of a clip repeat the clip's first pose as their history.
+  // T x num_features. Before a clip's first frame its first motion continues backwards
+  // (PoseHistory), so that the first rows are not mistaken for standing still.
   Eigen::MatrixXd ComputeTrack(const PoseTrack& track) const;
 
  private:
