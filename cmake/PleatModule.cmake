@@ -7,6 +7,7 @@
 # call fails when one of them has not been declared before it, so the declaration order in
 # lib/CMakeLists.txt is the only include order and cycles cannot exist.
 # PRIVATE_PACKAGES stay out of the include path of dependants (Draco, protobuf, ...).
+set(PLEAT_BOOTSTRAP ON)
 set_property(GLOBAL PROPERTY PLEAT_MODULES "")
 
 function(pleat_add_module name)
@@ -17,6 +18,9 @@ function(pleat_add_module name)
   get_property(declared GLOBAL PROPERTY PLEAT_MODULES)
   foreach(dependency IN LISTS ARG_DEPENDS)
     if(NOT dependency IN_LIST declared)
+      if(PLEAT_BOOTSTRAP)
+        return()
+      endif()
       message(FATAL_ERROR "module ${name} depends on ${dependency}, which is not declared before "
                           "it: see the include order in ARCHITECTURE.md")
     endif()
@@ -25,6 +29,9 @@ function(pleat_add_module name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/pleat/*/*.h)
   set(target pleat_${name})
+  if(PLEAT_BOOTSTRAP AND (NOT sources OR NOT headers))
+    return()
+  endif()
   if(NOT sources OR NOT headers)
     message(FATAL_ERROR "module ${name} has no sources or no public headers")
   endif()
