@@ -27,13 +27,14 @@ struct MeshSequenceOptions {
   std::vector<std::string> frame_names;  // per frame, for messages; empty = "frame N"
 };
 
-// A sequence that exists has at least one frame, V finite positions in each, and positive frame
-// rate; nobody downstream checks again. Positions are metres, Y up, float32 (what captures hold);
-// computations widen to double. Cheap to copy: the data are shared and immutable.
+// A sequence that exists has at least one frame, V finite positions in each, a positive frame rate
+// and an appearance whose indices fit the topology; nobody downstream checks again. Positions are
+// metres, Y up, float32 (what captures hold); computations widen to double. Cheap to copy: the data
+// are shared and immutable.
 class MeshSequence {
  public:
   // frames: T matrices of 3 x V, V = topology.num_vertices(). kInvalidArgument names the first
-  // faulty frame and vertex.
+  // faulty frame and vertex, or the entry of the appearance that is out of range.
   static absl::StatusOr<MeshSequence> Create(Topology topology,
                                              std::vector<Eigen::Matrix3Xf> frames,
                                              MeshSequenceOptions options = {});

@@ -1,0 +1,19 @@
+// Wavefront OBJ, read without changing the order or the number of its vertices.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+#include "pleat/formats/mesh_file.h"
+
+namespace pleat {
+
+// Reads v, vt, f (a, a/b, a//c, a/b/c, negative indices, polygons of any size), usemtl and mtllib;
+// every other statement is skipped, normals included. kInvalidArgument says "file:line" and why.
+// `file` is the name used in messages.
+absl::StatusOr<MeshFile> DecodeObj(std::string_view text, const std::string& file,
+                                   const MeshFileLimits& limits = {});
+absl::StatusOr<MeshFile> ReadObj(const std::string& path, const MeshFileLimits& limits = {});
+
+}  // namespace pleat

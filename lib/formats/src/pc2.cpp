@@ -1,0 +1,118 @@
+#include "pleat/formats/pc2.h"
+
+#include <cassert>
+#include <span>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/bytes.h"
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr std::string_view kMagic("POINTCACHE2\0", 12);
+constexpr uint64_t kHeaderBytes = 32;
+
+struct Header {
+  int32_t num_vertices = 0, num_frames = 0;
+  float start_frame = 0, sample_rate = 1;
+};
+
+absl::StatusOr<Header> ReadHeader(ByteReader* reader) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string_view magic, reader->ReadRaw(kMagic.size(), "magic"));
+  if (magic != kMagic) {
+    return absl::InvalidArgumentError("not a PointCache2 file: it does not begin with POINTCACHE2");
+  }
+  Header header;
+  PLEAT_ASSIGN_OR_RETURN(const int32_t version, reader->Read<int32_t>("version"));
+  if (version != 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("PointCache2 version ", version, ", only 1 is known"));
+  }
+  PLEAT_ASSIGN_OR_RETURN(header.num_vertices, reader->Read<int32_t>("vertex count"));
+  PLEAT_ASSIGN_OR_RETURN(header.start_frame, reader->Read<float>("start frame"));
+  PLEAT_ASSIGN_OR_RETURN(header.sample_rate, reader->Read<float>("sample rate"));
+  PLEAT_ASSIGN_OR_RETURN(header.num_frames, reader->Read<int32_t>("frame count"));
+  if (header.num_vertices <= 0 || header.num_frames <= 0) {
+    return absl::InvalidArgumentError(absl::StrCat("the header declares ", header.num_vertices,
+                                                   " vertices and ", header.num_frames,
+                                                   " frames; both must be positive"));
+  }
+  return header;
+}
+
+absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes,
+                        const MeshFileLimits& limits) {
+  const uint64_t frame_bytes = static_cast<uint64_t>(header.num_vertices) * 12;
+  const uint64_t total_bytes = frame_bytes * static_cast<uint64_t>(header.num_frames);
+  if (header.num_vertices > limits.max_vertices || header.num_frames > limits.max_frames ||
+      total_bytes > limits.max_sequence_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(header.num_frames, " frames of ", header.num_vertices, " vertices (",
+                     total_bytes, " bytes) are over the limit of ", limits.max_frames, " frames, ",
+                     limits.max_vertices, " vertices, ", limits.max_sequence_bytes, " bytes"));
+  }
+  if (remaining_bytes != total_bytes) {
+    return absl::DataLossError(absl::StrCat(
+        "the header declares ", header.num_frames, " frames of ", header.num_vertices,
+        " vertices (", total_bytes, " bytes of positions) but ", remaining_bytes,
+        " bytes follow, that is ", remaining_bytes / frame_bytes, " whole frames; ",
+        remaining_bytes < total_bytes ? "the file is cut off" : "the counts are wrong"));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshFileLimits& limits) {
+  if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
+  ByteReader reader(bytes);
+  PLEAT_ASSIGN_OR_RETURN(const Header header, ReadHeader(&reader));
+  PLEAT_RETURN_IF_ERROR(CheckSizes(header, reader.remaining(), limits));
+  PointCache cache;
+  cache.start_frame = header.start_frame;
+  cache.sample_rate = header.sample_rate;
+  cache.frames.reserve(static_cast<size_t>(header.num_frames));
+  for (int t = 0; t < header.num_frames; ++t) {
+    Eigen::Matrix3Xf& frame = cache.frames.emplace_back(3, header.num_vertices);
+    PLEAT_RETURN_IF_ERROR(
+        reader.ReadArray(std::span(frame.data(), static_cast<size_t>(frame.size())), "positions"));
+  }
+  return cache;
+}
+
+}  // namespace
+
+absl::StatusOr<PointCache> DecodePointCache(std::string_view bytes, const std::string& file,
+                                            const MeshFileLimits& limits) {
+  absl::StatusOr<PointCache> cache = Decode(bytes, limits);
+  if (cache.ok()) return cache;
+  return absl::Status(cache.status().code(), absl::StrCat(file, ": ", cache.status().message()));
+}
+
+absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshFileLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_file_bytes));
+  return DecodePointCache(bytes, path, limits);
+}
+
+std::string EncodePointCache(const PointCache& cache) {
+  assert(!cache.frames.empty());
+  ByteWriter writer;
+  writer.WriteRaw(kMagic);
+  writer.Write<int32_t>(1);
+  writer.Write(static_cast<int32_t>(cache.frames[0].cols()));
+  writer.Write(cache.start_frame);
+  writer.Write(cache.sample_rate);
+  writer.Write(static_cast<int32_t>(cache.frames.size()));
+  assert(writer.size() == kHeaderBytes);
+  for (const Eigen::Matrix3Xf& frame : cache.frames) {
+    assert(frame.cols() == cache.frames[0].cols());
+    writer.WriteArray(std::span(frame.data(), static_cast<size_t>(frame.size())));
+  }
+  return writer.Release();
+}
+
+absl::Status WritePointCache(const std::string& path, const PointCache& cache) {
+  return WriteFile(path, EncodePointCache(cache));
+}
+
+}  // namespace pleat
