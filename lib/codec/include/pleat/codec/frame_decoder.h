@@ -1,0 +1,47 @@
+// Draco bytes of a stream -> positions in the character's own vertex order. Bytes are hostile.
+#pragma once
+
+#include <Eigen/Core>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/codec/stream_header.h"
+#include "pleat/mesh/topology.h"
+
+namespace pleat {
+
+struct FrameDecoderLimits {
+  int max_vertices = 4'000'000;
+  int max_triangles = 8'000'000;
+};
+
+// Draco is memory-safe on hostile bytes but not resource-safe (an 86-byte file reached 22 GB), and
+// accepts face indices that do not exist. So every header count is compared with what the stream
+// declared before Draco allocates, attributes before their values are decoded, indices afterwards.
+class FrameDecoder {
+ public:
+  // Decodes and checks the topology. kInvalidArgument or kDataLoss names what is wrong.
+  static absl::StatusOr<FrameDecoder> Create(StreamHeader header,
+                                             const FrameDecoderLimits& limits = {});
+
+  const StreamHeader& header() const { return header_; }
+  // Triangles over the character's vertices, in the order of the topology mesh.
+  const Topology& topology() const { return topology_; }
+  const Eigen::Matrix3Xf& reference() const { return reference_; }  // 3 x V, decoded
+
+  // Fills `positions` (3 x V, metres, character's vertex order). kDataLoss says what is wrong; then
+  // `positions` holds nothing useful. Not for two threads at once.
+  absl::Status Decode(std::string_view bytes, Eigen::Matrix3Xf* positions);
+
+ private:
+  FrameDecoder(StreamHeader header, Topology topology, Eigen::Matrix3Xf reference);
+
+  StreamHeader header_;
+  Topology topology_;
+  Eigen::Matrix3Xf reference_;
+  Eigen::Matrix3Xf points_;  // 3 x number of points in the last frame
+  std::vector<int32_t> point_vertices_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,93 @@
+#include "draco_encode.h"
+
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "draco/compression/expert_encode.h"
+
+namespace pleat {
+namespace {
+
+int AddAttribute(draco::GeometryAttribute::Type type, draco::DataType data_type, int num_components,
+                 int num_values, draco::PointCloud* cloud) {
+  draco::GeometryAttribute attribute;
+  attribute.Init(type, nullptr, static_cast<uint8_t>(num_components), data_type, false,
+                 draco::DataTypeLength(data_type) * num_components, 0);
+  return cloud->AddAttribute(attribute, /*identity_mapping=*/true, num_values);
+}
+
+absl::StatusOr<std::string> Run(draco::ExpertEncoder* encoder) {
+  draco::EncoderBuffer buffer;
+  try {
+    // Draco throws std::length_error on values it cannot code, and std::bad_alloc.
+    const draco::Status status = encoder->EncodeToBuffer(&buffer);
+    if (!status.ok()) {
+      return absl::InternalError(absl::StrCat("Draco cannot encode: ", status.error_msg_string()));
+    }
+  } catch (const std::exception& error) {
+    return absl::InternalError(absl::StrCat("Draco cannot encode: ", error.what()));
+  }
+  return std::string(buffer.data(), buffer.size());
+}
+
+}  // namespace
+
+std::unique_ptr<draco::Mesh> MakeDracoMesh(int num_vertices, const Eigen::Matrix3Xi& triangles) {
+  auto mesh = std::make_unique<draco::Mesh>();
+  mesh->set_num_points(num_vertices);
+  mesh->SetNumFaces(triangles.cols());
+  for (int f = 0; f < triangles.cols(); ++f) {
+    draco::Mesh::Face face;
+    for (int corner = 0; corner < 3; ++corner) face[corner] = triangles(corner, f);
+    mesh->SetFace(draco::FaceIndex(f), face);
+  }
+  AddAttribute(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, num_vertices, mesh.get());
+  const int ids =
+      AddAttribute(draco::GeometryAttribute::GENERIC, draco::DT_INT32, 1, num_vertices, mesh.get());
+  for (int32_t v = 0; v < num_vertices; ++v) {
+    mesh->attribute(ids)->SetAttributeValue(draco::AttributeValueIndex(v), &v);
+  }
+  return mesh;
+}
+
+std::unique_ptr<draco::PointCloud> MakeDracoPointCloud(int num_points) {
+  auto cloud = std::make_unique<draco::PointCloud>();
+  cloud->set_num_points(num_points);
+  AddAttribute(draco::GeometryAttribute::POSITION, draco::DT_FLOAT32, 3, num_points, cloud.get());
+  return cloud;
+}
+
+void SetDracoPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
+                       const std::vector<int32_t>& order, draco::PointCloud* cloud) {
+  draco::PointAttribute* attribute = cloud->attribute(0);
+  auto* values = reinterpret_cast<float*>(attribute->GetAddress(draco::AttributeValueIndex(0)));
+  for (int k = 0; k < positions.cols(); ++k) {
+    const int v = order.empty() ? k : order[k];
+    std::memcpy(values + 3 * static_cast<size_t>(k), positions.col(v).data(), 3 * sizeof(float));
+  }
+}
+
+absl::StatusOr<std::string> EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box,
+                                            MeshMethod method, int speed) {
+  draco::ExpertEncoder encoder(mesh);
+  encoder.SetSpeedOptions(speed, speed);
+  encoder.SetEncodingMethod(method == MeshMethod::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
+                                                               : draco::MESH_SEQUENTIAL_ENCODING);
+  encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
+  return Run(&encoder);
+}
+
+absl::StatusOr<std::string> EncodeDracoPointCloud(const draco::PointCloud& cloud,
+                                                  const QuantizationBox& box, int speed) {
+  draco::ExpertEncoder encoder(cloud);
+  encoder.SetSpeedOptions(speed, speed);
+  // The default for quantised clouds is the kd-tree, which loses the order.
+  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+  encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
+  return Run(&encoder);
+}
+
+}  // namespace pleat
