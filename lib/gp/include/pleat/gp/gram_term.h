@@ -1,0 +1,69 @@
+// The negative log likelihood of D independent outputs that share one Gaussian process, seen
+// through the Gram matrix of the outputs alone.
+//
+//   w [ D/2 log|K| + 1/2 tr(K^-1 G) ],   G = Y Y^T (N x N)
+//
+// The cost of an evaluation is O(N^3), whatever D is. Source: the paper, section IV-B, equation of
+// the shared GPLVM; Lawrence, "Probabilistic non-linear principal component analysis with Gaussian
+// process latent variable models", JMLR 6 (2005). No 2 pi constants.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/gp/kernel.h"
+
+namespace pleat {
+
+// What the Gram term needs of the outputs Y (N x D).
+struct GramData {
+  Eigen::MatrixXd factor;         // F, N x r with G = F F^T
+  bool lower_triangular = false;  // F is square and lower triangular: cheaper
+  double num_outputs = 0;         // D
+};
+
+// The factor of Y Y^T: Y itself when it is narrow, else a Cholesky factor of Y Y^T (with 1e-12 of
+// its mean diagonal added, as it is singular for centred data).
+absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& outputs);
+
+// The same from the Gram matrix of `num_outputs` outputs (N x N, symmetric; lower triangle read).
+absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::MatrixXd>& gram,
+                                              double num_outputs);
+
+// Value and gradients, in memory allocated once. Not for two threads at once.
+class GramTerm {
+ public:
+  GramTerm(int num_rows, const KernelOptions& options);
+  ~GramTerm();
+  GramTerm(GramTerm&&) noexcept;
+  GramTerm& operator=(GramTerm&&) noexcept;
+
+  // The kernel's inputs, N x Q: call before Evaluate and after every change.
+  void SetInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+
+  // The value; NaN when K cannot be factored even with more jitter (up to 1e-3 a), or when
+  // `progress` was cancelled on the way.
+  double Evaluate(const KernelLogs& logs, const GramData& data, double weight, bool with_gradient,
+                  const Progress& progress = {});
+
+  // After Evaluate(..., with_gradient = true): d/d log hyperparameters in the order of
+  // PackKernelLogs; zero where a log is clamped.
+  const Eigen::VectorXd& log_gradient() const;
+  // d/d inputs, N x Q.
+  void InputGradient(Eigen::MatrixXd& gradient);
+  // weight * K^-1 F = d/dF, N x r.
+  const Eigen::MatrixXd& weighted_solution() const;
+
+  // After Evaluate: K^-1 y for other right-hand sides (N x r).
+  void Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution);
+  // After Evaluate: W = L^-1, lower triangular with K = L L^T, so that K^-1 = W^T W.
+  const Eigen::MatrixXd& whitener() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,182 @@
+#include "pleat/gp/gram_term.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "dense.h"
+
+namespace pleat {
+namespace {
+
+constexpr double kLargestJitter = 1e-3;  // share of the RBF amplitude
+constexpr double kFirstJitter = 1e-8;
+
+}  // namespace
+
+struct GramTerm::State {
+  KernelOptions options;
+  DenseSolver solver;
+  Eigen::Index n = 0;
+
+  Eigen::MatrixXd inputs;     // N x Q
+  Eigen::MatrixXd distances;  // N x N, lower: R
+  Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
+  Eigen::MatrixXd rbf;        // N x N, lower: K0, later unchanged
+  Eigen::MatrixXd kernel;     // N x N, lower: K, then L, then K^-1, then A
+  Eigen::MatrixXd whitener;   // N x N, lower: W = L^-1
+  Eigen::MatrixXd whitened;   // N x r: W F
+  Eigen::MatrixXd solution;   // N x r: K^-1 F, then weighted
+  Eigen::MatrixXd outer;      // N x N, lower: K^-1 G K^-1, then P = A o K0
+  Eigen::MatrixXd product;    // N x Q: scratch of InputGradient
+  Eigen::VectorXd log_gradient;
+  KernelValues values{};
+  double log_determinant = 0;
+  double relative_floor = 0;  // noise floor + jitter of the last factorisation, share of a
+
+  bool Factor();
+  void Gradient(const KernelLogs& logs, double num_outputs, double weight);
+};
+
+// K and its inverse factor from the distances; more jitter until it is positive definite.
+bool GramTerm::State::Factor() {
+  const double* linear = options.linear ? products.data() : nullptr;
+  for (double jitter = 0; jitter <= kLargestJitter;
+       jitter = jitter == 0 ? kFirstJitter : 10 * jitter) {
+    relative_floor = options.relative_noise_floor + jitter;
+    solver.ops().kernel(distances.data(), linear, n, values.g, values.a, values.b, values.c,
+                        rbf.data(), kernel.data());
+    kernel.diagonal().array() += values.s2 + relative_floor * values.a + options.absolute_jitter;
+    if (solver.FactorAndInvert(kernel, whitener)) {
+      log_determinant = 2 * kernel.diagonal().array().log().sum();
+      return std::isfinite(log_determinant);
+    }
+  }
+  return false;
+}
+
+void GramTerm::State::Gradient(const KernelLogs& logs, double num_outputs, double weight) {
+  solver.InverseFromFactor(whitener, kernel);
+  solver.OuterProduct(solution, outer);
+  const GramSums sums = solver.ops().gram_gradient(
+      kernel.data(), outer.data(), rbf.data(), distances.data(),
+      options.linear ? products.data() : nullptr, n, .5 * weight, num_outputs);
+  KernelLogs gradient;
+  gradient.inverse_width = -.5 * values.g * sums.distance;
+  gradient.amplitude = sums.amplitude + relative_floor * values.a * sums.trace;
+  gradient.bias = values.b * sums.total;
+  gradient.noise = values.s2 * sums.trace;
+  gradient.linear = values.c * sums.linear;
+  PackKernelLogs(options, gradient, log_gradient);
+  Eigen::VectorXd unknowns(log_gradient.size());
+  PackKernelLogs(options, logs, unknowns);
+  for (Eigen::Index i = 0; i < unknowns.size(); ++i) {
+    if (std::abs(unknowns[i]) > kMaxKernelLog) log_gradient[i] = 0;
+  }
+  solution *= weight;
+}
+
+GramTerm::GramTerm(int num_rows, const KernelOptions& options) : state_(new State) {
+  State& s = *state_;
+  s.options = options;
+  s.n = num_rows;
+  for (Eigen::MatrixXd* m : {&s.distances, &s.rbf, &s.kernel, &s.whitener, &s.outer}) {
+    m->setZero(s.n, s.n);
+  }
+  if (options.linear) s.products.setZero(s.n, s.n);
+  s.log_gradient.setZero(NumKernelUnknowns(options));
+}
+
+GramTerm::~GramTerm() = default;
+GramTerm::GramTerm(GramTerm&&) noexcept = default;
+GramTerm& GramTerm::operator=(GramTerm&&) noexcept = default;
+
+void GramTerm::SetInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
+  State& s = *state_;
+  s.inputs = inputs;
+  s.solver.ops().squared_distances(s.inputs.data(), s.n, s.inputs.cols(), s.distances.data());
+  if (s.options.linear) s.solver.OuterProduct(s.inputs, s.products);
+}
+
+double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double weight,
+                          bool with_gradient, const Progress& progress) {
+  State& s = *state_;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  s.values = KernelValuesOf(s.options, logs);
+  if (progress.cancelled() || !s.Factor() || progress.cancelled()) return kNone;
+  s.solver.MultiplyByFactor(s.whitener, false, data.factor, data.lower_triangular, s.whitened);
+  if (with_gradient) {
+    s.solver.MultiplyByFactor(s.whitener, true, s.whitened, data.lower_triangular, s.solution);
+    if (progress.cancelled()) return kNone;
+    s.Gradient(logs, data.num_outputs, weight);
+  }
+  return .5 * weight * (data.num_outputs * s.log_determinant + s.whitened.squaredNorm());
+}
+
+const Eigen::VectorXd& GramTerm::log_gradient() const { return state_->log_gradient; }
+
+void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
+  State& s = *state_;
+  const Eigen::Index dims = s.inputs.cols();
+  // -2 g (diag(P 1) - P) X.
+  s.product.resize(s.n, dims);
+  s.solver.ops().symmetric_multiply(s.outer.data(), s.inputs.data(), s.n, dims, s.product.data());
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(s.n);
+  Eigen::VectorXd sums(s.n);
+  s.solver.ops().symmetric_multiply(s.outer.data(), ones.data(), s.n, 1, sums.data());
+  gradient = 2 * s.values.g * (s.product - sums.asDiagonal() * s.inputs);
+  if (!s.options.linear) return;
+  s.solver.ops().symmetric_multiply(s.kernel.data(), s.inputs.data(), s.n, dims, s.product.data());
+  gradient += 2 * s.values.c * s.product;
+}
+
+const Eigen::MatrixXd& GramTerm::weighted_solution() const { return state_->solution; }
+
+void GramTerm::Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) {
+  State& s = *state_;
+  s.solver.MultiplyByFactor(s.whitener, false, right, false, s.whitened);
+  s.solver.MultiplyByFactor(s.whitener, true, s.whitened, false, solution);
+}
+
+const Eigen::MatrixXd& GramTerm::whitener() const { return state_->whitener; }
+
+absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::MatrixXd>& gram,
+                                              double num_outputs) {
+  const Eigen::Index n = gram.rows();
+  if (gram.cols() != n || !gram.allFinite()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the Gram matrix (", n, " x ", gram.cols(), ") is not square or not finite"));
+  }
+  const double scale = n > 0 ? gram.diagonal().mean() : 0;
+  GramData data;
+  data.lower_triangular = true;
+  data.num_outputs = num_outputs;
+  if (!(scale > 0)) {
+    data.factor.setZero(n, n);
+    return data;
+  }
+  DenseSolver solver;
+  Eigen::MatrixXd unused;
+  for (double ridge = 1e-12; ridge < 1e-5; ridge *= 10) {
+    data.factor = gram;
+    data.factor.diagonal().array() += ridge * scale;
+    if (!solver.FactorAndInvert(data.factor, unused)) continue;
+    data.factor.triangularView<Eigen::StrictlyUpper>().setZero();
+    return data;
+  }
+  return absl::InvalidArgumentError("the Gram matrix is not positive semidefinite");
+}
+
+absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& outputs) {
+  if (outputs.cols() < outputs.rows()) return GramData{outputs, false, double(outputs.cols())};
+  const Eigen::Index n = outputs.rows();
+  DenseSolver solver;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+  const DenseView view{outputs.data(), 1, outputs.outerStride()};
+  solver.MultiplyAdd(1, view, view.Transposed(), gram.data(), n, n, n, outputs.cols(), true);
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  return MakeGramDataFromGram(gram, static_cast<double>(outputs.cols()));
+}
+
+}  // namespace pleat

@@ -1,0 +1,32 @@
+// Scaled conjugate gradients, the optimiser of the paper (section IV-B).
+// Source: M. F. Moller, "A scaled conjugate gradient algorithm for fast supervised learning",
+// Neural Networks 6 (1993).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/optimize/objective.h"
+#include "pleat/optimize/summary.h"
+
+namespace pleat {
+
+struct ScgOptions {
+  int max_iterations = 100;        // attempted steps; the paper's value
+  double gradient_tolerance = 0;   // stop when no gradient entry is larger; 0: run all iterations
+  double objective_tolerance = 0;  // stop when a step gains less than this share of |objective|
+  double sigma0 = 1e-4;            // length of the finite difference that probes the curvature
+  double initial_lambda = 1;       // scale of the trust region; adapted at every step
+  double min_lambda = 1e-15, max_lambda = 1e100;
+};
+
+// Minimises `objective` from `start` and returns the best point found: about 1.9 evaluations per
+// iteration. Errors: kInvalidArgument when the objective or its gradient is not finite at the
+// start or `start` has the wrong size; kCancelled. `summary` may be null.
+absl::StatusOr<Eigen::VectorXd> MinimizeScg(Objective& objective, const Eigen::VectorXd& start,
+                                            const ScgOptions& options = {},
+                                            OptimizationSummary* summary = nullptr,
+                                            const Progress& progress = {});
+
+}  // namespace pleat

@@ -1,0 +1,27 @@
+// What every optimiser reports about a run.
+#pragma once
+
+#include <string>
+
+namespace pleat {
+
+enum class StopReason {
+  kMaxIterations,       // the budget of iterations or evaluations is used up
+  kGradientTolerance,   // largest gradient entry small enough
+  kObjectiveTolerance,  // the last accepted step hardly changed the objective
+  kNoProgress,          // no descent is possible in double precision from here
+};
+
+struct OptimizationSummary {
+  int iterations = 0;   // attempted steps (SCG) or line searches (L-BFGS)
+  int evaluations = 0;  // of value and gradient together
+  double initial_objective = 0;
+  double final_objective = 0;
+  double final_gradient = 0;  // largest absolute entry
+  StopReason stop_reason = StopReason::kMaxIterations;
+};
+
+// E.g. "gradient tolerance".
+std::string StopReasonName(StopReason reason);
+
+}  // namespace pleat

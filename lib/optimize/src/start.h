@@ -1,0 +1,38 @@
+// The common entry of both optimisers.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "pleat/base/progress.h"
+#include "pleat/optimize/objective.h"
+
+namespace pleat {
+
+// Evaluates `objective` at the start; an error when nothing can be minimised from there.
+inline absl::Status EvaluateStart(Objective& objective, const Eigen::VectorXd& start,
+                                  const Progress& progress, double* value,
+                                  Eigen::VectorXd* gradient) {
+  if (start.size() != objective.num_unknowns()) {
+    return absl::InvalidArgumentError(absl::StrCat("the starting point has ", start.size(),
+                                                   " entries, the objective ",
+                                                   objective.num_unknowns(), " unknowns"));
+  }
+  gradient->resize(start.size());
+  *value = objective.Evaluate(start, gradient);
+  if (progress.cancelled()) return progress.Report(0);
+  if (!std::isfinite(*value) || !gradient->allFinite()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the objective is not finite at the starting point (value ", *value,
+                     "): check the data for NaN and the starting values"));
+  }
+  return absl::OkStatus();
+}
+
+inline double LargestEntry(const Eigen::VectorXd& v) {
+  return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+}
+
+}  // namespace pleat
