@@ -1,19 +1,15 @@
 #include "pleat/character/character_model.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "option_values.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
-
-RotationRepresentation RepresentationOf(const TrainOptions& options) {
-  if (options.rotations == "euler") return RotationRepresentation::kEuler;
-  if (options.rotations == "quaternion") return RotationRepresentation::kQuaternion;
-  return RotationRepresentation::kExponentialMap;
-}
 
 absl::Status Mismatch(absl::string_view what, int64_t found, int64_t expected) {
   return absl::InvalidArgumentError(

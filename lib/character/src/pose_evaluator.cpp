@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "option_values.h"
 #include "pleat/base/status.h"
+#include "pleat/fitting/details.h"
 #include "pleat/gp/detail_model.h"
 #include "pleat/skeleton/pose_history.h"
 #include "pleat/skinning/rig.h"
@@ -17,13 +19,14 @@ struct PoseEvaluator::Scratch {
   std::vector<Pose> history;  // normalised copies, [0] = pose to show
   std::vector<const Pose*> history_pointers;
   BoneTransforms transforms;
-  Eigen::Matrix3Xd skinned;                         // 3 x V
-  std::vector<int> all_vertices;                    // 0 .. V-1
-  std::vector<Eigen::Quaterniond> blend_rotations;  // V
-  Eigen::VectorXd features;                         // D_S
-  Eigen::VectorXd coefficients;                     // r
-  Eigen::VectorXf coefficients_float;               // r
-  Eigen::VectorXf details;                          // 3V
+  Eigen::Matrix3Xd skinned;                   // 3 x V
+  std::vector<int> all_vertices;              // 0 .. V-1
+  std::vector<Eigen::Quaterniond> rotations;  // V, axes of the details
+  Eigen::Matrix3Xd hybrid;                    // 3 x V
+  Eigen::VectorXd features;                   // D_S
+  Eigen::VectorXd coefficients;               // r
+  Eigen::VectorXf coefficients_float;         // r
+  Eigen::VectorXf details;                    // 3V
   DetailModel::Workspace workspace;
 };
 
@@ -116,21 +119,10 @@ absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
   s.details = model_->full_mean();
   s.details.noalias() += model_->full_basis() * s.coefficients_float;
 
-  const std::string& axes = model_->options().detail_axes;
-  if (axes == "local") {
-    BlendRotations(model_->rig().weights, s.all_vertices, s.transforms, &s.blend_rotations);
-  }
-  const Eigen::Matrix3f root = s.transforms.rotation[0].cast<float>();
-  for (int v = 0; v < model_->num_vertices(); ++v) {
-    const Eigen::Vector3f detail = s.details.segment<3>(3 * v);
-    if (axes == "local") {
-      frame->positions.col(v) += s.blend_rotations[v].cast<float>() * detail;
-    } else if (axes == "root") {
-      frame->positions.col(v) += root * detail;
-    } else {
-      frame->positions.col(v) += detail;
-    }
-  }
+  ComputeDetailRotations(DetailAxesOf(model_->options()), model_->rig().weights, s.all_vertices,
+                         s.transforms, &s.rotations);
+  ApplyDetails(s.skinned, s.rotations, s.details, &s.hybrid);
+  frame->positions = s.hybrid.cast<float>();
   return absl::OkStatus();
 }
 

@@ -1,0 +1,115 @@
+// Learners by name, and their choice by validation inside the training frames (method.md, 5.7).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+#include "pleat/gp/detail_model.h"
+#include "training_steps.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kNumValidationBlocks = 4;
+constexpr double kValidationShare = 0.2;  // of the training frames
+constexpr int kMinFramesToValidate = 20;  // below, too little is left to learn from
+
+struct RowSplit {
+  std::vector<int> train, held_out;
+  std::vector<int> train_clip_starts;  // rows of `train` whose predecessor is not the row before
+};
+
+// Holds out evenly spaced contiguous blocks: frames beside a training frame would be too easy.
+RowSplit HoldOutBlocks(int num_rows, const std::vector<int>& clip_starts) {
+  RowSplit split;
+  const int block =
+      std::max(1, static_cast<int>(num_rows * kValidationShare) / kNumValidationBlocks);
+  std::vector<bool> held_out(num_rows, false);
+  for (int b = 0; b < kNumValidationBlocks; ++b) {
+    const int middle = num_rows * (2 * b + 1) / (2 * kNumValidationBlocks);
+    for (int t = middle - block / 2; t < middle - block / 2 + block; ++t) {
+      if (t >= 0 && t < num_rows) held_out[t] = true;
+    }
+  }
+  for (int t = 0; t < num_rows; ++t) {
+    if (held_out[t]) {
+      split.held_out.push_back(t);
+      continue;
+    }
+    const bool starts_clip =
+        t == 0 || held_out[t - 1] || std::binary_search(clip_starts.begin(), clip_starts.end(), t);
+    if (starts_clip) split.train_clip_starts.push_back(static_cast<int>(split.train.size()));
+    split.train.push_back(t);
+  }
+  return split;
+}
+
+// Mean vertex distance, metres, between predicted and true details of the held-out rows.
+double HeldOutError(const DetailModel& model, const LearningData& data,
+                    const std::vector<int>& rows) {
+  DetailModel::Workspace workspace;
+  Eigen::VectorXd coefficients(model.basis().cols());
+  double sum = 0, confidence = 0;
+  for (const int t : rows) {
+    model.PredictCoefficients(data.features.row(t).transpose(), &workspace, &coefficients,
+                              &confidence);
+    const Eigen::VectorXf predicted = model.mean() + model.basis() * coefficients.cast<float>();
+    const Eigen::VectorXd difference = data.details.row(t).transpose() - predicted.cast<double>();
+    sum += difference.reshaped(3, difference.size() / 3).colwise().norm().mean();
+  }
+  return sum / static_cast<double>(rows.size());
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
+                                                                const std::string& learner,
+                                                                const TrainOptions& options,
+                                                                const Progress& progress) {
+  DetailModelOptions detail_options;
+  detail_options.learner = learner == "sgplvm" ? Learner::kSgplvm : Learner::kGp;
+  detail_options.sgplvm.latent_dimension = options.latent_dimensions;
+  detail_options.sgplvm.optimizer.max_iterations = options.iterations;
+  detail_options.sgplvm.dynamics_weight = options.dynamics_weight;
+  detail_options.pca.min_energy = options.detail_energy;
+  detail_options.pca.max_components = options.max_components;
+  return TrainDetailModel(data.features, data.details, data.clip_starts, detail_options, nullptr,
+                          progress);
+}
+
+absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,
+                                          double diagonal_m,
+                                          std::map<std::string, double>* validation_mean_percent,
+                                          const Progress& progress) {
+  if (options.learner != "auto") return options.learner;
+  const int num_rows = static_cast<int>(data.features.rows());
+  if (num_rows < kMinFramesToValidate) return std::string("gp");
+  const RowSplit split = HoldOutBlocks(num_rows, data.clip_starts);
+  LearningData part;
+  part.features = data.features(split.train, Eigen::all);
+  part.details = data.details(split.train, Eigen::all);
+  part.clip_starts = split.train_clip_starts;
+  const std::vector<std::string> candidates = {"gp", "sgplvm"};
+  std::string best;
+  double best_error = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const double begin = static_cast<double>(i) / candidates.size();
+    PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> model,
+                           LearnDetails(part, candidates[i], options,
+                                        progress.Stage(absl::StrCat("validate ", candidates[i]),
+                                                       begin, begin + 1.0 / candidates.size())));
+    const double error = HeldOutError(*model, data, split.held_out);
+    if (validation_mean_percent) {
+      (*validation_mean_percent)[candidates[i]] = 100 * error / diagonal_m;
+    }
+    if (error < best_error) {
+      best_error = error;
+      best = candidates[i];
+    }
+  }
+  if (best.empty()) return absl::InternalError("no learner gave a finite validation error");
+  return best;
+}
+
+}  // namespace pleat

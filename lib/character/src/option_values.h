@@ -1,0 +1,22 @@
+// Options by name -> the types of the modules that act on them.
+#pragma once
+
+#include "pleat/character/train_options.h"
+#include "pleat/fitting/details.h"
+#include "pleat/skeleton/pose_features.h"
+
+namespace pleat {
+
+inline DetailAxes DetailAxesOf(const TrainOptions& options) {
+  if (options.detail_axes == "world") return DetailAxes::kWorld;
+  if (options.detail_axes == "root") return DetailAxes::kRoot;
+  return DetailAxes::kLocal;
+}
+
+inline RotationRepresentation RepresentationOf(const TrainOptions& options) {
+  if (options.rotations == "euler") return RotationRepresentation::kEuler;
+  if (options.rotations == "quaternion") return RotationRepresentation::kQuaternion;
+  return RotationRepresentation::kExponentialMap;
+}
+
+}  // namespace pleat

@@ -1,0 +1,144 @@
+#include "training_steps.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "option_values.h"
+#include "pleat/base/status.h"
+#include "pleat/fitting/pose_fit.h"
+#include "pleat/geometry/control_mesh.h"
+
+namespace pleat {
+namespace {
+
+// Says how topology `b` of clip `name` differs from `a`.
+absl::Status ConnectivityDiffers(const std::string& name, const Topology& a, const Topology& b) {
+  if (a.num_vertices() != b.num_vertices() || a.num_faces() != b.num_faces()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("clip '", name, "' has ", b.num_vertices(), " vertices and ", b.num_faces(),
+                     " faces, the first clip has ", a.num_vertices(), " and ", a.num_faces(),
+                     "; all clips of a character share one connectivity"));
+  }
+  int face = 0;
+  while (face < a.num_faces() && std::ranges::equal(a.face(face), b.face(face))) ++face;
+  return absl::InvalidArgumentError(
+      absl::StrCat("clip '", name, "' differs from the first clip at face ", face,
+                   "; all clips of a character share one connectivity"));
+}
+
+}  // namespace
+
+absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips) {
+  if (clips.empty()) return absl::InvalidArgumentError("training needs at least one clip");
+  if (clips.size() == 1) return TrainingFrames{clips[0], {0}, clips[0].num_frames()};
+  std::vector<Eigen::Matrix3Xf> frames;
+  std::vector<int> clip_starts;
+  for (const MeshSequence& clip : clips) {
+    if (!(clip.topology() == clips[0].topology())) {
+      return ConnectivityDiffers(clip.name(), clips[0].topology(), clip.topology());
+    }
+    if (!(clip.frame_rate() == clips[0].frame_rate())) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("clip '", clip.name(), "' has ", clip.frame_rate().fps(),
+                       " frames per second, the first ", clips[0].frame_rate().fps(),
+                       "; give all clips one rate"));
+    }
+    clip_starts.push_back(static_cast<int>(frames.size()));
+    for (int t = 0; t < clip.num_frames(); ++t) frames.push_back(clip.frame(t));
+  }
+  PLEAT_ASSIGN_OR_RETURN(MeshSequence joined,
+                         MeshSequence::Create(clips[0].topology(), std::move(frames),
+                                              {.name = clips[0].name(),
+                                               .frame_rate = clips[0].frame_rate(),
+                                               .appearance = clips[0].appearance(),
+                                               .frame_names = {}}));
+  return TrainingFrames{std::move(joined), std::move(clip_starts), clips[0].num_frames()};
+}
+
+absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const TrainOptions& options,
+                                       const TrainResources& resources, const Progress& progress) {
+  if (options.rest_frame >= frames.num_rig_frames) {
+    return absl::InvalidArgumentError(absl::StrCat("rest_frame ", options.rest_frame,
+                                                   " is beyond the first clip's ",
+                                                   frames.num_rig_frames, " frames"));
+  }
+  std::vector<int> rig_frames(frames.num_rig_frames);
+  std::iota(rig_frames.begin(), rig_frames.end(), 0);
+  AutoRigOptions rig_options;
+  rig_options.rest_frame = options.rest_frame;
+  if (options.yaw_degrees >= 0) rig_options.yaw_degrees = options.yaw_degrees;
+  rig_options.num_threads = resources.num_threads;
+  AutoRigSummary summary;
+  PLEAT_ASSIGN_OR_RETURN(
+      Rig rig, AutoRig(frames.sequence.Subset(rig_frames), rig_options, &summary, progress));
+  return RiggedFrames{frames, std::move(rig), std::move(summary)};
+}
+
+absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
+                                    const std::vector<int>& clip_starts, const Rig& rig,
+                                    const TrainOptions& options, const TrainResources& resources,
+                                    const Progress& progress) {
+  PoseFitOptions fit;
+  fit.method = options.fit == "walk" ? PoseFitMethod::kWalk : PoseFitMethod::kAllJoints;
+  fit.clip_starts = clip_starts;
+  fit.num_threads = resources.num_threads;
+  return FitPoses(sequence, rig, fit, nullptr, progress);
+}
+
+absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
+                                                 const TrainOptions& options,
+                                                 const TrainResources& resources,
+                                                 const Progress& progress) {
+  const MeshSequence& sequence = rigged.frames.sequence;
+  LearningData data;
+  data.clip_starts = track.clip_starts;
+  PLEAT_ASSIGN_OR_RETURN(data.control_vertices,
+                         SelectControlVertices(sequence.topology(), rigged.rig.rest_positions,
+                                               options.resolution_percent / 100));
+  if (static_cast<int>(data.control_vertices.size()) < sequence.num_vertices()) {
+    PLEAT_ASSIGN_OR_RETURN(
+        data.upsampler,
+        RbfUpsampler::Build(sequence.topology(), rigged.rig.rest_positions, data.control_vertices));
+  }
+  ComputeDetailsOptions detail_options;
+  detail_options.axes = DetailAxesOf(options);
+  detail_options.num_threads = resources.num_threads;
+  PLEAT_ASSIGN_OR_RETURN(
+      data.details,
+      ComputeDetails(sequence, rigged.rig, track, data.control_vertices, detail_options, progress));
+  const PoseFeatureOptions feature_options{RepresentationOf(options), options.history};
+  data.feature_reference = PoseFeatures::Reference(feature_options, track);
+  data.features =
+      PoseFeatures(feature_options, rigged.rig.skeleton.num_joints(), data.feature_reference)
+          .ComputeTrack(track);
+  return data;
+}
+
+absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
+    const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
+    const std::string& learner, std::shared_ptr<const DetailModel> detail_model,
+    const TrainingRecord& record) {
+  const MeshSequence& sequence = rigged.frames.sequence;
+  CharacterModel::Parts parts{.name = sequence.name(),
+                              .frame_rate = sequence.frame_rate(),
+                              .topology = sequence.topology(),
+                              .appearance = sequence.appearance(),
+                              .rig = rigged.rig,
+                              .options = options,
+                              .feature_reference = data.feature_reference,
+                              .control_vertices = data.control_vertices,
+                              .upsampler = data.upsampler,
+                              .detail_model = std::move(detail_model),
+                              .record = record};
+  parts.record.learner = learner;
+  parts.record.num_frames = sequence.num_frames();
+  parts.record.rest_frame = rigged.rig_summary.rest_frame;
+  parts.record.yaw_degrees = rigged.rig_summary.yaw_degrees;
+  parts.record.rig_residual = rigged.rig_summary.residual;
+  parts.record.warnings = rigged.rig_summary.warnings;
+  return CharacterModel::Create(std::move(parts));
+}
+
+}  // namespace pleat

@@ -1,0 +1,77 @@
+// The steps that training and evaluation share; steps 3 to 7 of the data's way (ARCHITECTURE.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/character/character_model.h"
+#include "pleat/character/train_character.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/rigging/auto_rig.h"
+#include "pleat/skeleton/pose.h"
+
+namespace pleat {
+
+// Frames of one or more recordings, one after the other.
+struct TrainingFrames {
+  MeshSequence sequence;
+  std::vector<int> clip_starts;  // ascending, first is 0; no history or dynamics across a start
+  int num_rig_frames;            // the rest frame is one of the first so many (the first clip)
+};
+
+// Joins clips of the same connectivity. kInvalidArgument names the clip that does not fit.
+absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips);
+
+struct RiggedFrames {
+  TrainingFrames frames;
+  Rig rig;
+  AutoRigSummary rig_summary;
+};
+absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const TrainOptions& options,
+                                       const TrainResources& resources, const Progress& progress);
+
+absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
+                                    const std::vector<int>& clip_starts, const Rig& rig,
+                                    const TrainOptions& options, const TrainResources& resources,
+                                    const Progress& progress);
+
+// What every learner sees: plain matrices, and what turns its output into a full mesh.
+struct LearningData {
+  Eigen::VectorXd feature_reference;
+  Eigen::MatrixXd features;  // T x D_S
+  Eigen::MatrixXd details;   // T x 3C, metres
+  std::vector<int> clip_starts;
+  std::vector<int> control_vertices;  // C
+  std::optional<RbfUpsampler> upsampler;
+};
+absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
+                                                 const TrainOptions& options,
+                                                 const TrainResources& resources,
+                                                 const Progress& progress);
+
+// Trains the learner named `learner` ("gp" or "sgplvm").
+absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
+                                                                const std::string& learner,
+                                                                const TrainOptions& options,
+                                                                const Progress& progress);
+
+// The learner of `options`; for "auto" the one with the lowest error on contiguous blocks of
+// training frames that it did not see. validation_mean_percent: filled then, of diagonal_m.
+absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,
+                                          double diagonal_m,
+                                          std::map<std::string, double>* validation_mean_percent,
+                                          const Progress& progress);
+
+// All but the errors of the record.
+absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
+    const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
+    const std::string& learner, std::shared_ptr<const DetailModel> detail_model,
+    const TrainingRecord& record);
+
+}  // namespace pleat
