@@ -1,0 +1,2 @@
+#include "pleat/base/status.h"
+#include "pleat/mesh/topology.h"
