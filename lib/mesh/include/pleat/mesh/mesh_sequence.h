@@ -21,10 +21,10 @@ struct FrameRate {
 };
 
 struct MeshSequenceOptions {
-  std::string name;  // for messages and reports
-  FrameRate frame_rate;
-  MeshAppearance appearance;
-  std::vector<std::string> frame_names;  // per frame, for messages; empty = "frame N"
+  std::string name{};  // for messages and reports
+  FrameRate frame_rate{};
+  MeshAppearance appearance{};
+  std::vector<std::string> frame_names{};  // per frame, for messages; empty = "frame N"
 };
 
 // A sequence that exists has at least one frame, V finite positions in each, a positive frame rate

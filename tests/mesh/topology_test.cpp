@@ -1,0 +1,52 @@
+#include "pleat/mesh/topology.h"
+
+#include "tests/support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
+TEST(TopologyTest, KeepsPolygonsAndFansThem) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Topology topology,
+                             Topology::Create(6, {0, 1, 2, 3, 5, 4, 3, 2, 1}, {4, 5}));
+  EXPECT_EQ(topology.num_faces(), 2);
+  EXPECT_EQ(topology.num_corners(), 9);
+  EXPECT_EQ(topology.face_start(1), 4);
+  EXPECT_THAT(topology.face(1), ElementsAre(5, 4, 3, 2, 1));
+  Eigen::Matrix3Xi expected(3, 5);
+  expected << 0, 0, 5, 5, 5,  //
+      1, 2, 4, 3, 2,          //
+      2, 3, 3, 2, 1;
+  EXPECT_EQ(topology.triangles(), expected);
+}
+
+TEST(TopologyTest, NamesTheFirstBadFace) {
+  EXPECT_THAT(Topology::Create(3, {0, 1, 2, 0, 1}, {3, 2}),
+              HasStatus(kInvalid, HasSubstr("face 1")));
+  EXPECT_THAT(Topology::Create(3, {0, 1, 2, 0, 1, 3}, {3, 3}),
+              HasStatus(kInvalid, testing::AllOf(HasSubstr("face 1"), HasSubstr("vertex 3"))));
+  EXPECT_THAT(Topology::Create(3, {0, -1, 2}, {3}), HasStatus(kInvalid, HasSubstr("vertex -1")));
+  EXPECT_THAT(Topology::Create(0, {}, {}), HasStatus(kInvalid, HasSubstr("at least one vertex")));
+}
+
+TEST(TopologyTest, CornerCountsMustAddUp) {
+  EXPECT_FALSE(Topology::Create(3, {0, 1, 2}, {3, 3}).ok());
+  EXPECT_FALSE(Topology::Create(3, {0, 1, 2, 0}, {3}).ok());
+  // Sizes whose sum would overflow 32 bits.
+  EXPECT_FALSE(Topology::Create(3, {0, 1, 2}, {0x7fffffff, 0x7fffffff, 5}).ok());
+}
+
+TEST(TopologyTest, EqualityIsThatOfPolygonsNotOfTriangles) {
+  const Topology quad = *Topology::Create(4, {0, 1, 2, 3}, {4});
+  const Topology pair = *Topology::Create(4, {0, 1, 2, 0, 2, 3}, {3, 3});
+  EXPECT_EQ(quad.triangles(), pair.triangles());
+  EXPECT_FALSE(quad == pair);
+  EXPECT_TRUE(pair == *Topology::FromTriangles(4, pair.triangles()));
+}
+
+}  // namespace
+}  // namespace pleat
