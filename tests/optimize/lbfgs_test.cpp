@@ -4,7 +4,7 @@
 
 #include "pleat/optimize/scg.h"
 #include "test_objectives.h"
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "test_objectives.h"
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {
@@ -56,15 +56,15 @@ TEST(ScgTest, StaysInsideTheDomain) {
 }
 
 TEST(ScgTest, StopsOnTheObjectiveTolerance) {
-  Quadratic objective(3);
+  LogBarrier objective;
   OptimizationSummary summary;
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const Eigen::VectorXd x,
-      MinimizeScg(objective, Eigen::VectorXd::Zero(3),
-                  {.max_iterations = 1000, .objective_tolerance = .5}, &summary));
+      MinimizeScg(objective, Eigen::VectorXd::Constant(1, 5.0),
+                  {.max_iterations = 1000, .objective_tolerance = 1e-4}, &summary));
   EXPECT_EQ(summary.stop_reason, StopReason::kObjectiveTolerance);
-  EXPECT_LT(summary.iterations, 1000);
-  EXPECT_EQ(x.size(), 3);
+  EXPECT_LT(summary.iterations, 100);
+  EXPECT_NEAR(x[0], 1, .1);
 }
 
 TEST(ScgTest, RefusesAStartOutsideTheDomainOrOfWrongSize) {

@@ -1,0 +1,125 @@
+// The shared Gaussian process latent variable model with dynamics: one latent point per frame
+// explains both the pose (Y_S) and the detail (Y_M) of that frame.
+//
+//   L = sum_v w_v [ D_v/2 log|K_v| + 1/2 tr(K_v^-1 G_v) ]                       v = S, M
+//     + lambda [ q/2 log|K_d| + 1/2 tr(K_d^-1 X_o X_o^T) + 1/2 sum |x_first|^2 ] + P(theta)
+//
+// Source: the paper, section IV-B; dynamics: Wang, Fleet, Hertzmann, "Gaussian process dynamical
+// models", NIPS 2005. Back-constraints: Lawrence, Quinonero-Candela, ICML 2006.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/gp/gram_term.h"
+#include "pleat/gp/kernel.h"
+#include "pleat/optimize/objective.h"
+#include "pleat/optimize/summary.h"
+
+namespace pleat {
+
+enum class Optimizer { kScg, kLbfgs };
+
+// How the columns of a view are scaled before training (they are always centred).
+enum class ViewScaling {
+  kOneScalar,  // one scalar per view, mean square 1: still vertices stay quiet
+  kPerColumn,  // every column to unit variance (N - 1), as the check values of method.md have it
+};
+
+struct SharedGplvmOptions {
+  int latent_dimension = 8;      // q
+  double pose_weight = 1;        // w_S
+  double detail_weight = 1;      // w_M
+  double dynamics_weight = 1;    // lambda; 0 turns the dynamics off
+  int dynamics_order = 1;        // 1: x_t from x_(t-1); 2: from x_(t-1) and x_(t-2)
+  bool dynamics_linear = false;  // adds a linear term to the dynamics kernel
+
+  // Latent points are a smooth function of the pose, X = K_b A, K_b an RBF kernel on Y_S of
+  // `back_width` times its median distance (plus `back_noise` on the diagonal): free latent
+  // points over-fit.
+  bool back_constraints = true;
+  double back_width = 1;
+  double back_noise = 1e-3;
+
+  // Precision of a Gaussian prior, per training frame and output, on log g around
+  // log(1 / median squared distance at the start) and on log a around 0; 0: no prior.
+  double prior_precision = 0;
+
+  double relative_noise_floor = 1e-6;  // of all kernels, see KernelOptions
+  double absolute_jitter = 0;
+
+  ViewScaling scaling = ViewScaling::kOneScalar;
+  Optimizer optimizer = Optimizer::kScg;
+  int max_iterations = 100;
+
+  // The published learner. q was lost from the text of the paper (4 to 6 fits what is left); the
+  // dynamics are first order, the start is the PCA of Y_S alone, 100 iterations of SCG.
+  static SharedGplvmOptions Paper();
+};
+
+struct SharedGplvmSummary {
+  OptimizationSummary optimization;
+  double pose_scale = 1, detail_scale = 1;  // what the views were divided by (kOneScalar)
+};
+
+// The result of training. Everything refers to centred and scaled views.
+struct SharedGplvm {
+  Eigen::MatrixXd latents;  // X, N x q
+  KernelLogs pose_kernel, detail_kernel, dynamics_kernel;
+  KernelOptions pose_options, detail_options, dynamics_options;
+  double detail_scale = 1;  // detail_kernel's output unit in the unit of Y_M (kOneScalar)
+
+  // Only with back-constraints: X = K_b A with inputs Y_S as given, centred.
+  Eigen::MatrixXd back_weights;       // A, N x q
+  double back_log_inverse_width = 0;  // of K_b, 1 / (unit of Y_S)^2
+};
+
+// L and its gradient over [X or A (column-major), pose logs, detail logs, dynamics logs].
+class SharedGplvmObjective : public Objective {
+ public:
+  // Views scaled as wanted already. `clip_starts`: first row of each clip, rising, the first 0.
+  // `back_kernel`: K_b (N x N), empty without back-constraints. `prior_center`: log g of the prior.
+  SharedGplvmObjective(GramData pose, GramData detail, std::vector<int> clip_starts,
+                       Eigen::MatrixXd back_kernel, double prior_center,
+                       const SharedGplvmOptions& options, Progress progress = {});
+  ~SharedGplvmObjective() override;
+
+  int num_unknowns() const override;
+  double Evaluate(const Eigen::VectorXd& unknowns, Eigen::VectorXd* gradient) override;
+
+  // Unknowns from latent points (N x q) or back weights, and logs; and back.
+  Eigen::VectorXd Pack(const Eigen::MatrixXd& latents_or_weights, const KernelLogs& pose,
+                       const KernelLogs& detail, const KernelLogs& dynamics) const;
+  void Unpack(const Eigen::VectorXd& unknowns, SharedGplvm* model) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// The outputs of one view: Y (N x D), or, when `gram` is given, only Y Y^T of centred outputs
+// (N x N) with their number.
+struct DetailView {
+  Eigen::MatrixXd gram;    // N x N, of the centred (not scaled) outputs
+  double num_outputs = 0;  // D_M
+};
+
+// Gram matrix of the centred (and with kPerColumn scaled) columns of `outputs` (N x D_M).
+DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling);
+
+// Trains on N frames: `poses` is Y_S (N x D_S). Errors: kInvalidArgument for sizes that do not
+// agree, values that are not finite, fewer than two frames; kCancelled. `summary` may be null.
+absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::MatrixXd>& poses,
+                                             const DetailView& details,
+                                             const std::vector<int>& clip_starts,
+                                             const SharedGplvmOptions& options = {},
+                                             SharedGplvmSummary* summary = nullptr,
+                                             const Progress& progress = {});
+
+// kInvalidArgument unless `clip_starts` rises strictly from 0 and stays below num_rows.
+absl::Status CheckClipStarts(const std::vector<int>& clip_starts, Eigen::Index num_rows);
+
+}  // namespace pleat

@@ -1,0 +1,18 @@
+// Centring and scaling shared by the learners.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pleat {
+
+// sqrt(square), or 1 when it is not positive: nothing to scale by.
+double PositiveRoot(double square);
+
+// Divides every column (already centred) by its standard deviation (N - 1); constant ones stay.
+void ScaleColumns(Eigen::MatrixXd* centred);
+
+// Median of the entries below the diagonal of a matrix of squared distances (N x N, lower),
+// positive entries only; 1 when there are none.
+double MedianSquaredDistance(const Eigen::MatrixXd& distances);
+
+}  // namespace pleat

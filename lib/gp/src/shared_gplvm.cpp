@@ -1,0 +1,181 @@
+#include "pleat/gp/shared_gplvm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "dense.h"
+#include "pleat/base/status.h"
+#include "pleat/math/pca.h"
+#include "pleat/optimize/lbfgs.h"
+#include "pleat/optimize/scg.h"
+#include "scaling.h"
+
+namespace pleat {
+namespace {
+
+absl::Status CheckTraining(const Eigen::Ref<const Eigen::MatrixXd>& poses,
+                           const DetailView& details, const std::vector<int>& clip_starts,
+                           const SharedGplvmOptions& options) {
+  if (poses.rows() < 2 || poses.cols() < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a shared GPLVM needs at least two frames with at least one feature, got ",
+                     poses.rows(), " x ", poses.cols()));
+  }
+  if (details.gram.rows() != poses.rows() || details.gram.cols() != poses.rows() ||
+      !(details.num_outputs > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("poses have ", poses.rows(), " frames, the Gram matrix of the details is ",
+                     details.gram.rows(), " x ", details.gram.cols()));
+  }
+  if (!poses.allFinite() || !details.gram.allFinite()) {
+    return absl::InvalidArgumentError("poses or details hold a value that is not finite");
+  }
+  if (options.latent_dimension < 1 || options.dynamics_order < 1 || options.dynamics_order > 2 ||
+      !(options.dynamics_weight >= 0) || !(options.pose_weight > 0) ||
+      !(options.detail_weight > 0) || options.max_iterations < 0) {
+    return absl::InvalidArgumentError(
+        "a shared GPLVM needs a latent dimension of at least 1, dynamics of order 1 or 2, a "
+        "dynamics weight of at least 0, positive view weights and at least 0 iterations");
+  }
+  return CheckClipStarts(clip_starts, poses.rows());
+}
+
+// First q left singular vectors of the centred poses, times sqrt(N - 1); missing ones are zero.
+Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
+  const PrincipalComponents pca = ComputePca(poses, {.max_components = q});
+  Eigen::MatrixXd start = Eigen::MatrixXd::Zero(poses.rows(), q);
+  for (Eigen::Index d = 0; d < pca.scores.cols(); ++d) {
+    const double length = pca.scores.col(d).norm();
+    if (length > 0) start.col(d) = pca.scores.col(d) * (std::sqrt(poses.rows() - 1.0) / length);
+  }
+  return start;
+}
+
+// K_b on centred poses, and log g of it.
+Eigen::MatrixXd BackKernel(const Eigen::MatrixXd& poses, const SharedGplvmOptions& options,
+                           double* log_inverse_width) {
+  const Eigen::Index n = poses.rows();
+  const DenseOps& ops = ChosenDenseOps();
+  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n), kernel = distances, unused = distances;
+  ops.squared_distances(poses.data(), n, poses.cols(), distances.data());
+  const double median = MedianSquaredDistance(distances);
+  *log_inverse_width = -std::log(median * options.back_width * options.back_width);
+  ops.kernel(distances.data(), nullptr, n, std::exp(*log_inverse_width), 1, 0, 0, unused.data(),
+             kernel.data());
+  kernel.triangularView<Eigen::StrictlyUpper>() = kernel.transpose();
+  return kernel;
+}
+
+absl::StatusOr<Eigen::VectorXd> Minimize(SharedGplvmObjective& objective,
+                                         const Eigen::VectorXd& start,
+                                         const SharedGplvmOptions& options,
+                                         OptimizationSummary* summary, const Progress& progress) {
+  if (options.optimizer == Optimizer::kScg) {
+    return MinimizeScg(objective, start, {.max_iterations = options.max_iterations}, summary,
+                       progress);
+  }
+  // As many evaluations as SCG would use.
+  return MinimizeLbfgs(
+      objective, start,
+      {.max_iterations = 2 * options.max_iterations, .max_evaluations = 2 * options.max_iterations},
+      summary, progress);
+}
+
+}  // namespace
+
+SharedGplvmOptions SharedGplvmOptions::Paper() {
+  SharedGplvmOptions options;
+  options.latent_dimension = 4;
+  options.back_constraints = false;
+  options.prior_precision = 0;
+  options.relative_noise_floor = 0;
+  options.absolute_jitter = 1e-8;
+  return options;
+}
+
+absl::Status CheckClipStarts(const std::vector<int>& clip_starts, Eigen::Index num_rows) {
+  if (clip_starts.empty() || clip_starts[0] != 0) {
+    return absl::InvalidArgumentError("clip starts must begin with row 0");
+  }
+  for (size_t c = 0; c < clip_starts.size(); ++c) {
+    if (clip_starts[c] >= num_rows || (c > 0 && clip_starts[c] <= clip_starts[c - 1])) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("clip ", c, " starts at row ", clip_starts[c], " of ", num_rows,
+                       ": starts must rise and stay inside the rows"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling) {
+  const Eigen::Index n = outputs.rows();
+  Eigen::MatrixXd centred = outputs.rowwise() - outputs.colwise().mean();
+  if (scaling == ViewScaling::kPerColumn) ScaleColumns(&centred);
+  DetailView view;
+  view.num_outputs = static_cast<double>(outputs.cols());
+  view.gram.setZero(n, n);
+  DenseSolver solver;
+  const DenseView rows = ViewOf(centred);
+  solver.MultiplyAdd(1, rows, rows.Transposed(), view.gram.data(), n, n, n, centred.cols(), true);
+  view.gram.triangularView<Eigen::StrictlyUpper>() = view.gram.transpose();
+  return view;
+}
+
+absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::MatrixXd>& poses,
+                                             const DetailView& details,
+                                             const std::vector<int>& clip_starts,
+                                             const SharedGplvmOptions& options,
+                                             SharedGplvmSummary* summary,
+                                             const Progress& progress) {
+  PLEAT_RETURN_IF_ERROR(CheckTraining(poses, details, clip_starts, options));
+  const Eigen::Index n = poses.rows();
+  SharedGplvmSummary local;
+  SharedGplvmSummary& report = summary ? *summary : local;
+
+  // Scale both views.
+  const Eigen::MatrixXd centred = poses.rowwise() - poses.colwise().mean();
+  Eigen::MatrixXd scaled = centred, gram = details.gram;
+  if (options.scaling == ViewScaling::kPerColumn) {
+    ScaleColumns(&scaled);
+    report.pose_scale = report.detail_scale = 1;
+  } else {
+    report.pose_scale = PositiveRoot(scaled.squaredNorm() / double(scaled.size()));
+    report.detail_scale = PositiveRoot(gram.trace() / (double(n) * details.num_outputs));
+    scaled /= report.pose_scale;
+    gram /= report.detail_scale * report.detail_scale;
+  }
+  PLEAT_ASSIGN_OR_RETURN(GramData pose_data, MakeGramData(scaled));
+  PLEAT_ASSIGN_OR_RETURN(GramData detail_data, MakeGramDataFromGram(gram, details.num_outputs));
+
+  SharedGplvm model;
+  model.detail_scale = report.detail_scale;
+  // The start knows nothing of the scaling of columns: the check values were made that way.
+  const Eigen::MatrixXd start = PcaStart(centred, options.latent_dimension);
+  Eigen::MatrixXd points = start, back_kernel;
+  if (options.back_constraints) {
+    back_kernel = BackKernel(centred, options, &model.back_log_inverse_width);
+    Eigen::MatrixXd ridged = back_kernel, whitener, whitened;
+    ridged.diagonal().array() += options.back_noise;
+    DenseSolver solver;
+    if (!solver.FactorAndInvert(ridged, whitener)) {
+      return absl::InvalidArgumentError("the back-constraint kernel cannot be factored");
+    }
+    solver.MultiplyByFactor(whitener, false, start, false, whitened);
+    solver.MultiplyByFactor(whitener, true, whitened, false, points);
+  }
+  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n);
+  ChosenDenseOps().squared_distances(start.data(), n, start.cols(), distances.data());
+  const double prior_center = -std::log(MedianSquaredDistance(distances));
+
+  SharedGplvmObjective objective(std::move(pose_data), std::move(detail_data), clip_starts,
+                                 std::move(back_kernel), prior_center, options, progress);
+  PLEAT_ASSIGN_OR_RETURN(const Eigen::VectorXd unknowns,
+                         Minimize(objective, objective.Pack(points, {}, {}, {}), options,
+                                  &report.optimization, progress));
+  objective.Unpack(unknowns, &model);
+  return model;
+}
+
+}  // namespace pleat
