@@ -1,0 +1,38 @@
+// Pre-flight of a user's mesh: what a volume method needs, made from whatever the file holds.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/mesh/topology.h"
+
+namespace pleat {
+
+// What is unclean about a mesh, for reports.
+struct SurfaceReport {
+  int num_welded_vertices = 0;  // share their position with an earlier vertex
+  int num_unreferenced_vertices = 0;
+  int num_degenerate_triangles = 0;  // two equal corners after welding, or no area
+  int num_flipped_triangles = 0;     // turned so that their component is oriented outward
+  int num_boundary_edges = 0;        // one triangle
+  int num_nonmanifold_edges = 0;     // three triangles or more
+  int num_components = 0;            // connected by edges
+};
+
+// A copy of the mesh, welded and oriented. The user's own mesh and vertex order are untouched.
+struct SolidSurface {
+  Eigen::Matrix3Xd positions;            // 3 x W, only vertices that a triangle uses
+  Eigen::Matrix3Xi triangles;            // 3 x F, consistently oriented, outward
+  std::vector<int> vertex_from_input;    // V: column of `positions`, -1 = unreferenced
+  std::vector<int> triangle_components;  // F: component index, numbered by first triangle
+  SurfaceReport report;
+};
+
+// Vertices closer than 1e-6 of the box diagonal count as one. Patches connected through edges of
+// two triangles are oriented consistently and then outward by their signed volume. positions:
+// 3 x V. kInvalidArgument when no triangle with area is left.
+absl::StatusOr<SolidSurface> PrepareSolidSurface(
+    const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
+
+}  // namespace pleat

@@ -1,0 +1,55 @@
+// From a mesh sequence to a rig with 18 joints, without help.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/geometry/solid_surface.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/rigging/embedding.h"
+#include "pleat/rigging/heat_weights.h"
+#include "pleat/skinning/rig.h"
+
+namespace pleat {
+
+struct AutoRigOptions {
+  int rest_frame = -1;  // -1 = automatic: frame 0 when it is trusted, else the best of a few
+  // Where the character faces, degrees about +y from +z towards +x. Unset: the best of four.
+  std::optional<double> yaw_degrees;
+  int max_frames_tried = 6;
+  // Residuals of the embedding (method.md, 2.2): below `trusted` the first frame is taken at once,
+  // above it the rig carries a warning, above `refused` there is no rig.
+  double trusted_residual = .03;
+  double refused_residual = .15;
+  // Two facings whose residuals are nearer than this are reported as doubtful.
+  double facing_margin = .004;
+  int num_threads = 0;  // 0 = one per core
+  BodyVolumeOptions volume;
+  EmbeddingOptions embedding;  // yaws_degrees is replaced when yaw_degrees is set
+  HeatWeightsOptions heat;
+};
+
+struct AutoRigSummary {
+  int rest_frame = 0;
+  double yaw_degrees = 0;
+  double residual = 0;
+  std::vector<FacingResidual> facings;  // of the rest frame
+  int num_frames_tried = 0;
+  int num_spheres = 0;
+  SurfaceReport surface;  // of the rest frame
+  HeatWeightsSummary heat;
+  std::vector<std::string> warnings;
+};
+
+// Rig of `sequence` in its best frame: skeleton in template order and names (HumanTemplate), left
+// is the character's left; weights; rest positions = that frame as it is. Deterministic for any
+// number of threads. kFailedPrecondition, with the measured residual and what to do, when the body
+// is not one that a human skeleton fits; kInvalidArgument for a frame or option out of range;
+// kCancelled.
+absl::StatusOr<Rig> AutoRig(const MeshSequence& sequence, const AutoRigOptions& options = {},
+                            AutoRigSummary* summary = nullptr, const Progress& progress = {});
+
+}  // namespace pleat

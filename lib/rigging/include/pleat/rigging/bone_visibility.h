@@ -1,0 +1,33 @@
+// Which bones a surface vertex is near to and sees through the body.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pleat/geometry/triangle_tree.h"
+#include "pleat/geometry/winding_number.h"
+#include "pleat/skeleton/skeleton.h"
+
+namespace pleat {
+
+// The point of the segment from a to b nearest to `point`.
+Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
+                                      const Eigen::Vector3d& b);
+
+// True when the way from `inner` to the surface vertex `vertex` stays inside the body. `tolerance`:
+// length of the last stretch, next to the vertex, that is not looked at.
+bool IsVisibleInside(const TriangleTree& tree, const WindingNumber& winding_number,
+                     const Eigen::Vector3d& inner, const Eigen::Vector3d& vertex, double tolerance);
+
+// The bones at the smallest distance from a vertex; more than one at a tie.
+struct NearestBones {
+  std::vector<int> bones;  // empty when the vertex sees none
+  double distance = 0;
+};
+
+// joints: 3 x J. With `tree` null every bone is visible.
+NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
+                              const Eigen::Vector3d& vertex, const TriangleTree* tree,
+                              const WindingNumber* winding_number, double tolerance);
+
+}  // namespace pleat

@@ -1,0 +1,57 @@
+// Skinning weights by heat equilibrium on the surface.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/geometry/solid_surface.h"
+#include "pleat/geometry/triangle_tree.h"
+#include "pleat/geometry/winding_number.h"
+#include "pleat/mesh/topology.h"
+#include "pleat/skeleton/skeleton.h"
+#include "pleat/skinning/skin_weights.h"
+
+namespace pleat {
+
+struct HeatWeightsOptions {
+  double heat_constant = 1;  // c: larger = bones keep their heat, transitions become sharper
+  int num_threads = 1;       // 0 = one per core
+};
+
+struct HeatWeightsSummary {
+  int num_hidden_vertices = 0;  // that see no bone and take their heat from their neighbours
+  int num_cold_components = 0;  // without any visible bone: heated by their nearest bones
+};
+
+// Solves (-L + H) w_b = H p_b for every bone b (Baran and Popovic 2007, section 4; method.md, 2.3):
+// L the cotangent Laplacian, H_i = c / d_i^2 at the nearest visible bone, p_b = 1 where b is that
+// bone. Each equation is scaled by the vertex's area, so that the weights depend neither on unit
+// nor on resolution. A vertex sees a bone when the segment to its nearest point stays inside the
+// body. positions: 3 x V, rest pose; skeleton: rest positions in the same unit. Vertices without
+// triangle follow their nearest bone. At most four influences per vertex. kInvalidArgument when the
+// mesh has no area or the skeleton no bone, kCancelled.
+absl::StatusOr<SkinWeights> ComputeHeatWeights(const Topology& topology,
+                                               const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                               const Skeleton& skeleton,
+                                               const HeatWeightsOptions& options = {},
+                                               HeatWeightsSummary* summary = nullptr,
+                                               const Progress& progress = {});
+
+// The same for a surface that is already prepared. joints: 3 x J in the surface's unit; weights for
+// the surface's own vertices, W x J, not yet cut to four, column 0 zero.
+absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
+    const SolidSurface& surface, const TriangleTree& tree, const WindingNumber& winding_number,
+    const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
+    const HeatWeightsOptions& options = {}, HeatWeightsSummary* summary = nullptr,
+    const Progress& progress = {});
+
+// Carries weights of a prepared surface (W x J) to the vertices of the mesh it was made from.
+// positions: 3 x V, joints: 3 x J, same unit.
+absl::StatusOr<SkinWeights> WeightsOfInput(const SolidSurface& surface,
+                                           const Eigen::MatrixXd& surface_weights,
+                                           const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                           const Skeleton& skeleton,
+                                           const Eigen::Matrix3Xd& joints);
+
+}  // namespace pleat

@@ -1,0 +1,68 @@
+// Step 7 of the embedding, first half: what makes a placement of the skeleton a bad one.
+#pragma once
+
+#include <vector>
+
+#include "pleat/rigging/search_tree.h"
+#include "pleat/rigging/sphere_graph.h"
+
+namespace pleat {
+
+// Weights of the nine penalties (method.md, 2.2; the kinds are those of Baran and Popovic 2007,
+// section 3.3, the formulas are our own). A weighted penalty over 1 forbids.
+struct PenaltyWeights {
+  double length = .027;           // bone chain shorter than the template's
+  double direction = .023;        // against parent and siblings
+  double symmetry = .007;         // lengths of mirrored chains
+  double shared_path = .046;      // two chains through the same spheres
+  double foot_height = .014;      // foot above the lowest vertex
+  double same_sphere = .012;      // joint on its parent's sphere
+  double local_direction = .072;  // template bones of the chain, laid along the path
+  double leaf = .005;             // limb goes on behind a leaf
+  double proximity = .033;        // far along the skeleton, near in the body
+};
+
+struct PenaltyOptions {
+  PenaltyWeights weights;
+  int max_deep_candidates = 50;  // deep joints: the largest spheres
+  // The template is used at this share of the body's size, so that lengths punish mainly chains
+  // that come out short; a chain under half of that is forbidden.
+  double template_scale = 0.58;
+};
+
+// Costs of placing the joints of `tree` on the spheres of `graph`, one joint after the other. All
+// costs are >= 0; infinite = forbidden. The graph and the tree must outlive this object.
+class PenaltyModel {
+ public:
+  // floor_height, body_size: lowest vertex and longest side of the body, unit box.
+  PenaltyModel(const SphereGraph& graph, const SearchTree& tree, double floor_height,
+               double body_size, const PenaltyOptions& options = {});
+
+  const SphereGraph& graph() const { return graph_; }
+  const SearchTree& tree() const { return tree_; }
+  // Spheres that may hold joint j.
+  const std::vector<int>& candidates(int j) const { return candidates_[j]; }
+
+  // What joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`.
+  double PairPenalty(int j, int sphere, int parent_sphere) const;
+  // What joint j on spheres[j] costs against joints 0..j-1 on spheres[0..j-1], its parent's share
+  // in PairPenalty left out.
+  double ContextPenalty(int j, const std::vector<int>& spheres) const;
+
+ private:
+  double LocalDirection(const SearchJoint& joint, const std::vector<int>& path) const;
+  double LeafPenalty(int sphere, int parent_sphere, const std::vector<int>& path) const;
+  bool IsExtremity(int sphere) const;
+
+  const SphereGraph& graph_;
+  const SearchTree& tree_;
+  double floor_height_, body_size_;
+  PenaltyOptions options_;
+  std::vector<std::vector<int>> candidates_;
+};
+
+// Points at the given fractions of the length of the polyline `path` of sphere centres.
+Eigen::Matrix3Xd PointsAlongPath(const SphereGraph& graph, const std::vector<int>& path,
+                                 const std::vector<double>& fractions);
+
+}  // namespace pleat

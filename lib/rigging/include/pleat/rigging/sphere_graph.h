@@ -1,0 +1,41 @@
+// Step 5 of the embedding: the graph of packed spheres and its shortest paths.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "pleat/geometry/distance_field.h"
+#include "pleat/rigging/sphere_packing.h"
+
+namespace pleat {
+
+// Spheres as nodes, edges where one can walk inside the body from centre to centre.
+class SphereGraph {
+ public:
+  // Overlapping spheres are joined; others when the ball over the segment between their centres
+  // holds no third centre (Gabriel) and the segment stays at least half the smaller radius deep
+  // (Baran and Popovic 2007, section 3.1).
+  SphereGraph(std::vector<Sphere> spheres, const DistanceField& field);
+  // The given edges (pairs of indices) instead.
+  SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pair<int, int>>& edges);
+
+  int size() const { return static_cast<int>(spheres_.size()); }
+  const Sphere& sphere(int i) const { return spheres_[i]; }
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+  const std::vector<int>& neighbours(int i) const { return neighbours_[i]; }
+
+  // Length of the shortest path, infinite when there is none.
+  double PathLength(int from, int to) const { return distances_(to, from); }
+  // Nodes of the shortest path, both ends included; empty when there is none.
+  std::vector<int> Path(int from, int to) const;
+
+ private:
+  void ComputeShortestPaths();
+
+  std::vector<Sphere> spheres_;
+  std::vector<std::vector<int>> neighbours_;
+  Eigen::MatrixXd distances_;     // N x N, column = start
+  Eigen::MatrixXi predecessors_;  // N x N, column = start; -1 = none
+};
+
+}  // namespace pleat

@@ -1,0 +1,66 @@
+#include "pleat/rigging/bone_visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pleat {
+namespace {
+
+constexpr double kTieRatio = 1.0001;
+
+}  // namespace
+
+Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
+                                      const Eigen::Vector3d& b) {
+  const Eigen::Vector3d bone = b - a;
+  const double squared_length = bone.squaredNorm();
+  if (!(squared_length > 0)) return a;
+  return a + std::clamp(bone.dot(point - a) / squared_length, 0.0, 1.0) * bone;
+}
+
+bool IsVisibleInside(const TriangleTree& tree, const WindingNumber& winding_number,
+                     const Eigen::Vector3d& inner, const Eigen::Vector3d& vertex,
+                     double tolerance) {
+  const double length = (vertex - inner).norm();
+  if (length <= 2 * tolerance) return true;
+  if (!winding_number.IsInside(inner)) return false;
+  const Eigen::Vector3d direction = (vertex - inner) / length;
+  // A ball that reaches no surface is all inside or all outside: walk from ball to ball, and ask
+  // for the side again only after a step that may have crossed a surface.
+  for (double walked = 0; walked < length - 2 * tolerance;) {
+    const Eigen::Vector3d point = inner + walked * direction;
+    const double clearance = std::sqrt(tree.ClosestPoint(point).squared_distance);
+    walked += std::max(clearance, tolerance);
+    if (clearance >= tolerance) continue;
+    if (walked < length - 2 * tolerance && !winding_number.IsInside(inner + walked * direction)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
+                              const Eigen::Vector3d& vertex, const TriangleTree* tree,
+                              const WindingNumber* winding_number, double tolerance) {
+  std::vector<std::pair<double, int>> by_distance;
+  std::vector<Eigen::Vector3d> nearest_points(skeleton.num_joints());
+  for (int b = 1; b < skeleton.num_joints(); ++b) {
+    nearest_points[b] =
+        ClosestPointOnSegment(vertex, joints.col(skeleton.parent(b)), joints.col(b));
+    by_distance.push_back({(nearest_points[b] - vertex).norm(), b});
+  }
+  std::sort(by_distance.begin(), by_distance.end());
+  NearestBones nearest;
+  for (const auto& [distance, b] : by_distance) {
+    if (!nearest.bones.empty() && distance > nearest.distance * kTieRatio) break;
+    if (tree && !IsVisibleInside(*tree, *winding_number, nearest_points[b], vertex, tolerance)) {
+      continue;
+    }
+    if (nearest.bones.empty()) nearest.distance = distance;
+    nearest.bones.push_back(b);
+  }
+  return nearest;
+}
+
+}  // namespace pleat

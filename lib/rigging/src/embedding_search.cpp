@@ -1,0 +1,168 @@
+#include "pleat/rigging/embedding_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// Pair penalties of all joints and the admissible remainders made from them.
+class PairTable {
+ public:
+  explicit PairTable(const PenaltyModel& model) {
+    const SearchTree& tree = model.tree();
+    const int num_joints = static_cast<int>(tree.size());
+    costs_.resize(num_joints);
+    remainders_.resize(num_joints);
+    std::vector<Eigen::VectorXd> subtree(num_joints);  // of the children, per own candidate
+    for (int j = 0; j < num_joints; ++j) subtree[j].setZero(model.candidates(j).size());
+    for (int j = num_joints - 1; j > 0; --j) {
+      const std::vector<int>& own = model.candidates(j);
+      const std::vector<int>& parents = model.candidates(tree[j].parent);
+      costs_[j].resize(own.size(), parents.size());
+      for (size_t p = 0; p < parents.size(); ++p) {
+        for (size_t c = 0; c < own.size(); ++c) {
+          costs_[j](c, p) = model.PairPenalty(j, own[c], parents[p]);
+        }
+      }
+      remainders_[j] = (costs_[j].colwise() + subtree[j]).colwise().minCoeff().transpose();
+      subtree[tree[j].parent] += remainders_[j];
+    }
+  }
+
+  // Joint j on its candidate c, its parent on the parent's candidate p.
+  double cost(int j, int c, int p) const { return costs_[j](c, p); }
+  // The least pair penalties of the subtree of joint j.
+  double remainder(int j, int p) const { return remainders_[j][p]; }
+
+ private:
+  std::vector<Eigen::MatrixXd> costs_;       // candidates x parent's candidates
+  std::vector<Eigen::VectorXd> remainders_;  // parent's candidates
+};
+
+struct State {
+  double cost = 0;   // of the joints placed
+  double bound = 0;  // cost + remainder of the open ones
+  int num_placed = 0;
+  int previous = -1;   // state without the last joint
+  int candidate = -1;  // of the last joint placed
+};
+
+class BestFirstSearch {
+ public:
+  BestFirstSearch(const PenaltyModel& model, const PairTable& table, const SearchOptions& options,
+                  const Progress& progress)
+      : model_(model), table_(table), options_(options), progress_(progress) {}
+
+  // The cheapest placement that costs at most `limit`; kNotFound when there is none.
+  absl::StatusOr<SearchResult> Run(double limit) {
+    states_ = {State{}};
+    while (!queue_.empty()) queue_.pop();
+    queue_.push({0, 0});
+    const int num_joints = static_cast<int>(model_.tree().size());
+    while (!queue_.empty()) {
+      const int index = queue_.top().second;
+      queue_.pop();
+      if (states_[index].num_placed == num_joints) return Result(index);
+      if (progress_.cancelled()) return progress_.Report(0);
+      Expand(index, limit);
+      if (static_cast<int>(states_.size()) > options_.max_states) {
+        return absl::ResourceExhaustedError(
+            absl::StrCat("the embedding search kept more than ", options_.max_states, " states"));
+      }
+    }
+    return absl::NotFoundError(absl::StrCat("no embedding costs less than ", limit));
+  }
+
+ private:
+  std::vector<int> PlacedCandidates(int index) const {
+    std::vector<int> candidates(states_[index].num_placed);
+    for (int i = index, j = states_[index].num_placed - 1; j >= 0; --j, i = states_[i].previous) {
+      candidates[j] = states_[i].candidate;
+    }
+    return candidates;
+  }
+
+  SearchResult Result(int index) const {
+    SearchResult result;
+    const std::vector<int> candidates = PlacedCandidates(index);
+    for (size_t j = 0; j < candidates.size(); ++j) {
+      result.spheres.push_back(model_.candidates(static_cast<int>(j))[candidates[j]]);
+    }
+    result.penalty = states_[index].cost;
+    result.num_states = num_generated_;
+    return result;
+  }
+
+  void Expand(int index, double limit) {
+    const State state = states_[index];
+    const SearchTree& tree = model_.tree();
+    const int j = state.num_placed;
+    std::vector<int> placed = PlacedCandidates(index);
+    std::vector<int> spheres(j + 1);
+    for (int k = 0; k < j; ++k) spheres[k] = model_.candidates(k)[placed[k]];
+    // Remainder of the open subtrees that hang on joints placed before j.
+    double others = 0;
+    for (size_t k = j + 1; k < tree.size(); ++k) {
+      if (tree[k].parent < j)
+        others += table_.remainder(static_cast<int>(k), placed[tree[k].parent]);
+    }
+    const std::vector<int>& candidates = model_.candidates(j);
+    for (size_t c = 0; c < candidates.size(); ++c) {
+      double cost = state.cost;
+      if (j > 0) cost += table_.cost(j, static_cast<int>(c), placed[tree[j].parent]);
+      double remainder = others;
+      for (size_t k = j + 1; k < tree.size(); ++k) {
+        if (tree[k].parent == j) {
+          remainder += table_.remainder(static_cast<int>(k), static_cast<int>(c));
+        }
+      }
+      if (!(cost + remainder <= limit)) continue;
+      ++num_generated_;
+      spheres[j] = candidates[c];
+      cost += model_.ContextPenalty(j, spheres);
+      if (!(cost + remainder <= limit)) continue;
+      states_.push_back({cost, cost + remainder, j + 1, index, static_cast<int>(c)});
+      queue_.push({cost + remainder, static_cast<int>(states_.size()) - 1});
+    }
+  }
+
+  using Entry = std::pair<double, int>;  // bound, state; the state breaks ties
+  const PenaltyModel& model_;
+  const PairTable& table_;
+  const SearchOptions& options_;
+  const Progress& progress_;
+  std::vector<State> states_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue_;
+  int num_generated_ = 0;
+};
+
+}  // namespace
+
+absl::StatusOr<SearchResult> SearchEmbedding(const PenaltyModel& model,
+                                             const SearchOptions& options,
+                                             const Progress& progress) {
+  for (size_t j = 0; j < model.tree().size(); ++j) {
+    if (model.candidates(static_cast<int>(j)).empty()) {
+      return absl::NotFoundError("a joint has no sphere to lie on");
+    }
+  }
+  const PairTable table(model);
+  BestFirstSearch search(model, table, options, progress);
+  for (double bound = options.first_bound; bound <= options.max_bound; bound *= 2) {
+    absl::StatusOr<SearchResult> found = search.Run(bound);
+    if (found.ok() || !absl::IsNotFound(found.status())) return found;
+  }
+  return absl::NotFoundError(
+      absl::StrCat("no placement of the skeleton costs less than ", options.max_bound));
+}
+
+}  // namespace pleat

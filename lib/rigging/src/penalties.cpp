@@ -1,0 +1,194 @@
+#include "pleat/rigging/penalties.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace pleat {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+// 0 for equal directions, 1 at a right angle, 4 for opposite ones; 1 when one has no length.
+double DirectionMismatch(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double lengths = a.norm() * b.norm();
+  if (!(lengths > 1e-12)) return 1;
+  const double one_minus_cosine = 1 - a.dot(b) / lengths;
+  return one_minus_cosine * one_minus_cosine;
+}
+
+double Square(double x) { return x * x; }
+
+}  // namespace
+
+Eigen::Matrix3Xd PointsAlongPath(const SphereGraph& graph, const std::vector<int>& path,
+                                 const std::vector<double>& fractions) {
+  double total = 0;
+  for (size_t i = 1; i < path.size(); ++i) {
+    total += (graph.sphere(path[i]).centre - graph.sphere(path[i - 1]).centre).norm();
+  }
+  Eigen::Matrix3Xd points(3, fractions.size());
+  size_t segment = 1;
+  double before = 0;
+  for (size_t k = 0; k < fractions.size(); ++k) {
+    if (path.size() < 2) {
+      points.col(k) = graph.sphere(path[0]).centre;
+      continue;
+    }
+    const double target = fractions[k] * total;
+    double length = 0;
+    for (;; ++segment) {
+      length = (graph.sphere(path[segment]).centre - graph.sphere(path[segment - 1]).centre).norm();
+      if (before + length >= target || segment + 1 == path.size()) break;
+      before += length;
+    }
+    const double share = length > 0 ? std::clamp((target - before) / length, 0.0, 1.0) : 1.0;
+    points.col(k) = (1 - share) * graph.sphere(path[segment - 1]).centre +
+                    share * graph.sphere(path[segment]).centre;
+  }
+  return points;
+}
+
+PenaltyModel::PenaltyModel(const SphereGraph& graph, const SearchTree& tree, double floor_height,
+                           double body_size, const PenaltyOptions& options)
+    : graph_(graph),
+      tree_(tree),
+      floor_height_(floor_height),
+      body_size_(body_size),
+      options_(options),
+      candidates_(tree.size()) {
+  std::vector<int> by_radius(graph.size());
+  std::iota(by_radius.begin(), by_radius.end(), 0);
+  std::stable_sort(by_radius.begin(), by_radius.end(),
+                   [&](int a, int b) { return graph.sphere(a).radius > graph.sphere(b).radius; });
+  for (size_t j = 0; j < tree.size(); ++j) {
+    if (tree[j].is_deep) {
+      const size_t count = std::min<size_t>(by_radius.size(), options.max_deep_candidates);
+      candidates_[j].assign(by_radius.begin(), by_radius.begin() + count);
+      continue;
+    }
+    for (int i = 0; i < graph.size(); ++i) {
+      if (!tree[j].is_leaf || IsExtremity(i)) candidates_[j].push_back(i);
+    }
+  }
+}
+
+// The shape goes on behind a sphere with neighbours on opposite sides of it.
+bool PenaltyModel::IsExtremity(int sphere) const {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (int i : graph_.neighbours(sphere)) {
+    mean += (graph_.sphere(i).centre - graph_.sphere(sphere).centre).normalized();
+  }
+  return std::all_of(
+      graph_.neighbours(sphere).begin(), graph_.neighbours(sphere).end(),
+      [&](int i) { return mean.dot(graph_.sphere(i).centre - graph_.sphere(sphere).centre) > 0; });
+}
+
+double PenaltyModel::LocalDirection(const SearchJoint& joint, const std::vector<int>& path) const {
+  const Eigen::Matrix3Xd points = PointsAlongPath(graph_, path, joint.fractions);
+  Eigen::Vector3d start = graph_.sphere(path[0]).centre;
+  double mismatch = 0;
+  for (size_t k = 0; k < joint.chain.size(); ++k) {
+    const Eigen::Vector3d bone = points.col(k) - start;
+    const double length = bone.norm();
+    const double cosine = length > 0 ? bone.dot(joint.directions.col(k)) / length : 0;
+    mismatch += joint.bone_lengths[k] / joint.length * (1 - cosine);
+    start = points.col(k);
+  }
+  return mismatch;
+}
+
+double PenaltyModel::LeafPenalty(int sphere, int parent_sphere,
+                                 const std::vector<int>& path) const {
+  if (path.size() < 2) return 1;
+  const Eigen::Vector3d& centre = graph_.sphere(sphere).centre;
+  const Eigen::Vector3d arriving = centre - graph_.sphere(path[path.size() - 2]).centre;
+  const double length = graph_.PathLength(parent_sphere, sphere);
+  for (int i : graph_.neighbours(sphere)) {
+    if (graph_.PathLength(parent_sphere, i) > length &&
+        arriving.dot(graph_.sphere(i).centre - centre) > 0) {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
+  const SearchJoint& joint = tree_[j];
+  const double length = graph_.PathLength(parent_sphere, sphere);
+  if (!std::isfinite(length)) return kInfinite;
+  const double stretch = length / (options_.template_scale * joint.length);
+  if (stretch < 0.5) return kInfinite;
+  const PenaltyWeights& weights = options_.weights;
+  const std::vector<int> path = graph_.Path(parent_sphere, sphere);
+  // A chain at the body's own size has the stretch 1 / template_scale.
+  const double natural = stretch * options_.template_scale;
+  double cost = weights.length *
+                (Square(std::max(0.0, 1 / natural - 1)) + Square(std::max(0.0, natural - 1.5)));
+  cost += weights.direction *
+          DirectionMismatch(graph_.sphere(sphere).centre - graph_.sphere(parent_sphere).centre,
+                            joint.position - tree_[joint.parent].position);
+  if (joint.is_foot) {
+    const Sphere& foot = graph_.sphere(sphere);
+    const double height = (foot.centre.y() - foot.radius - floor_height_) / body_size_;
+    cost += weights.foot_height * Square(std::max(0.0, height) / 0.1);
+  }
+  if (sphere == parent_sphere) cost += weights.same_sphere;
+  cost += weights.local_direction * LocalDirection(joint, path);
+  if (joint.is_leaf) cost += weights.leaf * LeafPenalty(sphere, parent_sphere, path);
+  return cost <= 1 ? cost : kInfinite;
+}
+
+double PenaltyModel::ContextPenalty(int j, const std::vector<int>& spheres) const {
+  if (j == 0) return 0;
+  const SearchJoint& joint = tree_[j];
+  const PenaltyWeights& weights = options_.weights;
+  const std::vector<int> path = graph_.Path(spheres[joint.parent], spheres[j]);
+  const double length = graph_.PathLength(spheres[joint.parent], spheres[j]);
+  std::vector<char> is_used(graph_.size(), 0);
+  // Length of the embedded skeleton from joint j to every joint placed before.
+  std::vector<double> from_root(j + 1, 0.0);
+  double cost = 0;
+  for (int k = 1; k <= j; ++k) {
+    from_root[k] =
+        from_root[tree_[k].parent] + graph_.PathLength(spheres[tree_[k].parent], spheres[k]);
+  }
+  for (int k = 0; k < j; ++k) {
+    if (k > 0) {
+      for (int i : graph_.Path(spheres[tree_[k].parent], spheres[k])) is_used[i] = 1;
+    }
+    if (k == joint.parent) continue;
+    const Eigen::Vector3d offset =
+        graph_.sphere(spheres[j]).centre - graph_.sphere(spheres[k]).centre;
+    if (tree_[k].parent == joint.parent) {
+      cost += weights.direction * DirectionMismatch(offset, joint.position - tree_[k].position);
+    }
+    int ancestor = joint.parent;
+    for (int a = k; a != ancestor;) {  // indices grow from the root: climb from the larger one
+      if (a > ancestor) {
+        a = tree_[a].parent;
+      } else {
+        ancestor = tree_[ancestor].parent;
+      }
+    }
+    const double along = from_root[j] + from_root[k] - 2 * from_root[ancestor];
+    const double in_body = graph_.PathLength(spheres[k], spheres[j]);
+    if (along > 0) cost += weights.proximity * std::max(0.0, 1 - 2 * in_body / along);
+  }
+  double shared = 0;
+  for (size_t i = 1; i < path.size(); ++i) {
+    if (is_used[path[i]]) {
+      shared += (graph_.sphere(path[i]).centre - graph_.sphere(path[i - 1]).centre).norm();
+    }
+  }
+  if (length > 0) cost += weights.shared_path * shared / length;
+  if (joint.mirror >= 0 && joint.mirror < j) {
+    const int m = joint.mirror;
+    const double other = graph_.PathLength(spheres[tree_[m].parent], spheres[m]);
+    if (length > 0 && other > 0) cost += weights.symmetry * 10 * Square(std::log(length / other));
+  }
+  return cost <= 1 ? cost : kInfinite;
+}
+
+}  // namespace pleat

@@ -1,0 +1,170 @@
+#include "pleat/rigging/refinement.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <nanoflann.hpp>
+
+#include "pleat/skeleton/human_template.h"
+
+namespace pleat {
+namespace {
+
+struct SampleCloud {
+  const std::vector<MedialSample>& samples;
+  size_t kdtree_get_point_count() const { return samples.size(); }
+  double kdtree_get_pt(size_t i, size_t axis) const { return samples[i].position[axis]; }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using SampleTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, SampleCloud>,
+                                        SampleCloud, 3>;
+
+class RefinementObjective {
+ public:
+  RefinementObjective(const Eigen::Matrix3Xd& template_joints,
+                      const std::vector<MedialSample>& medial_samples,
+                      const RefinementOptions& options)
+      : options_(options),
+        template_joints_(template_joints),
+        cloud_{medial_samples},
+        tree_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+
+  // The energy at `joints`; fills the Gauss-Newton system when `hessian` is not null.
+  double Evaluate(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
+                  Eigen::VectorXd* gradient) const {
+    if (hessian) {
+      hessian->setZero(joints.size(), joints.size());
+      gradient->setZero(joints.size());
+    }
+    double energy = 0;
+    for (int b = 1; b < kNumHumanJoints; ++b) {
+      energy += Centring(joints, b, hessian, gradient);
+      energy += Shape(joints, b, hessian, gradient);
+    }
+    return energy;
+  }
+
+ private:
+  static int Parent(int b) { return HumanTemplate().parent(b); }
+
+  double Centring(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
+                  Eigen::VectorXd* gradient) const {
+    const double weight = options_.centring / options_.samples_per_bone;
+    double energy = 0;
+    for (int k = 1; k <= options_.samples_per_bone; ++k) {
+      const double share = static_cast<double>(k) / options_.samples_per_bone;
+      const Eigen::Vector3d point = (1 - share) * joints.col(Parent(b)) + share * joints.col(b);
+      size_t nearest = 0;
+      double squared_distance = 0;
+      nanoflann::KNNResultSet<double> result(1);
+      result.init(&nearest, &squared_distance);
+      tree_.findNeighbors(result, point.data(), nanoflann::SearchParams());
+      energy += weight * squared_distance;
+      if (!hessian) continue;
+      const Eigen::Vector3d residual = point - cloud_.samples[nearest].position;
+      const int ends[2] = {Parent(b), b};
+      const double factors[2] = {1 - share, share};
+      for (int i = 0; i < 2; ++i) {
+        gradient->segment<3>(3 * ends[i]) += weight * factors[i] * residual;
+        for (int j = 0; j < 2; ++j) {
+          hessian->block<3, 3>(3 * ends[i], 3 * ends[j]).diagonal().array() +=
+              weight * factors[i] * factors[j];
+        }
+      }
+    }
+    return energy;
+  }
+
+  // Length, angle and symmetry of bone b.
+  double Shape(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
+               Eigen::VectorXd* gradient) const {
+    const Eigen::Vector3d bone = joints.col(b) - joints.col(Parent(b));
+    const Eigen::Vector3d target = template_joints_.col(b) - template_joints_.col(Parent(b));
+    const double length = std::max(bone.norm(), 1e-9), target_length = target.norm();
+    const Eigen::Vector3d direction = bone / length;
+
+    const double length_residual = length / target_length - 1;
+    AddRow(options_.length, length_residual, {{Parent(b), b}}, {direction / target_length}, hessian,
+           gradient);
+    double energy = options_.length * length_residual * length_residual;
+
+    // |u - t|^2 = 2 (1 - cos)
+    const Eigen::Vector3d angle_residual = direction - target / target_length;
+    const Eigen::Matrix3d turn =
+        (Eigen::Matrix3d::Identity() - direction * direction.transpose()) / length;
+    for (int k = 0; k < 3; ++k) {
+      AddRow(0.5 * options_.angle, angle_residual[k], {{Parent(b), b}}, {turn.row(k).transpose()},
+             hessian, gradient);
+    }
+    energy += 0.5 * options_.angle * angle_residual.squaredNorm();
+
+    const int mirror = HumanMirror()[b];
+    if (mirror > b) {
+      const Eigen::Vector3d other = joints.col(mirror) - joints.col(Parent(mirror));
+      const double other_length = std::max(other.norm(), 1e-9);
+      const double residual = (length - other_length) / target_length;
+      AddRow(options_.symmetry, residual, {{Parent(b), b}, {Parent(mirror), mirror}},
+             {direction / target_length, -other / (other_length * target_length)}, hessian,
+             gradient);
+      energy += options_.symmetry * residual * residual;
+    }
+    return energy;
+  }
+
+  // One residual that depends on bones (from, to) with derivative `slopes` by to - from.
+  static void AddRow(double weight, double residual, const std::vector<std::pair<int, int>>& bones,
+                     const std::vector<Eigen::Vector3d>& slopes, Eigen::MatrixXd* hessian,
+                     Eigen::VectorXd* gradient) {
+    if (!hessian) return;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(gradient->size());
+    for (size_t i = 0; i < bones.size(); ++i) {
+      row.segment<3>(3 * bones[i].first) -= slopes[i];
+      row.segment<3>(3 * bones[i].second) += slopes[i];
+    }
+    *gradient += weight * residual * row;
+    hessian->noalias() += weight * row * row.transpose();
+  }
+
+  const RefinementOptions& options_;
+  const Eigen::Matrix3Xd& template_joints_;
+  SampleCloud cloud_;
+  SampleTree tree_;
+};
+
+}  // namespace
+
+Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
+                                 const Eigen::Matrix3Xd& template_joints,
+                                 const std::vector<MedialSample>& medial_samples,
+                                 const RefinementOptions& options) {
+  const RefinementObjective objective(template_joints, medial_samples, options);
+  Eigen::Matrix3Xd current = joints;
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+  double damping = 1e-3;
+  double energy = objective.Evaluate(current, &hessian, &gradient);
+  for (int iteration = 0; iteration < options.max_iterations && damping < 1e8; ++iteration) {
+    Eigen::MatrixXd damped = hessian;
+    damped.diagonal() *= 1 + damping;
+    const Eigen::VectorXd step = damped.ldlt().solve(-gradient);
+    const Eigen::Matrix3Xd moved =
+        current + Eigen::Map<const Eigen::Matrix3Xd>(step.data(), 3, current.cols());
+    const double moved_energy = objective.Evaluate(moved, nullptr, nullptr);
+    if (!(moved_energy < energy)) {
+      damping *= 10;
+      continue;
+    }
+    const bool converged = energy - moved_energy < 1e-6 * energy;
+    current = moved;
+    damping = std::max(1e-9, damping * 0.1);
+    energy = objective.Evaluate(current, &hessian, &gradient);
+    if (converged) break;
+  }
+  return current;
+}
+
+}  // namespace pleat

@@ -1,0 +1,85 @@
+#include "pleat/rigging/sphere_graph.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+#include <utility>
+
+namespace pleat {
+namespace {
+
+bool IsGabrielEmpty(const std::vector<Sphere>& spheres, size_t i, size_t j) {
+  const Eigen::Vector3d middle = 0.5 * (spheres[i].centre + spheres[j].centre);
+  const double squared_reach = (spheres[i].centre - middle).squaredNorm();
+  for (size_t k = 0; k < spheres.size(); ++k) {
+    if (k != i && k != j && (spheres[k].centre - middle).squaredNorm() < squared_reach) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+SphereGraph::SphereGraph(std::vector<Sphere> spheres, const DistanceField& field)
+    : spheres_(std::move(spheres)), neighbours_(spheres_.size()) {
+  for (size_t i = 0; i < spheres_.size(); ++i) {
+    for (size_t j = i + 1; j < spheres_.size(); ++j) {
+      const Sphere &a = spheres_[i], &b = spheres_[j];
+      const double length = (a.centre - b.centre).norm();
+      const bool overlap = length < a.radius + b.radius;
+      if (!overlap &&
+          !(IsGabrielEmpty(spheres_, i, j) &&
+            field.MaxAlongSegment(a.centre, b.centre) <= -0.5 * std::min(a.radius, b.radius))) {
+        continue;
+      }
+      neighbours_[i].push_back(static_cast<int>(j));
+      neighbours_[j].push_back(static_cast<int>(i));
+    }
+  }
+  ComputeShortestPaths();
+}
+
+SphereGraph::SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pair<int, int>>& edges)
+    : spheres_(std::move(spheres)), neighbours_(spheres_.size()) {
+  for (const auto& [i, j] : edges) {
+    neighbours_[i].push_back(j);
+    neighbours_[j].push_back(i);
+  }
+  ComputeShortestPaths();
+}
+
+void SphereGraph::ComputeShortestPaths() {
+  const int num = size();
+  distances_.setConstant(num, num, std::numeric_limits<double>::infinity());
+  predecessors_.setConstant(num, num, -1);
+  using Entry = std::pair<double, int>;
+  for (int start = 0; start < num; ++start) {
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+    distances_(start, start) = 0;
+    queue.push({0, start});
+    while (!queue.empty()) {
+      const auto [length, i] = queue.top();
+      queue.pop();
+      if (length > distances_(i, start)) continue;
+      for (int j : neighbours_[i]) {
+        const double through = length + (spheres_[i].centre - spheres_[j].centre).norm();
+        if (through < distances_(j, start)) {
+          distances_(j, start) = through;
+          predecessors_(j, start) = i;
+          queue.push({through, j});
+        }
+      }
+    }
+  }
+}
+
+std::vector<int> SphereGraph::Path(int from, int to) const {
+  std::vector<int> path;
+  if (from != to && predecessors_(to, from) < 0) return path;
+  for (int i = to; i >= 0; i = predecessors_(i, from)) path.push_back(i);
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+}  // namespace pleat
