@@ -1,0 +1,24 @@
+// Sequences, jobs and models on the wire. FromProto: kInvalidArgument names the field.
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "pleat/character/character_service.h"
+#include "pleat/v1/job_service.pb.h"
+#include "pleat/v1/model_service.pb.h"
+#include "pleat/v1/sequence_service.pb.h"
+
+namespace pleat {
+
+v1::Sequence ToProto(const SequenceInfo& info);
+absl::StatusOr<SequenceInfo> FromProto(const v1::Sequence& message);
+
+v1::JobState ToProto(JobState state);
+absl::StatusOr<JobState> FromProto(v1::JobState state);
+
+v1::Job ToProto(const JobInfo& info);
+absl::StatusOr<JobInfo> FromProto(const v1::Job& message);
+
+v1::Model ToProto(const ModelInfo& info);
+absl::StatusOr<ModelInfo> FromProto(const v1::Model& message);
+
+}  // namespace pleat

@@ -1,0 +1,47 @@
+// Frame rates, skeletons, poses and errors on the wire. FromProto: kInvalidArgument names the
+// field.
+#pragma once
+
+#include <google/protobuf/repeated_ptr_field.h>
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/mesh/error_metrics.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/skeleton.h"
+#include "pleat/v1/common.pb.h"
+
+namespace pleat {
+
+inline constexpr int kMaxWireJoints = 1024;
+inline constexpr int kMaxWireNameBytes = 256;
+inline constexpr int kIdLength = 64;  // hexadecimal digits of a content id
+
+// OK when `id` is 64 lower-case hexadecimal digits: nothing else may reach a file name.
+absl::Status CheckContentId(const std::string& id, absl::string_view what);
+// OK when `name` is at most kMaxWireNameBytes bytes.
+absl::Status CheckName(const std::string& name, absl::string_view what);
+
+v1::FrameRate ToProto(const FrameRate& frame_rate);
+absl::StatusOr<FrameRate> FromProto(const v1::FrameRate& message);
+
+v1::Skeleton ToProto(const Skeleton& skeleton);
+absl::StatusOr<Skeleton> FromProto(const v1::Skeleton& message);
+
+v1::Pose ToProto(const Pose& pose);
+// Any number of joints up to kMaxWireJoints; the evaluator compares it with its skeleton.
+absl::StatusOr<Pose> FromProto(const v1::Pose& message);
+// Message i of `what` is named in errors as "what[i]".
+absl::StatusOr<std::vector<Pose>> FromProto(
+    const google::protobuf::RepeatedPtrField<v1::Pose>& messages, absl::string_view what);
+
+v1::PoseTrack ToProto(const PoseTrack& track);
+absl::StatusOr<PoseTrack> FromProto(const v1::PoseTrack& message);
+
+v1::ErrorSummary ToProto(const ErrorSummary& summary);  // without frame_mean_percent
+ErrorSummary FromProto(const v1::ErrorSummary& message);
+
+}  // namespace pleat

@@ -1,0 +1,35 @@
+// Frame streams on the wire. FromProto: kInvalidArgument names the field.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/character/character_service.h"
+#include "pleat/codec/frame_encoder.h"
+#include "pleat/codec/stream_header.h"
+#include "pleat/v1/pose_service.pb.h"
+
+namespace pleat {
+
+// Which character is shown and how.
+struct CharacterQuery {
+  std::string model_id;
+  std::vector<double> bone_scales;  // J or empty
+  bool skinned_only = false;
+};
+
+v1::Character ToProto(const CharacterQuery& query);
+absl::StatusOr<CharacterQuery> FromProto(const v1::Character& message);
+
+v1::FrameEncoding ToProto(FrameEncoding encoding);
+absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding);  // unspecified: point cloud
+
+v1::StreamOptions ToProto(const FrameEncoderOptions& options);  // box_margin is the server's own
+absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message);
+
+v1::StreamHeader ToProto(const StreamHeader& header);
+// Checks numbers only: FrameDecoder::Create checks the rest against its limits.
+absl::StatusOr<StreamHeader> FromProto(const v1::StreamHeader& message);
+
+}  // namespace pleat

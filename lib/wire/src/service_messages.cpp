@@ -1,0 +1,180 @@
+#include "pleat/wire/service_messages.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "pleat/wire/training_messages.h"
+#include "pleat/wire/utf8.h"
+
+namespace pleat {
+namespace {
+
+absl::Status CheckCount(int64_t count, absl::string_view what) {
+  if (count >= 0) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(what, " is ", count, ", not a count"));
+}
+
+}  // namespace
+
+v1::Sequence ToProto(const SequenceInfo& info) {
+  v1::Sequence message;
+  message.set_id(info.id);
+  message.set_name(ToValidUtf8(info.name));
+  message.set_num_frames(info.num_frames);
+  message.set_num_vertices(info.num_vertices);
+  message.set_num_faces(info.num_faces);
+  *message.mutable_frame_rate() = ToProto(info.frame_rate);
+  message.set_size_bytes(info.size_bytes);
+  return message;
+}
+
+absl::StatusOr<SequenceInfo> FromProto(const v1::Sequence& message) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), "sequence.id"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_frames(), "sequence.num_frames"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_vertices(), "sequence.num_vertices"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_faces(), "sequence.num_faces"));
+  SequenceInfo info;
+  info.id = message.id();
+  info.name = message.name();
+  info.num_frames = message.num_frames();
+  info.num_vertices = message.num_vertices();
+  info.num_faces = message.num_faces();
+  PLEAT_ASSIGN_OR_RETURN(info.frame_rate, FromProto(message.frame_rate()));
+  info.size_bytes = message.size_bytes();
+  return info;
+}
+
+v1::JobState ToProto(JobState state) {
+  switch (state) {
+    case JobState::kQueued:
+      return v1::JOB_STATE_QUEUED;
+    case JobState::kRunning:
+      return v1::JOB_STATE_RUNNING;
+    case JobState::kSucceeded:
+      return v1::JOB_STATE_SUCCEEDED;
+    case JobState::kFailed:
+      return v1::JOB_STATE_FAILED;
+    case JobState::kCancelled:
+      return v1::JOB_STATE_CANCELLED;
+  }
+  return v1::JOB_STATE_UNSPECIFIED;
+}
+
+absl::StatusOr<JobState> FromProto(v1::JobState state) {
+  switch (state) {
+    case v1::JOB_STATE_QUEUED:
+      return JobState::kQueued;
+    case v1::JOB_STATE_RUNNING:
+      return JobState::kRunning;
+    case v1::JOB_STATE_SUCCEEDED:
+      return JobState::kSucceeded;
+    case v1::JOB_STATE_FAILED:
+      return JobState::kFailed;
+    case v1::JOB_STATE_CANCELLED:
+      return JobState::kCancelled;
+    default:
+      return absl::InvalidArgumentError(
+          absl::StrCat("job.state is ", static_cast<int>(state), ", which is unknown"));
+  }
+}
+
+v1::Job ToProto(const JobInfo& info) {
+  v1::Job message;
+  message.set_id(info.id);
+  message.set_state(ToProto(info.state));
+  for (const std::string& id : info.sequence_ids) message.add_sequence_ids(id);
+  *message.mutable_options() = ToProto(info.options);
+  message.set_model_name(ToValidUtf8(info.model_name));
+  message.set_stage(ToValidUtf8(info.stage));
+  message.set_fraction(info.fraction);
+  if (info.objective) message.set_objective(*info.objective);
+  if (info.eta_seconds) message.set_eta_seconds(*info.eta_seconds);
+  for (const std::string& warning : info.warnings) message.add_warnings(ToValidUtf8(warning));
+  if (!info.error.ok()) {
+    message.mutable_error()->set_code(static_cast<int>(info.error.code()));
+    message.mutable_error()->set_message(ToValidUtf8(std::string(info.error.message())));
+  }
+  message.set_model_id(info.model_id);
+  return message;
+}
+
+absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
+  if (message.id().empty() || message.id().size() > kIdLength) {
+    return absl::InvalidArgumentError("job.id must have 1 to 64 bytes");
+  }
+  if (!(message.fraction() >= 0 && message.fraction() <= 1)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("job.fraction is ", message.fraction(), ", not 0 to 1"));
+  }
+  JobInfo info;
+  info.id = message.id();
+  PLEAT_ASSIGN_OR_RETURN(info.state, FromProto(message.state()));
+  info.sequence_ids.assign(message.sequence_ids().begin(), message.sequence_ids().end());
+  for (const std::string& id : info.sequence_ids) {
+    PLEAT_RETURN_IF_ERROR(CheckContentId(id, "job.sequence_ids"));
+  }
+  PLEAT_ASSIGN_OR_RETURN(info.options, FromProto(message.options()));
+  info.model_name = message.model_name();
+  info.stage = message.stage();
+  info.fraction = message.fraction();
+  if (message.has_objective()) info.objective = message.objective();
+  if (message.has_eta_seconds()) info.eta_seconds = message.eta_seconds();
+  info.warnings.assign(message.warnings().begin(), message.warnings().end());
+  if (message.has_error()) {
+    const int code = message.error().code();
+    // An unknown or missing code must not turn an error into success.
+    const bool known = code >= 1 && code <= 16;
+    info.error =
+        absl::Status(known ? static_cast<absl::StatusCode>(code) : absl::StatusCode::kUnknown,
+                     message.error().message());
+  }
+  info.model_id = message.model_id();
+  if (!info.model_id.empty()) {
+    PLEAT_RETURN_IF_ERROR(CheckContentId(info.model_id, "job.model_id"));
+  }
+  return info;
+}
+
+v1::Model ToProto(const ModelInfo& info) {
+  v1::Model message;
+  message.set_id(info.id);
+  message.set_name(ToValidUtf8(info.name));
+  *message.mutable_skeleton() = ToProto(info.skeleton);
+  *message.mutable_frame_rate() = ToProto(info.frame_rate);
+  message.set_num_vertices(info.num_vertices);
+  message.set_num_faces(info.num_faces);
+  message.set_num_control_vertices(info.num_control_vertices);
+  message.set_num_components(info.num_components);
+  message.set_size_bytes(info.size_bytes);
+  message.set_memory_bytes(info.memory_bytes);
+  *message.mutable_options() = ToProto(info.options);
+  *message.mutable_record() = ToProto(info.record);
+  return message;
+}
+
+absl::StatusOr<ModelInfo> FromProto(const v1::Model& message) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), "model.id"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_vertices(), "model.num_vertices"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_faces(), "model.num_faces"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_control_vertices(), "model.num_control_vertices"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_components(), "model.num_components"));
+  ModelInfo info;
+  info.id = message.id();
+  info.name = message.name();
+  PLEAT_ASSIGN_OR_RETURN(info.skeleton, FromProto(message.skeleton()));
+  PLEAT_ASSIGN_OR_RETURN(info.frame_rate, FromProto(message.frame_rate()));
+  info.num_vertices = message.num_vertices();
+  info.num_faces = message.num_faces();
+  info.num_control_vertices = message.num_control_vertices();
+  info.num_components = message.num_components();
+  info.size_bytes = message.size_bytes();
+  info.memory_bytes = message.memory_bytes();
+  PLEAT_ASSIGN_OR_RETURN(info.options, FromProto(message.options()));
+  info.record = FromProto(message.record());
+  return info;
+}
+
+}  // namespace pleat

@@ -1,0 +1,108 @@
+#include "pleat/wire/stream_messages.h"
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+
+namespace pleat {
+
+v1::Character ToProto(const CharacterQuery& query) {
+  v1::Character message;
+  message.set_model_id(query.model_id);
+  for (const double scale : query.bone_scales) message.add_bone_scales(scale);
+  message.set_skinned_only(query.skinned_only);
+  return message;
+}
+
+absl::StatusOr<CharacterQuery> FromProto(const v1::Character& message) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(message.model_id(), "character.model_id"));
+  if (message.bone_scales_size() > kMaxWireJoints) {
+    return absl::InvalidArgumentError(absl::StrCat("character.bone_scales has ",
+                                                   message.bone_scales_size(),
+                                                   " entries, the limit is ", kMaxWireJoints));
+  }
+  CharacterQuery query;
+  query.model_id = message.model_id();
+  query.bone_scales.assign(message.bone_scales().begin(), message.bone_scales().end());
+  query.skinned_only = message.skinned_only();
+  return query;
+}
+
+v1::FrameEncoding ToProto(FrameEncoding encoding) {
+  return encoding == FrameEncoding::kDracoMesh ? v1::FRAME_ENCODING_DRACO_MESH
+                                               : v1::FRAME_ENCODING_DRACO_POINT_CLOUD;
+}
+
+absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding) {
+  switch (encoding) {
+    case v1::FRAME_ENCODING_DRACO_MESH:
+      return FrameEncoding::kDracoMesh;
+    case v1::FRAME_ENCODING_UNSPECIFIED:
+    case v1::FRAME_ENCODING_DRACO_POINT_CLOUD:
+      return FrameEncoding::kDracoPointCloud;
+    default:
+      return absl::InvalidArgumentError(
+          absl::StrCat("encoding is ", static_cast<int>(encoding), ", which is unknown"));
+  }
+}
+
+v1::StreamOptions ToProto(const FrameEncoderOptions& options) {
+  v1::StreamOptions message;
+  message.set_encoding(ToProto(options.encoding));
+  message.set_position_bits(options.position_bits);
+  message.set_speed(options.speed);
+  return message;
+}
+
+absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message) {
+  FrameEncoderOptions options;
+  PLEAT_ASSIGN_OR_RETURN(options.encoding, FromProto(message.encoding()));
+  if (message.position_bits() != 0) options.position_bits = message.position_bits();
+  if (options.position_bits < QuantizationBox::kMinBits ||
+      options.position_bits > QuantizationBox::kMaxBits) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("options.position_bits is ", options.position_bits, ", allowed are ",
+                     QuantizationBox::kMinBits, " to ", QuantizationBox::kMaxBits));
+  }
+  if (message.has_speed()) options.speed = message.speed();
+  if (options.speed < 0 || options.speed > 10) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("options.speed is ", options.speed, ", allowed are 0 to 10"));
+  }
+  return options;
+}
+
+v1::StreamHeader ToProto(const StreamHeader& header) {
+  v1::StreamHeader message;
+  message.set_encoding(ToProto(header.encoding));
+  message.set_num_vertices(header.num_vertices);
+  message.set_num_points(header.num_points);
+  message.set_num_triangles(header.num_triangles);
+  v1::QuantizationBox* box = message.mutable_box();
+  box->set_origin_x(header.box.origin_m.x());
+  box->set_origin_y(header.box.origin_m.y());
+  box->set_origin_z(header.box.origin_m.z());
+  box->set_range(header.box.range_m);
+  box->set_bits(header.box.bits);
+  message.set_topology_draco(header.topology);
+  message.mutable_vertex_order()->Add(header.vertex_order.begin(), header.vertex_order.end());
+  return message;
+}
+
+absl::StatusOr<StreamHeader> FromProto(const v1::StreamHeader& message) {
+  StreamHeader header;
+  PLEAT_ASSIGN_OR_RETURN(header.encoding, FromProto(message.encoding()));
+  header.num_vertices = message.num_vertices();
+  header.num_points = message.num_points();
+  header.num_triangles = message.num_triangles();
+  const v1::QuantizationBox& box = message.box();
+  header.box.origin_m << box.origin_x(), box.origin_y(), box.origin_z();
+  header.box.range_m = box.range();
+  header.box.bits = box.bits();
+  PLEAT_RETURN_IF_ERROR(header.box.Validate());
+  header.topology = message.topology_draco();
+  header.vertex_order.assign(message.vertex_order().begin(), message.vertex_order().end());
+  return header;
+}
+
+}  // namespace pleat

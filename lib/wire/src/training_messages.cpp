@@ -1,0 +1,78 @@
+#include "pleat/wire/training_messages.h"
+
+#include <string>
+
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "pleat/wire/utf8.h"
+
+namespace pleat {
+
+v1::TrainOptions ToProto(const TrainOptions& options) {
+  v1::TrainOptions message;
+  message.set_learner(options.learner);
+  message.set_fit(options.fit);
+  message.set_detail_axes(options.detail_axes);
+  message.set_rotations(options.rotations);
+  message.set_history(options.history);
+  message.set_resolution_percent(options.resolution_percent);
+  message.set_rest_frame(options.rest_frame);
+  message.set_yaw_degrees(options.yaw_degrees);
+  message.set_latent_dimensions(options.latent_dimensions);
+  message.set_iterations(options.iterations);
+  message.set_dynamics_weight(options.dynamics_weight);
+  message.set_detail_energy(options.detail_energy);
+  message.set_max_components(options.max_components);
+  message.set_seed(options.seed);
+  return message;
+}
+
+absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
+  TrainOptions options;
+  if (message.has_learner()) options.learner = message.learner();
+  if (message.has_fit()) options.fit = message.fit();
+  if (message.has_detail_axes()) options.detail_axes = message.detail_axes();
+  if (message.has_rotations()) options.rotations = message.rotations();
+  if (message.has_history()) options.history = message.history();
+  if (message.has_resolution_percent()) options.resolution_percent = message.resolution_percent();
+  if (message.has_rest_frame()) options.rest_frame = message.rest_frame();
+  if (message.has_yaw_degrees()) options.yaw_degrees = message.yaw_degrees();
+  if (message.has_latent_dimensions()) options.latent_dimensions = message.latent_dimensions();
+  if (message.has_iterations()) options.iterations = message.iterations();
+  if (message.has_dynamics_weight()) options.dynamics_weight = message.dynamics_weight();
+  if (message.has_detail_energy()) options.detail_energy = message.detail_energy();
+  if (message.has_max_components()) options.max_components = message.max_components();
+  if (message.has_seed()) options.seed = message.seed();
+  PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
+  return options;
+}
+
+v1::TrainingRecord ToProto(const TrainingRecord& record) {
+  v1::TrainingRecord message;
+  message.set_learner(record.learner);
+  message.set_num_frames(record.num_frames);
+  message.set_rest_frame(record.rest_frame);
+  message.set_yaw_degrees(record.yaw_degrees);
+  message.set_rig_residual(record.rig_residual);
+  message.set_diagonal_m(record.diagonal_m);
+  *message.mutable_fit() = ToProto(record.fit);
+  *message.mutable_reconstruction() = ToProto(record.reconstruction);
+  for (const std::string& warning : record.warnings) message.add_warnings(ToValidUtf8(warning));
+  return message;
+}
+
+TrainingRecord FromProto(const v1::TrainingRecord& message) {
+  TrainingRecord record;
+  record.learner = message.learner();
+  record.num_frames = message.num_frames();
+  record.rest_frame = message.rest_frame();
+  record.yaw_degrees = message.yaw_degrees();
+  record.rig_residual = message.rig_residual();
+  record.diagonal_m = message.diagonal_m();
+  record.fit = FromProto(message.fit());
+  record.reconstruction = FromProto(message.reconstruction());
+  record.warnings.assign(message.warnings().begin(), message.warnings().end());
+  return record;
+}
+
+}  // namespace pleat

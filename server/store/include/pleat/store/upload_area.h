@@ -1,0 +1,78 @@
+// Uploads that have not ended: they survive broken connections and restarts.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/store/blob_store.h"
+
+namespace pleat {
+
+class UploadArea;
+
+// The right of one writer to add to one upload. Destroying it keeps what has arrived.
+class Upload {
+ public:
+  ~Upload();
+  Upload(const Upload&) = delete;
+  Upload& operator=(const Upload&) = delete;
+
+  const std::string& id() const { return id_; }
+  uint64_t received_bytes() const { return received_bytes_; }
+  uint64_t size_bytes() const { return size_bytes_; }
+
+  // kOutOfRange when more than the declared size would arrive.
+  absl::Status Append(std::string_view bytes);
+  // The complete content, verified. kFailedPrecondition when bytes are missing; kDataLoss when
+  // they do not have the declared SHA-256: then the upload starts again at 0.
+  absl::StatusOr<std::string> ReadComplete();
+  // Moves the complete upload into `blobs`; call after ReadComplete.
+  absl::Status MoveTo(BlobStore* blobs);
+  // Forgets what has arrived.
+  void Discard();
+
+ private:
+  friend class UploadArea;
+  Upload(UploadArea* area, std::string id, std::string path, uint64_t size_bytes, int fd,
+         uint64_t received_bytes);
+
+  UploadArea* area_;
+  std::string id_, path_;
+  uint64_t size_bytes_ = 0, received_bytes_ = 0;
+  int fd_ = -1;
+};
+
+// Thread-safe.
+class UploadArea {
+ public:
+  // Uses (and makes) `folder`; removes uploads that nobody has touched for `max_age_hours`.
+  static absl::StatusOr<std::unique_ptr<UploadArea>> Open(std::string folder,
+                                                          int max_age_hours = 7 * 24);
+
+  // Bytes of the upload `id` that have arrived, 0 when there is none.
+  uint64_t ReceivedBytes(const std::string& id) const;
+
+  // Goes on with the upload `id` of `size_bytes` in all at `offset_bytes`. kAborted when another
+  // writer holds it, kOutOfRange (naming the right offset) when `offset_bytes` is not what has
+  // arrived; offset 0 starts again.
+  absl::StatusOr<std::unique_ptr<Upload>> Begin(const std::string& id, uint64_t size_bytes,
+                                                uint64_t offset_bytes);
+
+ private:
+  friend class Upload;
+  explicit UploadArea(std::string folder) : folder_(std::move(folder)) {}
+  std::string PathOf(const std::string& id) const { return folder_ + "/" + id + ".part"; }
+  void Release(const std::string& id);
+
+  const std::string folder_;
+  std::mutex mutex_;
+  std::set<std::string> active_;  // guarded by mutex_
+};
+
+}  // namespace pleat

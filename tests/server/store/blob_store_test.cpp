@@ -1,0 +1,91 @@
+#include "pleat/store/blob_store.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "pleat/base/file.h"
+#include "pleat/base/sha256.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(BlobStoreTest, KeepsContentUnderItsHash) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.File("blobs"), 0));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string id, blobs.Put("hello"));
+  EXPECT_EQ(id, ToHex(ComputeSha256("hello")));
+  EXPECT_EQ(blobs.Put("hello").value(), id);
+  EXPECT_EQ(blobs.List()->size(), 1u);
+  EXPECT_EQ(blobs.Get(id).value(), "hello");
+  EXPECT_EQ(blobs.Size(id).value(), 5u);
+  EXPECT_EQ(blobs.GetRange(id, 1, 3).value(), "ell");
+  EXPECT_EQ(blobs.GetRange(id, 3, 100).value(), "lo");
+  EXPECT_EQ(blobs.GetRange(id, 5, 100).value(), "");
+  EXPECT_THAT(blobs.GetRange(id, 6, 1), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
+  EXPECT_THAT(blobs.Delete(id), IsOk());
+  EXPECT_THAT(blobs.Get(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(blobs.Delete(id), IsOk());
+}
+
+TEST(BlobStoreTest, IdsNeverBecomeOtherPaths) {
+  TemporaryFolder folder;
+  ASSERT_THAT(WriteFile(folder.File("secret"), "secret"), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.File("blobs"), 0));
+  for (const std::string& id :
+       {std::string("../secret"), std::string(), std::string("ab"), std::string(64, 'G'),
+        "../" + std::string(61, 'a'), std::string(63, 'a') + std::string(1, '\0')}) {
+    EXPECT_THAT(blobs.Get(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+    EXPECT_THAT(blobs.Delete(id), IsOk());
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.File("secret")));
+}
+
+TEST(BlobStoreTest, NoticesWhenTheDiskGivesOtherBytes) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string id, blobs.Put("hello"));
+  std::ofstream(folder.path() + "/" + id.substr(0, 2) + "/" + id) << "jello";
+  EXPECT_THAT(blobs.Get(id), HasStatus(absl::StatusCode::kDataLoss, HasSubstr("changed")));
+}
+
+TEST(BlobStoreTest, RemovesUnfinishedWritesOfACrash) {
+  TemporaryFolder folder;
+  ASSERT_THAT(WriteFile(folder.File("ab/abc.tmp-123456"), "half"), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("ab/abc.tmp-123456")));
+}
+
+TEST(BlobStoreTest, KeepsTheReserve) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      BlobStore blobs, BlobStore::Open(folder.path(), std::numeric_limits<uint64_t>::max() / 2));
+  EXPECT_THAT(blobs.Put("hello"),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("reserve")));
+  EXPECT_TRUE(blobs.List()->empty());
+}
+
+TEST(BlobStoreTest, ManyWritersOfTheSameContent) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  const std::string content(100'000, 'x');
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      for (int round = 0; round < 5; ++round) EXPECT_TRUE(blobs.Put(content).ok());
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(blobs.List()->size(), 1u);
+  EXPECT_EQ(blobs.Get(blobs.List()->front()).value(), content);
+}
+
+}  // namespace
+}  // namespace pleat

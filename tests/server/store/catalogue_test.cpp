@@ -1,0 +1,105 @@
+#include "pleat/store/catalogue.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <thread>
+
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(CatalogueTest, KeepsEntriesInOrderAcrossRestarts) {
+  TemporaryFolder folder;
+  const std::string binary("\0\xff\n'\"", 5);
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db")));
+    for (const char* id : {"b", "a", "c"}) {
+      ASSERT_THAT(catalogue->Put(EntryKind::kJob, {id, binary, 1}), IsOk());
+    }
+    ASSERT_THAT(catalogue->Put(EntryKind::kJob, {"a", "changed", 2}), IsOk());
+    ASSERT_THAT(catalogue->Put(EntryKind::kModel, {"a", "model", 0}), IsOk());
+    ASSERT_THAT(catalogue->Delete(EntryKind::kJob, "c"), IsOk());
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, catalogue->List(EntryKind::kJob));
+  ASSERT_EQ(jobs.size(), 2u);
+  EXPECT_EQ(jobs[0].id, "b");
+  EXPECT_EQ(jobs[0].record, binary);
+  EXPECT_EQ(jobs[1].id, "a");
+  EXPECT_EQ(jobs[1].record, "changed");
+  EXPECT_EQ(jobs[1].attempts, 2);
+  EXPECT_EQ(catalogue->Get(EntryKind::kModel, "a")->record, "model");
+  EXPECT_THAT(catalogue->Get(EntryKind::kJob, "c"),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("no job 'c'")));
+  EXPECT_THAT(catalogue->Delete(EntryKind::kJob, "c"),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_TRUE(catalogue->List(EntryKind::kSequence)->empty());
+}
+
+// A child writes as fast as it can and is killed; every write that it reported must be there.
+TEST(CatalogueTest, ReportedWritesSurviveAKill) {
+  TemporaryFolder folder;
+  for (int round = 0; round < 3; ++round) {
+    int pipe_fds[2];
+    ASSERT_EQ(pipe(pipe_fds), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      auto catalogue = Catalogue::Open(folder.File("c.db"));
+      for (int i = 0; catalogue.ok(); ++i) {
+        const std::string id = std::to_string(round) + "/" + std::to_string(i);
+        if (!(*catalogue)->Put(EntryKind::kJob, {id, "r", 0}).ok()) _exit(1);
+        if (write(pipe_fds[1], &i, sizeof i) != sizeof i) _exit(1);
+      }
+      _exit(1);
+    }
+    close(pipe_fds[1]);
+    int last = -1, value = 0;
+    while (last < 20 && read(pipe_fds[0], &value, sizeof value) == sizeof value) last = value;
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    while (read(pipe_fds[0], &value, sizeof value) == sizeof value) last = value;
+    close(pipe_fds[0]);
+    ASSERT_GE(last, 20);
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db")));
+    for (int i = 0; i <= last; ++i) {
+      EXPECT_THAT(catalogue->Get(EntryKind::kJob, std::to_string(round) + "/" + std::to_string(i)),
+                  IsOk());
+    }
+  }
+}
+
+TEST(CatalogueTest, RefusesDamageAndNewerVersions) {
+  TemporaryFolder folder;
+  std::ofstream(folder.File("damaged.db")) << std::string(8192, 'x');
+  EXPECT_THAT(Catalogue::Open(folder.File("damaged.db")),
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("catalogue")));
+  EXPECT_FALSE(Catalogue::Open(folder.File("no/such/folder.db")).ok());
+}
+
+TEST(CatalogueTest, ManyThreads) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db")));
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      for (int round = 0; round < 10; ++round) {
+        const std::string id = std::to_string(i * 100 + round);
+        EXPECT_TRUE(catalogue->Put(EntryKind::kJob, {id, "r", 0}).ok());
+        EXPECT_TRUE(catalogue->Get(EntryKind::kJob, id).ok());
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(catalogue->List(EntryKind::kJob)->size(), 40u);
+}
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,94 @@
+#include "pleat/store/upload_area.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "pleat/base/file.h"
+#include "pleat/base/sha256.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+class UploadAreaTest : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  std::unique_ptr<UploadArea> area_ = UploadArea::Open(folder_.File("uploads")).value();
+  BlobStore blobs_ = BlobStore::Open(folder_.File("blobs"), 0).value();
+  const std::string content_ = "a sequence in a few bytes";
+  const std::string id_ = ToHex(ComputeSha256(content_));
+};
+
+TEST_F(UploadAreaTest, GoesOnAfterABreakAndARestart) {
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, content_.size(), 0));
+    ASSERT_THAT(upload->Append(content_.substr(0, 7)), IsOk());
+  }
+  area_ = UploadArea::Open(folder_.File("uploads")).value();
+  EXPECT_EQ(area_->ReceivedBytes(id_), 7u);
+  EXPECT_THAT(area_->Begin(id_, content_.size(), 9),
+              HasStatus(absl::StatusCode::kOutOfRange, HasSubstr("has 7")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, content_.size(), 7));
+  EXPECT_THAT(upload->ReadComplete(),
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("7 of 25")));
+  ASSERT_THAT(upload->Append(content_.substr(7)), IsOk());
+  EXPECT_EQ(upload->ReadComplete().value(), content_);
+  ASSERT_THAT(upload->MoveTo(&blobs_), IsOk());
+  EXPECT_EQ(blobs_.Get(id_).value(), content_);
+  EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
+}
+
+TEST_F(UploadAreaTest, OneWriterAtATime) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, content_.size(), 0));
+  ASSERT_THAT(upload->Append("abc"), IsOk());
+  EXPECT_THAT(area_->Begin(id_, content_.size(), 0),
+              HasStatus(absl::StatusCode::kAborted, HasSubstr("another call")));
+  EXPECT_EQ(upload->received_bytes(), 3u);
+  upload.reset();
+  EXPECT_THAT(area_->Begin(id_, content_.size(), 3), IsOk());
+}
+
+TEST_F(UploadAreaTest, WrongContentStartsAgain) {
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, 3, 0));
+    ASSERT_THAT(upload->Append("abc"), IsOk());
+    EXPECT_THAT(upload->ReadComplete(),
+                HasStatus(absl::StatusCode::kDataLoss, HasSubstr("SHA-256")));
+  }
+  EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, content_.size(), 0));
+  ASSERT_THAT(upload->Append(content_), IsOk());
+  EXPECT_EQ(upload->ReadComplete().value(), content_);
+}
+
+TEST_F(UploadAreaTest, MoreThanDeclaredIsRefused) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, 3, 0));
+  EXPECT_THAT(upload->Append("abcd"), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
+  EXPECT_EQ(upload->received_bytes(), 0u);
+}
+
+TEST_F(UploadAreaTest, RefusesIdsThatAreNoHash) {
+  for (const char* id : {"", "../x", "abc"}) {
+    EXPECT_THAT(area_->Begin(id, 3, 0),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("hexadecimal")));
+    EXPECT_EQ(area_->ReceivedBytes(id), 0u);
+  }
+}
+
+TEST_F(UploadAreaTest, ForgetsOldUploads) {
+  { ASSERT_THAT((*area_->Begin(id_, 10, 0))->Append("abc"), IsOk()); }
+  const std::string path = folder_.File("uploads/" + id_ + ".part");
+  std::filesystem::last_write_time(
+      path, std::filesystem::file_time_type::clock::now() - std::chrono::hours(100));
+  area_ = UploadArea::Open(folder_.File("uploads"), 200).value();
+  EXPECT_EQ(area_->ReceivedBytes(id_), 3u);
+  area_ = UploadArea::Open(folder_.File("uploads"), 50).value();
+  EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
+}
+
+}  // namespace
+}  // namespace pleat
