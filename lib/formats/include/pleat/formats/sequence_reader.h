@@ -15,8 +15,8 @@ namespace pleat {
 struct ReadSequenceOptions {
   // Unset: what the input says (.pseq), else 30 fps. A point cache's "rate" is samples per frame of
   // its host's timeline, not a frame rate, and is not used.
-  std::optional<FrameRate> frame_rate;
-  MeshFileLimits limits;
+  std::optional<FrameRate> frame_rate{};
+  MeshFileLimits limits{};
   int num_threads =
       0;  // for folders and globs; 0 = one per core. The result does not depend on it.
 };

@@ -1,0 +1,146 @@
+#include "pleat/formats/obj_reader.h"
+
+#include <gmock/gmock.h>
+
+#include "absl/strings/str_cat.h"
+#include "tests/support/hostile_bytes.h"
+#include "tests/support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
+absl::StatusOr<MeshFile> Decode(std::string_view text, const MeshFileLimits& limits = {}) {
+  return DecodeObj(text, "m.obj", limits);
+}
+
+constexpr char kFour[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+TEST(ObjReaderTest, ReadsVerticesAndEveryFormOfFace) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile mesh,
+      Decode(absl::StrCat("# comment\n", kFour,
+                          "v -1.5e-2 +2 3e1 1.0 0.2 0.3\nvt 0 0\nvt 1 0.5 0\nvn 0 0 1\n"
+                          "f 1 2 3\nf 1/1 2/2 3/1 4/2\nf 1//1 3//1 4//1\n"
+                          "f 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -5 -4 -1\n")));
+  EXPECT_EQ(mesh.positions.cols(), 5);
+  EXPECT_EQ(mesh.positions.col(4), Eigen::Vector3f(-1.5e-2f, 2, 30));
+  ASSERT_EQ(mesh.topology.num_faces(), 5);
+  EXPECT_THAT(mesh.topology.face(0), ElementsAre(0, 1, 2));
+  EXPECT_THAT(mesh.topology.face(1), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(mesh.topology.face(2), ElementsAre(0, 2, 3));
+  EXPECT_THAT(mesh.topology.face(3), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(mesh.topology.face(4), ElementsAre(0, 1, 4));
+  EXPECT_THAT(mesh.appearance.corner_texcoords,
+              ElementsAre(-1, -1, -1, 0, 1, 0, 1, -1, -1, -1, 0, 1, 0, 1, 0, -1, -1, -1));
+  EXPECT_EQ(mesh.appearance.texcoords[1], Eigen::Vector2f(1, 0.5f));
+}
+
+TEST(ObjReaderTest, KeepsDoubledAndLooseVertices) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile mesh,
+      Decode("v 0 0 0\nv 0 0 0\nv 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 4 5\nf 2 5 4\n"));
+  EXPECT_EQ(mesh.positions.cols(), 5);
+  EXPECT_THAT(mesh.topology.face(1), ElementsAre(1, 4, 3));
+}
+
+TEST(ObjReaderTest, KeepsMaterials) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile mesh,
+      Decode(
+          absl::StrCat("mtllib my file.mtl\n", kFour,
+                       "f 1 2 3\nusemtl red cloth\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl red cloth\n"
+                       "f 1 2 3\n")));
+  EXPECT_EQ(mesh.appearance.material_library, "my file.mtl");
+  EXPECT_THAT(mesh.appearance.material_names, ElementsAre("red cloth", "b"));
+  EXPECT_THAT(mesh.appearance.face_materials, ElementsAre(-1, 0, 1, 0));
+}
+
+TEST(ObjReaderTest, LineEndsContinuationsAndForwardReferences) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh,
+                             Decode("f 1 2 \\\r\n 3\r\nv 0 0 0\r\n\r\nv 1 0 0\r\nv 0 1 0"));
+  EXPECT_THAT(mesh.topology.face(0), ElementsAre(0, 1, 2));
+  EXPECT_EQ(mesh.positions(1, 2), 1);
+}
+
+TEST(ObjReaderTest, FaultsComeWithFileAndLine) {
+  const struct {
+    const char* text;
+    const char* message;
+  } kCases[] = {
+      {"v 0 0\n", "m.obj:1: a vertex needs three numbers x y z, found the end of the line"},
+      {"v 0 0 0\nv 1 2 3,5\n", "m.obj:2: a vertex needs three numbers x y z, found '3,5'"},
+      {"v 0 0 1e50\n", "m.obj:1: a vertex needs"},
+      {"v 0 0 0\n\n# c\nf 1 1\n", "m.obj:4: a face needs at least 3 corners, found 2"},
+      {"v 0 0 0\nf 1 2 x\n", "m.obj:2: a face needs vertex numbers, found 'x'"},
+      {"v 0 0 0\nf 0 1 1\n", "m.obj:2: vertex numbers start at 1"},
+      {"v 0 0 0\nf 1 1 1\nf 1 1 9\nv 0 0 0", "m.obj:3: the face names vertex 9 but the file has 2"},
+      {"v 0 0 0\nf -1 -2 -1\n", "m.obj:2: vertex number -2 reaches back beyond the 1"},
+      {"v 0 0 0\nf 1/1 1/1 1/1\n", "m.obj:2: the face names texture coordinate 1"},
+      {"v 0 0 0\nf 1/a 1 1\n", "m.obj:2: a face needs texture coordinate numbers, found 'a'"},
+      {"v 0 0 0\nf 1.5 1 1\n", "m.obj:2: a face corner is"},
+      {"v 0 0 0\nf 99999999999 1 1\n", "m.obj:2: a face needs vertex numbers"},
+      {"v 0 0 0\\\n\nv x\n", "m.obj:3: "},
+  };
+  for (const auto& [text, message] : kCases) {
+    EXPECT_THAT(Decode(text), HasStatus(kInvalid, HasSubstr(message))) << text;
+  }
+}
+
+TEST(ObjReaderTest, EmptyAndForeignFilesAreNamed) {
+  EXPECT_THAT(Decode(""), HasStatus(kInvalid, HasSubstr("m.obj: the file is empty")));
+  EXPECT_THAT(Decode("<html>not a mesh</html>\n"), HasStatus(kInvalid, HasSubstr("0 vertices")));
+  EXPECT_THAT(Decode(kFour), HasStatus(kInvalid, HasSubstr("0 faces")));
+}
+
+TEST(ObjReaderTest, NumbersTooSmallForFloatAreZero) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh,
+                             Decode("v 1e-60 -1e-400 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+  EXPECT_EQ(mesh.positions.col(0), Eigen::Vector3f::Zero());
+}
+
+TEST(ObjReaderTest, NotANumberIsReadAndLeftToTheSequence) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh,
+                             Decode("v nan 0 0\nv 1 -inf 0\nv 0 1 -nan(ind)\nf 1 2 3\n"));
+  EXPECT_TRUE(std::isnan(mesh.positions(0, 0)));
+}
+
+TEST(ObjReaderTest, LimitsAreKept) {
+  const std::string text = absl::StrCat(kFour, "f 1 2 3\nf 1 3 4\n");
+  EXPECT_THAT(Decode(text, {.max_vertices = 3}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit of 3")));
+  EXPECT_THAT(Decode(text, {.max_faces = 1}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("m.obj:6")));
+  EXPECT_THAT(Decode(text, {.max_vertices = 4, .max_faces = 2}), IsOk());
+}
+
+TEST(ObjReaderTest, DamagedFilesFailCleanlyOrReadAValidMesh) {
+  const std::string text = absl::StrCat(
+      "mtllib a.mtl\n", kFour, "vt 0 1\nusemtl m\nf 1/1 2/1 -2/-1 4//9\nf 1/1/1 2/1 3/1\n");
+  int num_valid = 0;
+  const auto decode = [&](const std::string& damaged) {
+    const absl::StatusOr<MeshFile> mesh = Decode(damaged);
+    if (!mesh.ok()) return;
+    ++num_valid;
+    EXPECT_EQ(mesh->positions.cols(), mesh->topology.num_vertices());
+    for (const int32_t corner : mesh->topology.corner_vertices()) {
+      EXPECT_LT(corner, mesh->positions.cols());
+    }
+  };
+  ForEachTruncation(text, decode);
+  ForEachCorruption(text, decode);
+  EXPECT_GT(num_valid, 0);
+}
+
+TEST(ObjReaderTest, MissingFileIsNotFound) {
+  EXPECT_THAT(ReadObj("/nonexistent/a.obj"),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("/nonexistent/a.obj")));
+}
+
+}  // namespace
+}  // namespace pleat
