@@ -72,15 +72,27 @@ absl::Status CheckParts(const CharacterModel::Parts& parts) {
   if (!parts.detail_model) {
     return absl::InvalidArgumentError("character model: there is no detail model");
   }
-  if (parts.detail_model->num_inputs() != parts.feature_reference.size() * parts.options.history) {
-    return Mismatch("the number of inputs of the detail model", parts.detail_model->num_inputs(),
+  if (parts.detail_model->num_features() !=
+      parts.feature_reference.size() * parts.options.history) {
+    return Mismatch("the number of inputs of the detail model", parts.detail_model->num_features(),
                     parts.feature_reference.size() * parts.options.history);
   }
-  if (parts.detail_model->num_outputs() != 3 * static_cast<int>(parts.control_vertices.size())) {
-    return Mismatch("the number of outputs of the detail model", parts.detail_model->num_outputs(),
+  if (parts.detail_model->num_details() != 3 * static_cast<int>(parts.control_vertices.size())) {
+    return Mismatch("the number of outputs of the detail model", parts.detail_model->num_details(),
                     3 * static_cast<int64_t>(parts.control_vertices.size()));
   }
   return absl::OkStatus();
+}
+
+size_t DetailModelBytes(const DetailModel& detail) {
+  size_t bytes = static_cast<size_t>(detail.basis().size() + detail.mean().size()) * sizeof(float);
+  for (const GpRegression& stage : detail.stages()) {
+    const GpRegressionParameters& parameters = stage.parameters();
+    bytes +=
+        static_cast<size_t>(parameters.inputs.size() + parameters.alpha.size()) * sizeof(double) +
+        static_cast<size_t>(parameters.whitener.size()) * sizeof(float);
+  }
+  return bytes;
 }
 
 // Applies the V x C upsampling to each coordinate of every column of `control` (3C x r).
@@ -121,7 +133,7 @@ CharacterModel::CharacterModel(Parts parts, PoseFeatures features)
 
 size_t CharacterModel::memory_bytes() const {
   const size_t vertices = static_cast<size_t>(num_vertices());
-  size_t bytes = sizeof(*this) + parts_.detail_model->memory_bytes();
+  size_t bytes = sizeof(*this) + DetailModelBytes(*parts_.detail_model);
   bytes += vertices * (sizeof(VertexInfluences) + 3 * sizeof(double));
   bytes += static_cast<size_t>(parts_.topology.num_corners()) * sizeof(int32_t) +
            static_cast<size_t>(parts_.topology.num_faces()) * sizeof(int32_t) +

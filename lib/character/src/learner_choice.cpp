@@ -49,12 +49,10 @@ RowSplit HoldOutBlocks(int num_rows, const std::vector<int>& clip_starts) {
 double HeldOutError(const DetailModel& model, const LearningData& data,
                     const std::vector<int>& rows) {
   DetailModel::Workspace workspace;
-  Eigen::VectorXd coefficients(model.basis().cols());
-  double sum = 0, confidence = 0;
+  Eigen::VectorXf predicted(model.num_details());
+  double sum = 0;
   for (const int t : rows) {
-    model.PredictCoefficients(data.features.row(t).transpose(), &workspace, &coefficients,
-                              &confidence);
-    const Eigen::VectorXf predicted = model.mean() + model.basis() * coefficients.cast<float>();
+    model.Predict(data.features.row(t).transpose(), &workspace, predicted);
     const Eigen::VectorXd difference = data.details.row(t).transpose() - predicted.cast<double>();
     sum += difference.reshaped(3, difference.size() / 3).colwise().norm().mean();
   }
@@ -69,13 +67,16 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
                                                                 const Progress& progress) {
   DetailModelOptions detail_options;
   detail_options.learner = learner == "sgplvm" ? Learner::kSgplvm : Learner::kGp;
+  detail_options.sgplvm = SharedGplvmOptions::Paper();
   detail_options.sgplvm.latent_dimension = options.latent_dimensions;
-  detail_options.sgplvm.optimizer.max_iterations = options.iterations;
+  detail_options.sgplvm.max_iterations = options.iterations;
   detail_options.sgplvm.dynamics_weight = options.dynamics_weight;
-  detail_options.pca.min_energy = options.detail_energy;
-  detail_options.pca.max_components = options.max_components;
-  return TrainDetailModel(data.features, data.details, data.clip_starts, detail_options, nullptr,
-                          progress);
+  detail_options.pca_energy = options.detail_energy;
+  detail_options.max_components = options.max_components;
+  PLEAT_ASSIGN_OR_RETURN(DetailModel model,
+                         TrainDetailModel(data.features, data.details, data.clip_starts,
+                                          detail_options, nullptr, progress));
+  return std::make_shared<const DetailModel>(std::move(model));
 }
 
 absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,

@@ -24,8 +24,7 @@ struct PoseEvaluator::Scratch {
   std::vector<Eigen::Quaterniond> rotations;  // V, axes of the details
   Eigen::Matrix3Xd hybrid;                    // 3 x V
   Eigen::VectorXd features;                   // D_S
-  Eigen::VectorXd coefficients;               // r
-  Eigen::VectorXf coefficients_float;         // r
+  Eigen::VectorXf coefficients;               // r
   Eigen::VectorXf details;                    // 3V
   DetailModel::Workspace workspace;
 };
@@ -113,11 +112,10 @@ absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
     CopyNormalized(pose, &s.history[h]);
   }
   model_->features().ComputeRow(s.history_pointers, s.features);
-  model_->detail_model().PredictCoefficients(s.features, &s.workspace, &s.coefficients,
-                                             &frame->confidence);
-  s.coefficients_float = s.coefficients.cast<float>();
+  frame->confidence =
+      model_->detail_model().PredictCoefficients(s.features, &s.workspace, s.coefficients);
   s.details = model_->full_mean();
-  s.details.noalias() += model_->full_basis() * s.coefficients_float;
+  s.details.noalias() += model_->full_basis() * s.coefficients;
 
   ComputeDetailRotations(DetailAxesOf(model_->options()), model_->rig().weights, s.all_vertices,
                          s.transforms, &s.rotations);
