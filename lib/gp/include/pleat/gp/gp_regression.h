@@ -1,0 +1,111 @@
+// Exact Gaussian process regression of several outputs that share one kernel.
+// Source: Rasmussen and Williams, "Gaussian Processes for Machine Learning" (2006), chapters 2, 5.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/gp/kernel.h"
+#include "pleat/optimize/summary.h"
+
+namespace pleat {
+
+struct GpRegressionOptions {
+  KernelOptions kernel{.bias = true, .linear = true};
+  // Inputs are centred and divided by one scalar so that rows have mean squared norm 1; false
+  // takes them as they are (latent points).
+  bool normalise_inputs = true;
+  int max_iterations = 60;  // of L-BFGS on the marginal likelihood
+  // Precision, per row and output, of a Gaussian prior on log g around
+  // log(prior_width_factor^-2 / median squared distance): frames of one clip are so alike that the
+  // likelihood alone prefers widths that generalise badly.
+  double prior_precision = 0;
+  double prior_width_factor = 1;
+  // Hyperparameters are learnt on at most this many rows and predictions made from at most
+  // `max_rows`, both spread evenly: cost and memory grow with the cube and the square.
+  int max_hyperparameter_rows = 800;
+  int max_rows = 2000;
+};
+
+struct GpRegressionSummary {
+  OptimizationSummary optimization;
+  int num_rows = 0;  // that predictions are made from
+  int num_hyperparameter_rows = 0;
+};
+
+// Everything a prediction needs; what a model file holds.
+struct GpRegressionParameters {
+  KernelOptions kernel_options;
+  KernelLogs kernel;            // in normalised units
+  Eigen::VectorXd input_mean;   // D
+  double input_scale = 1;       // unit of the inputs
+  Eigen::MatrixXd inputs;       // N x D, normalised: (x - mean) / scale
+  Eigen::VectorXd output_mean;  // r
+  double output_scale = 1;      // unit of the outputs
+  Eigen::MatrixXd alpha;        // N x r, K^-1 (y - mean) / scale
+  Eigen::MatrixXf whitener;     // N x N, lower triangular: K^-1 = W^T W; only for the variance
+};
+
+// Immutable after training: queries share it without locks.
+class GpRegression {
+ public:
+  // What one thread needs for its queries. Sized by the first query, reused without allocation.
+  struct Workspace {
+    Eigen::VectorXd row;       // D, normalised
+    Eigen::VectorXd products;  // N
+    Eigen::VectorXd rbf;       // N
+    Eigen::VectorXd kernel;    // N
+    Eigen::VectorXf kernel_f;  // N
+    Eigen::VectorXf whitened;  // N
+    Eigen::MatrixXd slopes;    // N x D, only with an input variance
+    Eigen::MatrixXd jacobian;  // D x r, only with an input variance
+  };
+
+  // Learns the hyperparameters from inputs (N x D) and outputs (N x r), rows are samples. Errors:
+  // kInvalidArgument for empty or not finite data or sizes that differ; kCancelled.
+  static absl::StatusOr<GpRegression> Train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                            const Eigen::Ref<const Eigen::MatrixXd>& outputs,
+                                            const GpRegressionOptions& options = {},
+                                            GpRegressionSummary* summary = nullptr,
+                                            const Progress& progress = {});
+
+  // The same with given hyperparameters (in normalised units).
+  static absl::StatusOr<GpRegression> Condition(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                                const Eigen::Ref<const Eigen::MatrixXd>& outputs,
+                                                const KernelLogs& kernel,
+                                                const GpRegressionOptions& options = {});
+
+  // From a file: checks sizes and that every number is finite (kInvalidArgument naming which).
+  static absl::StatusOr<GpRegression> FromParameters(GpRegressionParameters parameters);
+
+  const GpRegressionParameters& parameters() const { return parameters_; }
+  int num_rows() const { return static_cast<int>(parameters_.inputs.rows()); }
+  int num_inputs() const { return static_cast<int>(parameters_.inputs.cols()); }
+  int num_outputs() const { return static_cast<int>(parameters_.alpha.cols()); }
+
+  // Mean (r entries) of the outputs at `row` (D entries). `variance`, when not null, receives the
+  // variance of the noise-free function, the same for all outputs, (output unit)^2. Uncertain
+  // inputs: `input_variance` ((input unit)^2, the same for all inputs) is carried through to first
+  // order, averaged over the outputs.
+  void Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double input_variance,
+               Workspace* workspace, Eigen::Ref<Eigen::VectorXd> mean, double* variance) const;
+
+  // M rows at once: means (M x r) and, when not null, variances (M).
+  void PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::MatrixXd* means,
+                    Eigen::VectorXd* variances) const;
+
+  // Variance of the function before any data, at a typical training input, (output unit)^2.
+  double prior_variance() const { return prior_variance_; }
+
+ private:
+  explicit GpRegression(GpRegressionParameters parameters);
+
+  GpRegressionParameters parameters_;
+  KernelValues values_;
+  Eigen::VectorXd squared_norms_;  // N, of the normalised inputs
+  double prior_variance_ = 1;
+};
+
+}  // namespace pleat

@@ -1,0 +1,110 @@
+#include "pleat/gp/detail_model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+absl::Status Refuse(const std::string& what) {
+  return absl::InvalidArgumentError("detail model parameters: " + what);
+}
+
+// 0 at 0, 1 from `full` on, smooth between.
+double Fade(double confidence, double full) {
+  if (confidence >= full) return 1;
+  const double t = std::max(confidence / full, 0.0);
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace
+
+std::string LearnerName(Learner learner) { return learner == Learner::kGp ? "gp" : "sgplvm"; }
+
+absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters parameters) {
+  const size_t expected = parameters.learner == Learner::kGp ? 1 : 2;
+  if (parameters.stages.size() != expected) {
+    return Refuse(absl::StrCat("the learner ", LearnerName(parameters.learner), " has ", expected,
+                               " stages, got ", parameters.stages.size()));
+  }
+  DetailModel model;
+  for (GpRegressionParameters& stage : parameters.stages) {
+    PLEAT_ASSIGN_OR_RETURN(GpRegression regression, GpRegression::FromParameters(std::move(stage)));
+    model.stages_.push_back(std::move(regression));
+  }
+  if (expected == 2 && model.stages_[0].num_outputs() != model.stages_[1].num_inputs()) {
+    return Refuse(absl::StrCat("the first stage has ", model.stages_[0].num_outputs(),
+                               " outputs, the second ", model.stages_[1].num_inputs(), " inputs"));
+  }
+  if (parameters.basis.cols() != model.stages_.back().num_outputs() ||
+      parameters.basis.rows() != parameters.mean.size() || parameters.mean.size() < 1) {
+    return Refuse(absl::StrCat("basis is ", parameters.basis.rows(), " x ", parameters.basis.cols(),
+                               ", expected ", parameters.mean.size(), " x ",
+                               model.stages_.back().num_outputs()));
+  }
+  if (!parameters.basis.allFinite() || !parameters.mean.allFinite()) {
+    return Refuse("an entry of basis or mean is not finite");
+  }
+  if (!(parameters.fade_confidence >= 0 && parameters.fade_confidence <= 1)) {
+    return Refuse("the fading confidence is not between 0 and 1");
+  }
+  model.learner_ = parameters.learner;
+  model.mean_ = std::move(parameters.mean);
+  model.basis_ = std::move(parameters.basis);
+  model.fade_confidence_ = parameters.fade_confidence;
+  return model;
+}
+
+DetailModelParameters DetailModel::parameters() const {
+  DetailModelParameters p;
+  p.learner = learner_;
+  for (const GpRegression& stage : stages_) p.stages.push_back(stage.parameters());
+  p.mean = mean_;
+  p.basis = basis_;
+  p.fade_confidence = fade_confidence_;
+  return p;
+}
+
+double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>& features,
+                                        Workspace* workspace,
+                                        Eigen::Ref<Eigen::VectorXf> coefficients) const {
+  Workspace& w = *workspace;
+  assert(features.size() == num_features() && coefficients.size() == num_components());
+  w.stages.resize(stages_.size());
+  w.coefficients.resize(num_components());
+  double variance = 0;
+  if (stages_.size() == 1) {
+    stages_[0].Predict(features, 0, &w.stages[0], w.coefficients, &variance);
+  } else {
+    w.latent.resize(stages_[0].num_outputs());
+    double latent_variance = 0;
+    stages_[0].Predict(features, 0, &w.stages[0], w.latent, &latent_variance);
+    stages_[1].Predict(w.latent, latent_variance, &w.stages[1], w.coefficients, &variance);
+  }
+  const double confidence = std::clamp(1 - variance / stages_.back().prior_variance(), 0.0, 1.0);
+  const double fade = Fade(confidence, fade_confidence_);
+  // A fade of zero also removes what has overflowed.
+  if (fade > 0) {
+    coefficients = (fade * w.coefficients).cast<float>();
+  } else {
+    coefficients.setZero();
+  }
+  return confidence;
+}
+
+double DetailModel::Predict(const Eigen::Ref<const Eigen::VectorXd>& features, Workspace* workspace,
+                            Eigen::Ref<Eigen::VectorXf> detail) const {
+  assert(detail.size() == num_details());
+  workspace->single.resize(num_components());
+  const double confidence = PredictCoefficients(features, workspace, workspace->single);
+  detail = mean_;
+  detail.noalias() += basis_ * workspace->single;
+  return confidence;
+}
+
+}  // namespace pleat

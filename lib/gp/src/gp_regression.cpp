@@ -1,0 +1,143 @@
+#include "pleat/gp/gp_regression.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "dense.h"
+#include "dense_ops.h"
+
+namespace pleat {
+namespace {
+
+// whitened = W k, W lower triangular, in blocks of rows: no temporary, half the work.
+void Whiten(const Eigen::MatrixXf& whitener, const Eigen::VectorXf& kernel,
+            Eigen::VectorXf* whitened) {
+  constexpr Eigen::Index kBlock = 64;
+  const Eigen::Index n = kernel.size();
+  for (Eigen::Index i = 0; i < n; i += kBlock) {
+    const Eigen::Index rows = std::min(kBlock, n - i);
+    whitened->segment(i, rows).noalias() =
+        whitener.block(i, 0, rows, i + rows) * kernel.head(i + rows);
+  }
+}
+
+absl::Status Refuse(const std::string& what) {
+  return absl::InvalidArgumentError("GP regression parameters: " + what);
+}
+
+absl::Status CheckSizes(const GpRegressionParameters& p) {
+  const Eigen::Index n = p.inputs.rows();
+  if (n < 1 || p.inputs.cols() < 1 || p.alpha.cols() < 1) {
+    return Refuse("no rows, no inputs or no outputs");
+  }
+  if (p.alpha.rows() != n) {
+    return Refuse(absl::StrCat("alpha has ", p.alpha.rows(), " rows, the inputs ", n));
+  }
+  if (p.whitener.rows() != n || p.whitener.cols() != n) {
+    return Refuse(absl::StrCat("whitener is ", p.whitener.rows(), " x ", p.whitener.cols(),
+                               ", expected ", n, " x ", n));
+  }
+  if (p.input_mean.size() != p.inputs.cols()) {
+    return Refuse(absl::StrCat("input mean has ", p.input_mean.size(), " entries, the inputs ",
+                               p.inputs.cols(), " columns"));
+  }
+  if (p.output_mean.size() != p.alpha.cols()) {
+    return Refuse(absl::StrCat("output mean has ", p.output_mean.size(), " entries, alpha ",
+                               p.alpha.cols(), " columns"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckValues(const GpRegressionParameters& p) {
+  if (!p.inputs.allFinite()) return Refuse("an input is not finite");
+  if (!p.alpha.allFinite()) return Refuse("an entry of alpha is not finite");
+  if (!p.whitener.allFinite()) return Refuse("an entry of the whitener is not finite");
+  if (!p.input_mean.allFinite() || !p.output_mean.allFinite())
+    return Refuse("a mean is not finite");
+  if (!std::isfinite(p.input_scale) || !(p.input_scale > 0) || !std::isfinite(p.output_scale) ||
+      !(p.output_scale > 0)) {
+    return Refuse("a scale is not positive and finite");
+  }
+  if (!std::isfinite(p.kernel_options.relative_noise_floor) ||
+      !std::isfinite(p.kernel_options.absolute_jitter) ||
+      p.kernel_options.relative_noise_floor < 0 || p.kernel_options.absolute_jitter < 0) {
+    return Refuse("a noise floor is negative or not finite");
+  }
+  return CheckKernelLogs(p.kernel_options, p.kernel, "GP regression parameters");
+}
+
+}  // namespace
+
+GpRegression::GpRegression(GpRegressionParameters parameters)
+    : parameters_(std::move(parameters)),
+      values_(KernelValuesOf(parameters_.kernel_options, parameters_.kernel)),
+      squared_norms_(parameters_.inputs.rowwise().squaredNorm()) {
+  prior_variance_ = (values_.a + values_.b + values_.c * squared_norms_.mean()) *
+                    parameters_.output_scale * parameters_.output_scale;
+}
+
+absl::StatusOr<GpRegression> GpRegression::FromParameters(GpRegressionParameters parameters) {
+  if (absl::Status status = CheckSizes(parameters); !status.ok()) return status;
+  if (absl::Status status = CheckValues(parameters); !status.ok()) return status;
+  return GpRegression(std::move(parameters));
+}
+
+void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double input_variance,
+                           Workspace* workspace, Eigen::Ref<Eigen::VectorXd> mean,
+                           double* variance) const {
+  const GpRegressionParameters& p = parameters_;
+  Workspace& w = *workspace;
+  assert(row.size() == p.inputs.cols() && mean.size() == p.alpha.cols());
+  const Eigen::Index n = p.inputs.rows();
+  w.row = (row - p.input_mean) / p.input_scale;
+  w.products.resize(n);
+  w.products.noalias() = p.inputs * w.row;
+  const double squared_norm = w.row.squaredNorm();
+  w.rbf = (-.5 * values_.g * (squared_norms_.array() + squared_norm - 2 * w.products.array()))
+              .min(0.0)
+              .matrix();
+  ChosenDenseOps().exp_in_place(w.rbf.data(), n);
+  w.rbf *= values_.a;
+  w.kernel = (w.rbf.array() + values_.b + values_.c * w.products.array()).matrix();
+  mean.noalias() = p.alpha.transpose() * w.kernel;
+  mean = p.output_mean + p.output_scale * mean;
+  if (variance == nullptr) return;
+
+  w.kernel_f = w.kernel.cast<float>();
+  w.whitened.resize(n);
+  Whiten(p.whitener, w.kernel_f, &w.whitened);
+  double v = values_.a + values_.b + values_.c * squared_norm - double(w.whitened.squaredNorm());
+  v = std::max(v, 0.0);
+  if (input_variance > 0) {
+    // dk_n/dx = -g (x - X_n) K0_n + c X_n.
+    w.slopes.resize(n, p.inputs.cols());
+    for (Eigen::Index d = 0; d < p.inputs.cols(); ++d) {
+      const auto column = p.inputs.col(d).array();
+      w.slopes.col(d) =
+          (-values_.g * (w.row[d] - column) * w.rbf.array() + values_.c * column).matrix();
+    }
+    w.jacobian.resize(p.inputs.cols(), p.alpha.cols());
+    w.jacobian.noalias() = w.slopes.transpose().lazyProduct(p.alpha);
+    v += input_variance / (p.input_scale * p.input_scale) * w.jacobian.squaredNorm() /
+         double(p.alpha.cols());
+  }
+  *variance = v * p.output_scale * p.output_scale;
+}
+
+void GpRegression::PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                                Eigen::MatrixXd* means, Eigen::VectorXd* variances) const {
+  means->resize(rows.rows(), num_outputs());
+  if (variances) variances->resize(rows.rows());
+  Workspace workspace;
+  Eigen::VectorXd row(rows.cols()), mean(num_outputs());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    row = rows.row(i).transpose();
+    Predict(row, 0, &workspace, mean, variances ? &(*variances)[i] : nullptr);
+    means->row(i) = mean.transpose();
+  }
+}
+
+}  // namespace pleat
