@@ -1,0 +1,36 @@
+// A software picture of one frame: smooth shading, z-buffer, 2 x 2 supersampling, skeleton overlay.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "pleat/render/camera.h"
+#include "pleat/render/image.h"
+
+namespace pleat {
+
+enum class BodySide { kMiddle, kLeft, kRight };
+
+// Bones as lines and joints as dots, drawn over the mesh: left blue, right red, middle dark.
+struct SkeletonOverlay {
+  Eigen::Matrix3Xd joints;      // 3 x J, metres
+  std::vector<int> parents;     // J, -1 for a root
+  std::vector<BodySide> sides;  // J, or empty
+};
+
+struct RenderOptions {
+  Rgb colour{190, 192, 200};       // of the mesh where no vertex colours are given
+  Rgb back_colour{196, 130, 110};  // of faces seen from behind
+  Rgb background{255, 255, 255};
+  std::vector<Rgb> vertex_colours;  // V, or empty
+  std::optional<double> floor_y;    // draws a half-metre grid at this height, metres
+  std::optional<SkeletonOverlay> skeleton;
+};
+
+// positions: 3 x V, metres; triangles: 3 x F, counter-clockwise from outside.
+Image RenderMesh(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                 const Eigen::Ref<const Eigen::Matrix3Xi>& triangles, const Camera& camera,
+                 const RenderOptions& options = {});
+
+}  // namespace pleat

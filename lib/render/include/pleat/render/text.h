@@ -1,0 +1,18 @@
+// Text in a small bitmap font (stb_easy_font).
+#pragma once
+
+#include <string_view>
+
+#include "pleat/render/image.h"
+
+namespace pleat {
+
+// Height of a line of text and width of `text`, pixels, at a whole-number `scale`.
+int TextHeight(int scale);
+int TextWidth(std::string_view text, int scale);
+
+// Draws one line with its top left corner at (left, top). Characters outside printable ASCII
+// become '?'.
+void DrawText(Image* image, int left, int top, std::string_view text, int scale, Rgb colour);
+
+}  // namespace pleat

@@ -1,0 +1,203 @@
+// Half-space rasterisation (Pineda 1988) at twice the resolution, averaged 2 x 2.
+#include "pleat/render/render_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace pleat {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr int kSamples = 2;  // per pixel and axis
+
+struct ProjectedVertex {
+  float x, y, depth;
+  Vector3f normal;  // camera axes
+  Vector3f colour;  // 0..255
+};
+
+// Area-weighted vertex normals, camera axes.
+Eigen::Matrix3Xf VertexNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                               const Eigen::Ref<const Eigen::Matrix3Xi>& triangles,
+                               const Eigen::Matrix3d& camera_from_world) {
+  Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, positions.cols());
+  for (int f = 0; f < triangles.cols(); ++f) {
+    const Vector3d a = positions.col(triangles(0, f));
+    const Vector3d area =
+        (positions.col(triangles(1, f)) - a).cross(positions.col(triangles(2, f)) - a);
+    for (int c = 0; c < 3; ++c) normals.col(triangles(c, f)) += area;
+  }
+  return (camera_from_world * normals).colwise().normalized().cast<float>();
+}
+
+Rgb Shade(const Vector3f& colour, const Vector3f& normal) {
+  static const Vector3f kKey = Vector3f(-.45f, .60f, .66f).normalized();
+  static const Vector3f kFill = Vector3f(.80f, .10f, .60f).normalized();
+  const float light = .30f + .08f * normal.y() + .62f * std::max(0.f, normal.dot(kKey)) +
+                      .20f * std::max(0.f, normal.dot(kFill));
+  const Vector3f lit = (colour * light * 1.12f).cwiseMin(255.f).cwiseMax(0.f);
+  return {static_cast<uint8_t>(lit.x()), static_cast<uint8_t>(lit.y()),
+          static_cast<uint8_t>(lit.z())};
+}
+
+class Rasteriser {
+ public:
+  Rasteriser(int width, int height, Rgb background)
+      : image_(width * kSamples, height * kSamples, background),
+        depth_(static_cast<size_t>(image_.width()) * image_.height(),
+               std::numeric_limits<float>::infinity()) {}
+
+  void DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c,
+                    const Vector3f& back_colour);
+  // A line hidden where the mesh is nearer; ends in samples with depth.
+  void DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb colour);
+  Image Downsample() const;
+
+ private:
+  Image image_;
+  std::vector<float> depth_;
+};
+
+void Rasteriser::DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b,
+                              const ProjectedVertex& c, const Vector3f& back_colour) {
+  // y runs down, so a counter-clockwise (front) face has negative area here.
+  const float area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+  if (area == 0) return;
+  const bool front = area < 0;
+  const float low_x = std::min({a.x, b.x, c.x}), high_x = std::max({a.x, b.x, c.x});
+  const float low_y = std::min({a.y, b.y, c.y}), high_y = std::max({a.y, b.y, c.y});
+  // Sample centres lie at half numbers.
+  const int left = std::max(0, static_cast<int>(std::ceil(low_x - .5f)));
+  const int right = std::min(image_.width() - 1, static_cast<int>(std::floor(high_x - .5f)));
+  const int top = std::max(0, static_cast<int>(std::ceil(low_y - .5f)));
+  const int bottom = std::min(image_.height() - 1, static_cast<int>(std::floor(high_y - .5f)));
+  const float inverse = 1 / area;
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      const float px = x + .5f, py = y + .5f;
+      const float u = ((b.x - px) * (c.y - py) - (b.y - py) * (c.x - px)) * inverse;
+      const float v = ((c.x - px) * (a.y - py) - (c.y - py) * (a.x - px)) * inverse;
+      const float w = 1 - u - v;
+      if (u < 0 || v < 0 || w < 0) continue;
+      const float depth = u * a.depth + v * b.depth + w * c.depth;
+      float& nearest = depth_[static_cast<size_t>(y) * image_.width() + x];
+      if (depth >= nearest) continue;
+      nearest = depth;
+      const Vector3f normal = (u * a.normal + v * b.normal + w * c.normal).normalized();
+      const Vector3f colour = u * a.colour + v * b.colour + w * c.colour;
+      image_.at(x, y) = front ? Shade(colour, normal) : Shade(back_colour, Vector3f(-normal));
+    }
+  }
+}
+
+void Rasteriser::DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb colour) {
+  const int steps = std::max(1, static_cast<int>(std::ceil((to - from).head<2>().norm())));
+  if (steps > 4 * (image_.width() + image_.height())) return;  // runs far out of the picture
+  for (int i = 0; i <= steps; ++i) {
+    const Vector3d p = from + (to - from) * i / steps;
+    const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
+    if (!image_.Contains(x, y)) continue;
+    const size_t index = static_cast<size_t>(y) * image_.width() + x;
+    if (p.z() < depth_[index]) image_.at(x, y) = colour;
+  }
+}
+
+Image Rasteriser::Downsample() const {
+  Image small(image_.width() / kSamples, image_.height() / kSamples);
+  for (int y = 0; y < small.height(); ++y) {
+    for (int x = 0; x < small.width(); ++x) {
+      int r = 0, g = 0, b = 0;
+      for (int i = 0; i < kSamples * kSamples; ++i) {
+        const Rgb& sample = image_.at(kSamples * x + i % kSamples, kSamples * y + i / kSamples);
+        r += sample.r;
+        g += sample.g;
+        b += sample.b;
+      }
+      constexpr int kCount = kSamples * kSamples;
+      small.at(x, y) = {static_cast<uint8_t>((r + kCount / 2) / kCount),
+                        static_cast<uint8_t>((g + kCount / 2) / kCount),
+                        static_cast<uint8_t>((b + kCount / 2) / kCount)};
+    }
+  }
+  return small;
+}
+
+void DrawFloor(const Eigen::Ref<const Eigen::Matrix3Xd>& positions, double floor_y,
+               const Camera& camera, Rasteriser* rasteriser) {
+  constexpr double kCell_m = .5;
+  const Rgb line_colour{205, 205, 205};
+  const Vector3d low = positions.rowwise().minCoeff(), high = positions.rowwise().maxCoeff();
+  const int x0 = static_cast<int>(std::floor(low.x() / kCell_m)) - 1;
+  const int x1 = static_cast<int>(std::ceil(high.x() / kCell_m)) + 1;
+  const int z0 = static_cast<int>(std::floor(low.z() / kCell_m)) - 1;
+  const int z1 = static_cast<int>(std::ceil(high.z() / kCell_m)) + 1;
+  if (static_cast<int64_t>(x1) - x0 + z1 - z0 > 1000) return;  // not a scene in metres
+  const auto project = [&](int x, int z) {
+    Vector3d p = camera.Project(Vector3d(x * kCell_m, floor_y, z * kCell_m));
+    p.head<2>() *= kSamples;
+    return p;
+  };
+  for (int x = x0; x <= x1; ++x) {
+    rasteriser->DrawHiddenLine(project(x, z0), project(x, z1), line_colour);
+  }
+  for (int z = z0; z <= z1; ++z) {
+    rasteriser->DrawHiddenLine(project(x0, z), project(x1, z), line_colour);
+  }
+}
+
+void DrawSkeleton(const SkeletonOverlay& skeleton, const Camera& camera, Image* image) {
+  const auto colour = [&](int j) -> Rgb {
+    if (skeleton.sides.empty() || skeleton.sides[j] == BodySide::kMiddle) return {40, 40, 40};
+    return skeleton.sides[j] == BodySide::kLeft ? Rgb{30, 80, 220} : Rgb{215, 40, 40};
+  };
+  const double unit = std::max(1.0, image->height() / 300.);
+  const int num_joints = static_cast<int>(skeleton.joints.cols());
+  for (int j = 0; j < num_joints; ++j) {
+    if (skeleton.parents[j] < 0) continue;
+    const Vector3d a = camera.Project(skeleton.joints.col(skeleton.parents[j]));
+    const Vector3d b = camera.Project(skeleton.joints.col(j));
+    image->DrawLine(a.x(), a.y(), b.x(), b.y(), 1.6 * unit, colour(j));
+  }
+  for (int j = 0; j < num_joints; ++j) {
+    const Vector3d p = camera.Project(skeleton.joints.col(j));
+    image->DrawDot(p.x(), p.y(), 2.6 * unit, {255, 255, 255});
+    image->DrawDot(p.x(), p.y(), 1.9 * unit, colour(j));
+  }
+}
+
+}  // namespace
+
+Image RenderMesh(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                 const Eigen::Ref<const Eigen::Matrix3Xi>& triangles, const Camera& camera,
+                 const RenderOptions& options) {
+  const int num_vertices = static_cast<int>(positions.cols());
+  assert(options.vertex_colours.empty() ||
+         static_cast<int>(options.vertex_colours.size()) == num_vertices);
+  const auto to_vector = [](Rgb c) { return Vector3f(c.r, c.g, c.b); };
+  const Eigen::Matrix3Xf normals = VertexNormals(positions, triangles, camera.camera_from_world());
+  std::vector<ProjectedVertex> vertices(num_vertices);
+  for (int v = 0; v < num_vertices; ++v) {
+    const Vector3d p = camera.Project(positions.col(v));
+    vertices[v] = {
+        static_cast<float>(p.x() * kSamples), static_cast<float>(p.y() * kSamples),
+        static_cast<float>(p.z()), normals.col(v),
+        to_vector(options.vertex_colours.empty() ? options.colour : options.vertex_colours[v])};
+  }
+  Rasteriser rasteriser(camera.view().width, camera.view().height, options.background);
+  const Vector3f back_colour = to_vector(options.back_colour);
+  for (int f = 0; f < triangles.cols(); ++f) {
+    rasteriser.DrawTriangle(vertices[triangles(0, f)], vertices[triangles(1, f)],
+                            vertices[triangles(2, f)], back_colour);
+  }
+  if (options.floor_y) DrawFloor(positions, *options.floor_y, camera, &rasteriser);
+  Image image = rasteriser.Downsample();
+  if (options.skeleton) DrawSkeleton(*options.skeleton, camera, &image);
+  return image;
+}
+
+}  // namespace pleat
