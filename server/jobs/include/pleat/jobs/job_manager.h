@@ -1,0 +1,87 @@
+// Queue and worker pool of training jobs.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/jobs/job_state_machine.h"
+
+namespace pleat {
+
+struct JobOutcome {
+  std::string model_id;
+  std::vector<std::string> warnings;
+};
+
+// Does the work of one job: reports to and obeys the token.
+using RunJob = std::function<absl::StatusOr<JobOutcome>(const JobInfo&, const Progress&)>;
+// Writes the job down, durably; called at every change of state.
+using SaveJob = std::function<absl::Status(const JobInfo& info, int attempts)>;
+
+struct JobManagerOptions {
+  int num_workers = 1;    // jobs that run at the same time
+  int max_queued = 1000;  // jobs that wait; more are refused
+  int max_attempts = 3;   // a job that took the server down this often fails
+  MonotonicClock clock = SteadySeconds;
+};
+
+struct StoredJob {
+  JobInfo info;
+  int attempts = 0;
+};
+
+// Jobs start in the order of Create. Thread-safe.
+class JobManager {
+ public:
+  JobManager(JobManagerOptions options, RunJob run, SaveJob save);
+  ~JobManager();  // Shutdown
+  JobManager(const JobManager&) = delete;
+  JobManager& operator=(const JobManager&) = delete;
+
+  // Takes over the jobs of the process before, in their order: a job that was running is queued
+  // again, or failed when it has run max_attempts times. Call before Start.
+  void Restore(std::vector<StoredJob> jobs);
+  void Start();
+
+  // Gives the job an id and queues it. kResourceExhausted when too many wait, kUnavailable after
+  // Shutdown, or the error of saving it.
+  absl::StatusOr<JobInfo> Create(JobInfo draft);
+  absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
+  std::vector<JobInfo> List() const;                         // oldest first
+  absl::Status Cancel(const std::string& id);
+  absl::StatusOr<std::shared_ptr<JobStateMachine>> Find(const std::string& id) const;
+
+  // Stops the workers; what was running is queued again, for the next process. Returns when the
+  // workers have ended, that is within a second.
+  void Shutdown();
+  bool shutting_down() const { return shutting_down_.load(std::memory_order_relaxed); }
+
+ private:
+  void Work();
+  void RunOne(JobStateMachine* job);
+  void Save(JobStateMachine* job);
+
+  const JobManagerOptions options_;
+  const RunJob run_;
+  const SaveJob save_;
+  std::atomic<bool> shutting_down_ = false;
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<std::string, std::shared_ptr<JobStateMachine>> jobs_;  // guarded by mutex_
+  std::vector<std::string> order_;                                // guarded by mutex_
+  std::deque<std::shared_ptr<JobStateMachine>> queue_;            // guarded by mutex_
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,141 @@
+#include "pleat/jobs/job_state_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+JobInfo Draft(JobState state = JobState::kQueued) {
+  JobInfo info;
+  info.id = "job-1";
+  info.state = state;
+  return info;
+}
+
+TEST(JobStateMachineTest, GoesTheDocumentedWay) {
+  double now = 0;
+  JobStateMachine job(Draft(), 0, [&] { return now; });
+  EXPECT_FALSE(job.Succeed("m", {}));
+  EXPECT_FALSE(job.Fail(absl::InternalError("x")));
+  EXPECT_FALSE(job.Cancelled());
+  EXPECT_FALSE(job.Requeue());
+  ASSERT_TRUE(job.Start());
+  EXPECT_FALSE(job.Start());
+  EXPECT_EQ(job.snapshot().attempts, 1);
+  ASSERT_TRUE(job.Succeed("model", {"look here"}));
+  const JobInfo info = job.snapshot().info;
+  EXPECT_EQ(info.state, JobState::kSucceeded);
+  EXPECT_EQ(info.model_id, "model");
+  EXPECT_EQ(info.fraction, 1);
+  EXPECT_THAT(info.warnings, testing::ElementsAre("look here"));
+}
+
+TEST(JobStateMachineTest, FinalStatesStay) {
+  for (const JobState state : {JobState::kSucceeded, JobState::kFailed, JobState::kCancelled}) {
+    JobStateMachine job(Draft(state), 1);
+    EXPECT_FALSE(job.Start() || job.Succeed("m", {}) || job.Fail(absl::InternalError("x")) ||
+                 job.Cancelled() || job.Requeue());
+    EXPECT_THAT(job.RequestCancel(),
+                HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr(JobStateName(state))));
+    EXPECT_EQ(job.snapshot().info.state, state);
+  }
+}
+
+TEST(JobStateMachineTest, EstimatesTheEndAndNeverGoesBack) {
+  double now = 100;
+  JobStateMachine job(Draft(), 0, [&] { return now; });
+  job.Report({"early", .5, {}});
+  EXPECT_EQ(job.snapshot().info.fraction, 0);
+  ASSERT_TRUE(job.Start());
+  now = 110;
+  job.Report({"learn", .25, 7.5});
+  JobInfo info = job.snapshot().info;
+  EXPECT_EQ(info.stage, "learn");
+  EXPECT_EQ(info.objective, 7.5);
+  EXPECT_DOUBLE_EQ(info.eta_seconds.value(), 30);
+  job.Report({"learn", .1, {}});
+  EXPECT_EQ(job.snapshot().info.fraction, .25);
+  job.Report({"learn", 7, {}});
+  EXPECT_EQ(job.snapshot().info.fraction, 1);
+}
+
+TEST(JobStateMachineTest, CancelsAtOnceWhileQueued) {
+  JobStateMachine job(Draft(), 0);
+  EXPECT_THAT(job.RequestCancel(), IsOk());
+  EXPECT_EQ(job.snapshot().info.state, JobState::kCancelled);
+  EXPECT_FALSE(job.Start());
+}
+
+TEST(JobStateMachineTest, AsksARunningJobToStop) {
+  JobStateMachine job(Draft(), 0);
+  ASSERT_TRUE(job.Start());
+  EXPECT_FALSE(job.cancel_requested());
+  EXPECT_THAT(job.RequestCancel(), IsOk());
+  EXPECT_TRUE(job.cancel_requested());
+  EXPECT_EQ(job.snapshot().info.state, JobState::kRunning);
+  ASSERT_TRUE(job.Cancelled());
+  EXPECT_THAT(job.snapshot().info.error, HasStatus(absl::StatusCode::kCancelled, testing::_));
+}
+
+TEST(JobStateMachineTest, RequeueForgetsTheAttempt) {
+  JobStateMachine job(Draft(), 1);
+  ASSERT_TRUE(job.Start());
+  job.Report({"fit", .5, 1.0});
+  ASSERT_TRUE(job.Requeue());
+  const JobSnapshot snapshot = job.snapshot();
+  EXPECT_EQ(snapshot.attempts, 1);
+  EXPECT_EQ(snapshot.info.fraction, 0);
+  EXPECT_EQ(snapshot.info.state, JobState::kQueued);
+}
+
+TEST(JobStateMachineTest, WaitersAndListenersHearEveryChange) {
+  JobStateMachine job(Draft(), 0);
+  std::atomic<int> calls = 0;
+  const int token = job.AddListener([&] { ++calls; });
+  std::thread worker([&] {
+    job.Start();
+    for (int i = 0; i < 100; ++i) job.Report({"learn", i / 100.0, {}});
+    job.Succeed("m", {});
+  });
+  JobSnapshot snapshot = job.snapshot();
+  while (!IsFinal(snapshot.info.state)) {
+    const JobSnapshot next = job.WaitForChange(snapshot.revision, 5);
+    ASSERT_GT(next.revision, snapshot.revision);
+    snapshot = next;
+  }
+  worker.join();
+  EXPECT_EQ(calls, 102);
+  job.RemoveListener(token);
+  job.Wake();
+  EXPECT_EQ(calls, 102);
+}
+
+TEST(JobStateMachineTest, WaitingEndsWithoutChange) {
+  JobStateMachine job(Draft(), 0);
+  EXPECT_EQ(job.WaitForChange(job.snapshot().revision, .01).info.state, JobState::kQueued);
+}
+
+// Whoever comes first decides; nobody sees two ends.
+TEST(JobStateMachineTest, OneEndUnderConcurrency) {
+  for (int round = 0; round < 200; ++round) {
+    JobStateMachine job(Draft(), 0);
+    ASSERT_TRUE(job.Start());
+    std::atomic<int> ends = 0;
+    std::thread a([&] { ends += job.Succeed("m", {}); });
+    std::thread b([&] { ends += job.Fail(absl::InternalError("x")); });
+    std::thread c([&] { ends += job.Cancelled(); });
+    a.join();
+    b.join();
+    c.join();
+    EXPECT_EQ(ends, 1);
+  }
+}
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,303 @@
+// Every ToProto has a FromProto that gives the same value back, and refuses what is hostile.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <type_traits>
+
+#include "pleat/base/random.h"
+#include "pleat/wire/service_messages.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "pleat/wire/stored_records.h"
+#include "pleat/wire/stream_messages.h"
+#include "pleat/wire/training_messages.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kId(64, 'a');
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Through the bytes, as on the wire.
+template <typename Message>
+Message Reparse(const Message& message) {
+  Message copy;
+  EXPECT_TRUE(copy.ParseFromString(message.SerializeAsString()));
+  return copy;
+}
+
+Pose RandomPose(Random* random, int num_joints) {
+  Pose pose;
+  pose.root_position << random->Normal(), random->Normal(), random->Normal();
+  for (int j = 0; j < num_joints; ++j) {
+    Eigen::Quaterniond q(random->Normal(), random->Normal(), random->Normal(), random->Normal());
+    pose.rotations.push_back(q.normalized());
+  }
+  return pose;
+}
+
+bool SamePose(const Pose& a, const Pose& b) {
+  if (a.root_position != b.root_position || a.rotations.size() != b.rotations.size()) return false;
+  for (size_t j = 0; j < a.rotations.size(); ++j) {
+    if (a.rotations[j].coeffs() != b.rotations[j].coeffs()) return false;
+  }
+  return true;
+}
+
+Skeleton SmallSkeleton() {
+  return Skeleton::Create({{"hips", -1, {0, 1, 0}}, {"chest", 0, {0, 1.4, .01}}}).value();
+}
+
+TrainOptions ChangedOptions() {
+  TrainOptions options = TrainOptions::Paper();
+  options.learner = "gp";
+  options.rotations = "quaternion";
+  options.history = 3;
+  options.rest_frame = 17;
+  options.yaw_degrees = 90.5;
+  options.latent_dimensions = 7;
+  options.iterations = 321;
+  options.dynamics_weight = .125;
+  options.detail_energy = .5;
+  options.max_components = 11;
+  options.seed = std::numeric_limits<uint64_t>::max();
+  return options;
+}
+
+TEST(MessagesTest, EveryTrainOptionCrossesTheWire) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions defaults, FromProto(v1::TrainOptions()));
+  EXPECT_EQ(defaults, TrainOptions());
+  const TrainOptions changed = ChangedOptions();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions back, FromProto(Reparse(ToProto(changed))));
+  EXPECT_EQ(back, changed);
+  // The one list of options and the proto have the same names.
+  std::set<std::string> names;
+  VisitTrainOptions(changed, [&](const char* name, const auto&) { names.insert(name); });
+  const auto* descriptor = v1::TrainOptions::descriptor();
+  EXPECT_EQ(static_cast<int>(names.size()), descriptor->field_count());
+  for (const std::string& name : names) {
+    EXPECT_NE(descriptor->FindFieldByName(name), nullptr) << name;
+  }
+  v1::TrainOptions bad;
+  bad.set_history(0);
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("history")));
+  bad.set_history(2);
+  bad.set_learner("magic");
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("learner")));
+}
+
+TEST(MessagesTest, PosesAndTracksAreExact) {
+  Random random(4);
+  for (int round = 0; round < 20; ++round) {
+    PoseTrack track;
+    track.fps = random.Uniform(1, 120);
+    for (int t = 0; t < 7; ++t) track.poses.push_back(RandomPose(&random, 18));
+    track.clip_starts = {0, 3};
+    PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack back, FromProto(Reparse(ToProto(track))));
+    EXPECT_EQ(back.fps, track.fps);
+    EXPECT_EQ(back.clip_starts, track.clip_starts);
+    for (int t = 0; t < 7; ++t) EXPECT_TRUE(SamePose(back.poses[t], track.poses[t]));
+  }
+}
+
+TEST(MessagesTest, HostilePosesAreRefused) {
+  Random random(4);
+  const v1::Pose good = ToProto(RandomPose(&random, 3));
+  ASSERT_THAT(FromProto(good), IsOk());
+  v1::Pose bad = good;
+  bad.mutable_root_position()->set_y(kNan);
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("root")));
+  bad = good;
+  bad.mutable_rotations(1)->set_w(kNan);
+  EXPECT_THAT(FromProto(bad),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rotations[1]")));
+  bad = good;
+  *bad.mutable_rotations(2) = v1::Quaternion();
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("norm 0")));
+  EXPECT_FALSE(FromProto(v1::Pose()).ok());
+  bad.clear_rotations();
+  for (int j = 0; j <= kMaxWireJoints; ++j) bad.add_rotations()->set_w(1);
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("1024")));
+
+  v1::PoseTrack track;
+  EXPECT_FALSE(FromProto(track).ok());
+  track.set_fps(30);
+  EXPECT_THAT(FromProto(track), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("empty")));
+  *track.add_poses() = good;
+  *track.add_poses() = good;
+  EXPECT_EQ(FromProto(track)->clip_starts, std::vector<int>{0});
+  for (const std::vector<int>& starts :
+       std::vector<std::vector<int>>{{1}, {0, 0}, {0, 2}, {0, -1}, {0, 1, 1}}) {
+    track.clear_clip_starts();
+    for (const int start : starts) track.add_clip_starts(start);
+    EXPECT_THAT(FromProto(track),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("clip_starts")));
+  }
+  track.clear_clip_starts();
+  for (const double fps : {0.0, -1.0, 1e9, kNan}) {
+    track.set_fps(fps);
+    EXPECT_THAT(FromProto(track), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("fps")));
+  }
+}
+
+TEST(MessagesTest, SequencesJobsAndModelsComeBack) {
+  SequenceInfo sequence{kId,
+                        "Gr\xc3\xbc\xc3\x9f"
+                        "e",
+                        175,
+                        9971,
+                        19938,
+                        {30000, 1001},
+                        1u << 31};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo s, FromProto(Reparse(ToProto(sequence))));
+  EXPECT_EQ(s.id, sequence.id);
+  EXPECT_EQ(s.name, sequence.name);
+  EXPECT_EQ(s.num_frames, 175);
+  EXPECT_EQ(s.frame_rate, sequence.frame_rate);
+  EXPECT_EQ(s.size_bytes, sequence.size_bytes);
+
+  JobInfo job;
+  job.id = "job-1";
+  job.state = JobState::kFailed;
+  job.sequence_ids = {kId, std::string(64, 'b')};
+  job.options = ChangedOptions();
+  job.model_name = "m";
+  job.stage = "learn";
+  job.fraction = .25;
+  job.objective = -3.5;
+  job.warnings = {"w1", "w2"};
+  job.error = absl::FailedPreconditionError("no rig fits");
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo j, FromProto(Reparse(ToProto(job))));
+  EXPECT_EQ(j.state, job.state);
+  EXPECT_EQ(j.sequence_ids, job.sequence_ids);
+  EXPECT_EQ(j.options, job.options);
+  EXPECT_EQ(j.objective, job.objective);
+  EXPECT_EQ(j.eta_seconds, std::nullopt);
+  EXPECT_EQ(j.warnings, job.warnings);
+  EXPECT_EQ(j.error, job.error);
+
+  ModelInfo model;
+  model.id = kId;
+  model.skeleton = SmallSkeleton();
+  model.num_vertices = 5;
+  model.memory_bytes = 7;
+  model.options = ChangedOptions();
+  model.record.learner = "gp";
+  model.record.fit.rms_percent = 1.25;
+  model.record.reconstruction.mean_mm = .5;
+  model.record.warnings = {"careful"};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo m, FromProto(Reparse(ToProto(model))));
+  EXPECT_EQ(m.skeleton.joint(1).name, "chest");
+  EXPECT_EQ(m.skeleton.rest_position(1), model.skeleton.rest_position(1));
+  EXPECT_EQ(m.options, model.options);
+  EXPECT_EQ(m.record.fit.rms_percent, 1.25);
+  EXPECT_EQ(m.record.reconstruction.mean_mm, .5);
+  EXPECT_EQ(m.record.warnings, model.record.warnings);
+}
+
+TEST(MessagesTest, AnErrorNeverTurnsIntoSuccess) {
+  JobInfo job;
+  job.id = "job-1";
+  job.error = absl::InternalError("x");
+  v1::Job message = ToProto(job);
+  for (const int code : {0, -1, 17, 1'000'000}) {
+    message.mutable_error()->set_code(code);
+    EXPECT_THAT(FromProto(message)->error, HasStatus(absl::StatusCode::kUnknown, HasSubstr("x")));
+  }
+}
+
+TEST(MessagesTest, HostileInfosAreRefused) {
+  v1::Sequence sequence = ToProto(SequenceInfo{kId, "s", 1, 1, 1, {30, 1}, 1});
+  ASSERT_THAT(FromProto(sequence), IsOk());
+  sequence.set_num_frames(-1);
+  EXPECT_THAT(FromProto(sequence),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("num_frames")));
+  sequence.set_num_frames(1);
+  sequence.mutable_frame_rate()->set_denominator(0);
+  EXPECT_FALSE(FromProto(sequence).ok());
+  for (const std::string& id : {std::string(), std::string("../../etc"), std::string(64, 'A')}) {
+    sequence.set_id(id);
+    EXPECT_THAT(FromProto(sequence),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("hexadecimal")));
+  }
+  v1::Job job;
+  EXPECT_FALSE(FromProto(job).ok());
+  job.set_id("job-1");
+  EXPECT_THAT(FromProto(job), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("state")));
+  job.set_state(v1::JOB_STATE_RUNNING);
+  job.set_fraction(kNan);
+  EXPECT_THAT(FromProto(job), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("fraction")));
+  EXPECT_FALSE(FromProto(v1::Model()).ok());
+  v1::Skeleton skeleton = ToProto(SmallSkeleton());
+  skeleton.mutable_joints(1)->set_parent(1);
+  EXPECT_FALSE(FromProto(skeleton).ok());
+}
+
+TEST(MessagesTest, NamesThatAreNoUtf8StillCrossTheWire) {
+  SequenceInfo sequence{kId, "\xff\xfe", 1, 1, 1, {30, 1}, 1};
+  EXPECT_EQ(FromProto(Reparse(ToProto(sequence)))->name, "\xef\xbf\xbd\xef\xbf\xbd");
+}
+
+TEST(MessagesTest, StreamsComeBack) {
+  StreamHeader header;
+  header.encoding = FrameEncoding::kDracoMesh;
+  header.num_vertices = 3;
+  header.num_points = 4;
+  header.num_triangles = 1;
+  header.box = {{1, -2, .5f}, 2.5f, 14};
+  header.topology = std::string("\0DRACO", 6);
+  header.vertex_order = {2, 0, 1};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const StreamHeader h, FromProto(Reparse(ToProto(header))));
+  EXPECT_EQ(h.encoding, header.encoding);
+  EXPECT_EQ(h.box, header.box);
+  EXPECT_EQ(h.topology, header.topology);
+  EXPECT_EQ(h.vertex_order, header.vertex_order);
+  EXPECT_EQ(h.num_points, 4);
+
+  PLEAT_ASSERT_OK_AND_ASSIGN(const FrameEncoderOptions defaults, FromProto(v1::StreamOptions()));
+  EXPECT_EQ(defaults.encoding, FrameEncoding::kDracoPointCloud);
+  EXPECT_EQ(defaults.position_bits, 12);
+  EXPECT_EQ(defaults.speed, 7);
+  v1::StreamOptions bad;
+  bad.set_position_bits(40);
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("8 to 20")));
+  bad.set_position_bits(12);
+  bad.set_speed(-1);
+  EXPECT_FALSE(FromProto(bad).ok());
+  bad.clear_speed();
+  bad.set_encoding(static_cast<v1::FrameEncoding>(99));
+  EXPECT_FALSE(FromProto(bad).ok());
+
+  const CharacterQuery query{kId, {1, 1.5}, true};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const CharacterQuery q, FromProto(Reparse(ToProto(query))));
+  EXPECT_EQ(q.bone_scales, query.bone_scales);
+  EXPECT_TRUE(q.skinned_only);
+  EXPECT_FALSE(FromProto(v1::Character()).ok());
+}
+
+TEST(MessagesTest, RandomBytesNeverCrashARecordReader) {
+  Random random(9);
+  JobInfo job;
+  job.id = "job-1";
+  const std::string good = EncodeRecord(job);
+  ASSERT_THAT(DecodeJobRecord(good), IsOk());
+  for (int round = 0; round < 5000; ++round) {
+    std::string bytes = good;
+    for (int k = 0; k < 3; ++k) {
+      bytes[random.UniformInt(static_cast<int>(bytes.size()))] =
+          static_cast<char>(random.NextBits());
+    }
+    bytes.resize(random.UniformInt(static_cast<int>(bytes.size()) + 1));
+    for (const absl::Status& status :
+         {DecodeJobRecord(bytes).status(), DecodeModelRecord(bytes).status(),
+          DecodeSequenceRecord(bytes).status()}) {
+      EXPECT_TRUE(status.ok() || status.code() == absl::StatusCode::kDataLoss);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pleat
