@@ -1,0 +1,146 @@
+#include "pleat/fitting/moments.h"
+
+#include <array>
+#include <cassert>
+
+namespace pleat {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+using Matrix4x3d = Eigen::Matrix<double, 4, 3>;
+using Matrix3x4d = Eigen::Matrix<double, 3, 4>;
+
+// Weights of one vertex in double precision, normalised to sum 1 exactly.
+std::array<double, kMaxInfluences> NormalizedWeights(const VertexInfluences& influences) {
+  std::array<double, kMaxInfluences> weights;
+  double total = 0;
+  for (int k = 0; k < kMaxInfluences; ++k) total += weights[k] = influences.weights[k];
+  for (double& weight : weights) weight /= total;
+  return weights;
+}
+
+// A_aa: takes [x; 1] to x - pivot.
+Matrix3x4d OwnBlock(const Vector3d& pivot) {
+  Matrix3x4d block;
+  block << Matrix3d::Identity(), -pivot;
+  return block;
+}
+
+// Descendants (strict) of every joint.
+std::vector<std::vector<int>> StrictDescendants(const Skeleton& skeleton) {
+  std::vector<std::vector<int>> descendants(skeleton.num_joints());
+  for (int j = 1; j < skeleton.num_joints(); ++j) {
+    for (int a = skeleton.parent(j); a >= 0; a = skeleton.parent(a)) descendants[a].push_back(j);
+  }
+  return descendants;
+}
+
+}  // namespace
+
+RigMoments ComputeRigMoments(const Rig& rig) {
+  const int num_joints = rig.skeleton.num_joints();
+  const int num_vertices = rig.weights.num_vertices();
+  assert(rig.rest_positions.cols() == num_vertices && num_vertices > 0);
+  RigMoments moments;
+  moments.num_joints = num_joints;
+  moments.num_vertices = num_vertices;
+  moments.centre = rig.rest_positions.rowwise().mean();
+  moments.products.assign(static_cast<size_t>(num_joints) * num_joints, Eigen::Matrix4d::Zero());
+  for (int v = 0; v < num_vertices; ++v) {
+    const VertexInfluences& influences = rig.weights.vertex(v);
+    const auto weights = NormalizedWeights(influences);
+    Vector4d u;
+    u << rig.rest_positions.col(v) - moments.centre, 1;
+    const Eigen::Matrix4d square = u * u.transpose();
+    for (int k = 0; k < kMaxInfluences && weights[k] > 0; ++k) {
+      for (int l = 0; l < kMaxInfluences && weights[l] > 0; ++l) {
+        moments.products[influences.bones[k] * num_joints + influences.bones[l]] +=
+            (weights[k] * weights[l]) * square;
+      }
+    }
+  }
+  moments.weighted.assign(num_joints, Eigen::Matrix4d::Zero());
+  for (int k = 0; k < num_joints; ++k) {
+    for (int l = 0; l < num_joints; ++l) {
+      moments.weighted[k] += moments.products[k * num_joints + l];
+    }
+  }
+  return moments;
+}
+
+FrameMoments ComputeFrameMoments(const Rig& rig, const RigMoments& rig_moments,
+                                 const Eigen::Matrix3Xf& positions) {
+  assert(positions.cols() == rig.rest_positions.cols());
+  FrameMoments frame;
+  Vector3d sum = Vector3d::Zero();
+  for (Eigen::Index v = 0; v < positions.cols(); ++v) sum += positions.col(v).cast<double>();
+  frame.centre = sum / static_cast<double>(positions.cols());
+  frame.cross.assign(rig_moments.num_joints, Matrix4x3d::Zero());
+  for (Eigen::Index v = 0; v < positions.cols(); ++v) {
+    const VertexInfluences& influences = rig.weights.vertex(static_cast<int>(v));
+    const auto weights = NormalizedWeights(influences);
+    const Vector3d y = positions.col(v).cast<double>() - frame.centre;
+    frame.sum_squares += y.squaredNorm();
+    Vector4d u;
+    u << rig.rest_positions.col(v) - rig_moments.centre, 1;
+    const Matrix4x3d product = u * y.transpose();
+    for (int k = 0; k < kMaxInfluences && weights[k] > 0; ++k) {
+      frame.cross[influences.bones[k]] += weights[k] * product;
+    }
+  }
+  return frame;
+}
+
+ChainMoments ComputeChainMoments(const RigMoments& moments, const Skeleton& skeleton) {
+  const int num_joints = moments.num_joints;
+  assert(skeleton.num_joints() == num_joints);
+  const auto descendants = StrictDescendants(skeleton);
+  // g_ia = sum_k W_ik A_ak u_i with A_aa = [I | -pivot], A_ak = [0 | offset] for descendants k of
+  // a; so block ab of the Gram matrix is sum_kl A_ak U_kl A_bl^T.
+  ChainMoments chain;
+  chain.num_joints = num_joints;
+  chain.num_vertices = moments.num_vertices;
+  chain.gram = Eigen::MatrixXd::Zero(3 * num_joints, 3 * num_joints);
+  chain.sums = Eigen::Matrix3Xd::Zero(3, num_joints);
+  std::vector<Matrix4x3d> right(num_joints);  // sum_l U_kl A_bl^T for the current b
+  for (int b = 1; b < num_joints; ++b) {
+    const Vector3d& parent_position = skeleton.rest_position(skeleton.parent(b));
+    const Matrix3x4d own = OwnBlock(parent_position - moments.centre);
+    const Vector3d offset = skeleton.rest_position(b) - parent_position;
+    for (int k = 1; k < num_joints; ++k) {
+      right[k] = moments.products[k * num_joints + b] * own.transpose();
+      for (const int l : descendants[b]) {
+        right[k] += moments.products[k * num_joints + l].col(3) * offset.transpose();
+      }
+      chain.sums.col(b) += right[k].row(3).transpose();  // weights add up to 1
+    }
+    for (int a = 1; a < num_joints; ++a) {
+      const Vector3d& pivot_a = skeleton.rest_position(skeleton.parent(a));
+      Matrix3d block = OwnBlock(pivot_a - moments.centre) * right[a];
+      const Vector3d offset_a = skeleton.rest_position(a) - pivot_a;
+      for (const int k : descendants[a]) block += offset_a * right[k].row(3);
+      chain.gram.block<3, 3>(3 * a, 3 * b) = block;
+    }
+  }
+  return chain;
+}
+
+Eigen::MatrixXd ComputeChainCross(const RigMoments& moments, const FrameMoments& frame,
+                                  const Skeleton& skeleton) {
+  const int num_joints = moments.num_joints;
+  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(3 * num_joints, 3);
+  // Sums of the homogeneous row over strict descendants, leaves first.
+  std::vector<Eigen::RowVector3d> below(num_joints, Eigen::RowVector3d::Zero());
+  for (int a = num_joints - 1; a >= 1; --a) {
+    const int parent = skeleton.parent(a);
+    const Vector3d& pivot = skeleton.rest_position(parent);
+    cross.middleRows<3>(3 * a) = OwnBlock(pivot - moments.centre) * frame.cross[a] +
+                                 (skeleton.rest_position(a) - pivot) * below[a];
+    below[parent] += below[a] + frame.cross[a].row(3);
+  }
+  return cross;
+}
+
+}  // namespace pleat

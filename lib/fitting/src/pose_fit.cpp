@@ -1,0 +1,274 @@
+#include "pleat/fitting/pose_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/parallel.h"
+#include "pleat/base/status.h"
+#include "pleat/fitting/moments.h"
+#include "pleat/fitting/pose_energy.h"
+#include "pleat/fitting/pose_solvers.h"
+
+namespace pleat {
+namespace {
+
+// All state of a fit: one entry per frame, so that frames can be worked on in parallel.
+class PoseFitter {
+ public:
+  PoseFitter(const MeshSequence& sequence, const Rig& rig, const PoseFitOptions& options)
+      : sequence_(sequence),
+        rig_(rig),
+        options_(options),
+        rig_moments_(ComputeRigMoments(rig)),
+        chain_(ComputeChainMoments(rig_moments_, rig.skeleton)),
+        stiffness_unit_(chain_.gram.trace() / (3 * chain_.num_joints)),
+        energy_(chain_, rig.skeleton, options.bend_stiffness * stiffness_unit_),
+        frames_(sequence.num_frames()),
+        clip_of_(sequence.num_frames()) {
+    for (size_t c = 0; c < options.clip_starts.size(); ++c) {
+      std::fill(clip_of_.begin() + options.clip_starts[c], clip_of_.end(), static_cast<int>(c));
+    }
+  }
+
+  absl::Status Run(const Progress& progress) {
+    const bool walk = options_.method == PoseFitMethod::kWalk;
+    PLEAT_RETURN_IF_ERROR(ForFrames(progress.Stage("fit", 0, walk ? 0.8 : 0.5), 0, 1, [&](int t) {
+      StartFrame(t);
+      if (!walk) Improve(t, frames_[t].pose, energy_);
+    }));
+    if (walk) return WalkThroughTime(progress.Stage("fit", 0.8, 1));
+    for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
+      const double begin = 0.5 + 0.3 * pass / options_.neighbour_passes;
+      const double end = 0.5 + 0.3 * (pass + 1) / options_.neighbour_passes;
+      bool changed = false;
+      PLEAT_RETURN_IF_ERROR(TryNeighbours(progress.Stage("fit", begin, end), &changed));
+      if (!changed) break;
+    }
+    if (options_.smoothness > 0) return Smooth(progress.Stage("fit", 0.8, 1));
+    return progress.Stage("fit", 0.8, 1).Report(1);
+  }
+
+  PoseTrack Track() const {
+    PoseTrack track;
+    track.fps = sequence_.frame_rate().fps();
+    track.clip_starts = options_.clip_starts;
+    for (const Frame& frame : frames_) {
+      track.poses.push_back(FromChainPose(rig_.skeleton, frame.pose, frame.centre));
+      FixRootGauge(rig_.skeleton, &track.poses.back());
+    }
+    return track;
+  }
+
+  void Summarize(PoseFitSummary* summary) const {
+    *summary = {};
+    double squares = 0, iterations = 0;
+    for (const Frame& frame : frames_) {
+      PoseEnergy energy = energy_;
+      energy.SetFrame(frame.cross, frame.sum_squares);
+      const double mean = std::max(0.0, energy.DataValue(frame.pose)) / chain_.num_vertices;
+      summary->frame_rms_m.push_back(std::sqrt(mean));
+      squares += mean;
+      iterations += frame.num_iterations;
+      summary->num_rescued_frames += frame.rescued;
+    }
+    const double num_frames = static_cast<double>(frames_.size());
+    summary->rms_m = std::sqrt(squares / num_frames);
+    summary->mean_iterations = iterations / num_frames;
+    summary->worst_frames.resize(frames_.size());
+    std::iota(summary->worst_frames.begin(), summary->worst_frames.end(), 0);
+    std::stable_sort(summary->worst_frames.begin(), summary->worst_frames.end(), [&](int a, int b) {
+      return summary->frame_rms_m[a] > summary->frame_rms_m[b];
+    });
+    summary->worst_frames.resize(std::min<size_t>(5, summary->worst_frames.size()));
+  }
+
+ private:
+  struct Frame {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    Eigen::MatrixXd cross;  // 3J x 3
+    double sum_squares = 0;
+    ChainPose pose;
+    double energy = 0;
+    int num_iterations = 0;
+    bool rescued = false;
+  };
+
+  // body(t) for t = first, first + step, ...; in batches, so that progress and cancellation act.
+  absl::Status ForFrames(const Progress& progress, int first, int step,
+                         const std::function<void(int)>& body) {
+    constexpr int kBatch = 64;
+    const int count = (sequence_.num_frames() - first + step - 1) / step;
+    for (int begin = 0; begin < count; begin += kBatch) {
+      const int size = std::min(kBatch, count - begin);
+      ParallelFor(size, options_.num_threads, [&](int item) {
+        if (!progress.cancelled()) body(first + (begin + item) * step);
+      });
+      PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(begin + size) / count));
+    }
+    return absl::OkStatus();
+  }
+
+  void StartFrame(int t) {
+    const FrameMoments moments = ComputeFrameMoments(rig_, rig_moments_, sequence_.frame(t));
+    Frame& frame = frames_[t];
+    frame.centre = moments.centre;
+    frame.cross = ComputeChainCross(rig_moments_, moments, rig_.skeleton);
+    frame.sum_squares = moments.sum_squares;
+    frame.pose = ClosedFormWalk(rig_moments_, moments, rig_.skeleton);
+  }
+
+  // Solves frame t from `start`; returns pose and energy without storing them.
+  std::pair<ChainPose, PoseSolverSummary> Solve(const PoseEnergy& energy, ChainPose start,
+                                                int max_iterations) const {
+    const PoseSolverSummary solved =
+        MinimizePose(energy, {max_iterations, options_.tolerance}, &start);
+    return {std::move(start), solved};
+  }
+
+  void Improve(int t, const ChainPose& start, const PoseEnergy& shared_energy) {
+    Frame& frame = frames_[t];
+    PoseEnergy energy = shared_energy;
+    energy.SetFrame(frame.cross, frame.sum_squares);
+    auto [pose, solved] = Solve(energy, start, options_.max_iterations);
+    frame.pose = std::move(pose);
+    frame.energy = solved.energy;
+    frame.num_iterations += solved.num_iterations;
+  }
+
+  bool SameClip(int s, int t) const {
+    return s >= 0 && s < sequence_.num_frames() && clip_of_[s] == clip_of_[t];
+  }
+
+  // Every frame tries its neighbours' poses of the pass before (so the order does not matter).
+  absl::Status TryNeighbours(const Progress& progress, bool* changed) {
+    constexpr int kTrial = 12;  // iterations that show whether a start leads to another valley
+    std::vector<ChainPose> before;
+    for (const Frame& frame : frames_) before.push_back(frame.pose);
+    std::vector<char> improved(frames_.size(), 0);
+    PLEAT_RETURN_IF_ERROR(ForFrames(progress, 0, 1, [&](int t) {
+      Frame& frame = frames_[t];
+      PoseEnergy energy = energy_;
+      energy.SetFrame(frame.cross, frame.sum_squares);
+      for (const int s : {t - 1, t + 1}) {
+        if (!SameClip(s, t)) continue;
+        auto [pose, solved] = Solve(energy, before[s], std::min(kTrial, options_.max_iterations));
+        frame.num_iterations += solved.num_iterations;
+        if (solved.energy < frame.energy * (1 - 1e-3)) {  // another valley, not rounding
+          frame.pose = std::move(pose);
+          frame.energy = solved.energy;
+          frame.rescued = true;
+          improved[t] = 1;
+        }
+      }
+    }));
+    *changed = std::find(improved.begin(), improved.end(), 1) != improved.end();
+    return absl::OkStatus();
+  }
+
+  // Block descent on the smoothed energy: even frames with odd ones held, then the other way.
+  absl::Status Smooth(const Progress& progress) {
+    constexpr int kSweeps = 3;
+    for (int half = 0; half < 2 * kSweeps; ++half) {
+      const Progress part =
+          progress.Stage("fit", half / (2.0 * kSweeps), (half + 1) / (2.0 * kSweeps));
+      PLEAT_RETURN_IF_ERROR(ForFrames(part, half % 2, 2, [&](int t) {
+        Frame& frame = frames_[t];
+        PoseEnergy energy = energy_;
+        energy.SetFrame(frame.cross, frame.sum_squares);
+        for (const int s : {t - 1, t + 1}) {
+          if (SameClip(s, t)) {
+            energy.AddAttraction(frames_[s].pose.rotations, options_.smoothness * stiffness_unit_);
+          }
+        }
+        auto [pose, solved] = Solve(energy, frame.pose, options_.max_iterations);
+        frame.pose = std::move(pose);
+        frame.num_iterations += solved.num_iterations;
+      }));
+    }
+    return absl::OkStatus();
+  }
+
+  // The paper's fit is sequential: each frame starts from the one before.
+  absl::Status WalkThroughTime(const Progress& progress) {
+    PoseEnergy energy = energy_;
+    for (int t = 0; t < sequence_.num_frames(); ++t) {
+      Frame& frame = frames_[t];
+      energy.SetFrame(frame.cross, frame.sum_squares);
+      if (SameClip(t - 1, t)) frame.pose = frames_[t - 1].pose;
+      WalkSweep(energy, rig_.skeleton, &frame.pose);
+      frame.num_iterations = 1;
+      if (t % 64 == 63 || t + 1 == sequence_.num_frames()) {
+        PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / sequence_.num_frames()));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  const MeshSequence& sequence_;
+  const Rig& rig_;
+  const PoseFitOptions& options_;
+  const RigMoments rig_moments_;
+  const ChainMoments chain_;
+  const double stiffness_unit_;  // square metres
+  const PoseEnergy energy_;      // without a frame
+  std::vector<Frame> frames_;
+  std::vector<int> clip_of_;
+};
+
+absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig,
+                        const PoseFitOptions& options) {
+  const int num_vertices = sequence.num_vertices();
+  if (rig.weights.num_vertices() != num_vertices || rig.rest_positions.cols() != num_vertices) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("pose fit: the rig has ", rig.weights.num_vertices(), " skinned and ",
+                     rig.rest_positions.cols(), " rest vertices, the sequence '", sequence.name(),
+                     "' has ", num_vertices, "; use the rig of this mesh"));
+  }
+  const std::vector<int>& starts = options.clip_starts;
+  bool ascending = !starts.empty() && starts.front() == 0;
+  for (size_t c = 1; c < starts.size(); ++c) ascending &= starts[c] > starts[c - 1];
+  if (!ascending || starts.back() >= sequence.num_frames()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("pose fit: clip starts must ascend from 0 and stay below the ",
+                     sequence.num_frames(), " frames of the sequence"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
+                                   const PoseFitOptions& options, PoseFitSummary* summary,
+                                   const Progress& progress) {
+  PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, options));
+  PoseFitter fitter(sequence, rig, options);
+  PLEAT_RETURN_IF_ERROR(fitter.Run(progress));
+  if (summary != nullptr) fitter.Summarize(summary);
+  return fitter.Track();
+}
+
+void FixRootGauge(const Skeleton& skeleton, Pose* pose) {
+  std::vector<int> hips = {skeleton.FindJoint("leftUpperLeg"), skeleton.FindJoint("rightUpperLeg")};
+  const bool named = std::all_of(hips.begin(), hips.end(),
+                                 [&](int j) { return j > 0 && skeleton.parent(j) == 0; });
+  if (!named) hips = skeleton.children(0);
+  if (hips.empty()) return;
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  const Eigen::Vector4d first = pose->rotations[hips[0]].coeffs();
+  for (const int j : hips) {
+    const Eigen::Vector4d q = pose->rotations[j].coeffs();
+    sum += q.dot(first) < 0 ? Eigen::Vector4d(-q) : q;
+  }
+  const Eigen::Quaterniond turn(Eigen::Vector4d(sum.normalized()));  // relative to the old root
+  pose->rotations[0] = (pose->rotations[0] * turn).normalized();
+  for (const int j : skeleton.children(0)) {
+    pose->rotations[j] = (turn.conjugate() * pose->rotations[j]).normalized();
+    if (pose->rotations[j].w() < 0) pose->rotations[j].coeffs() *= -1;
+  }
+}
+
+}  // namespace pleat

@@ -1,0 +1,23 @@
+// The control mesh: a subset of the vertices, so that it animates by index (method.md, section 4).
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/mesh/topology.h"
+
+namespace pleat {
+
+// Chooses round(fraction * V) vertices, ascending, by edge-collapse simplification of the frame
+// `reference` (3 x V, metres) with meshoptimizer (quadric error metric, Garland and Heckbert 1997),
+// which keeps a subset of the vertices. Where it cannot meet the count exactly (borders, topology),
+// the closest pairs are thinned or the largest gaps filled. Every connected component keeps at
+// least one vertex, which can raise the count; coincident vertices count as connected. fraction 1
+// returns all vertices. Deterministic. kInvalidArgument when fraction is not in (0, 1] or the
+// counts of `topology` and `reference` differ.
+absl::StatusOr<std::vector<int>> SelectControlVertices(const Topology& topology,
+                                                       const Eigen::Matrix3Xd& reference,
+                                                       double fraction);
+
+}  // namespace pleat

@@ -1,0 +1,127 @@
+#include "pleat/fitting/details.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "pleat/fitting/pose_fit.h"
+#include "support/skinned_figure.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr DetailAxes kAllAxes[] = {DetailAxes::kWorld, DetailAxes::kRoot, DetailAxes::kLocal};
+
+class DetailsTest : public ::testing::Test {
+ protected:
+  DetailsTest()
+      : figure_(MakeSkinnedFigure()),
+        track_(MakeSmoothPoses(figure_.rig.skeleton, 12, 21)),
+        wave_(MakeWaveDetails(figure_, 12)),
+        sequence_(MakeSkinnedSequence(figure_, track_, wave_)),
+        all_(figure_.topology.num_vertices()) {
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+
+  SkinnedFigure figure_;
+  PoseTrack track_;
+  Eigen::MatrixXd wave_;
+  MeshSequence sequence_;
+  std::vector<int> all_;
+};
+
+TEST_F(DetailsTest, LocalDetailsAreTheOnesThatWereMade) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::MatrixXd details,
+                             ComputeDetails(sequence_, figure_.rig, track_, all_));
+  EXPECT_LT((details - wave_).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_F(DetailsTest, ApplyIsTheInverseInAllAxes) {
+  const std::vector<int> some = {3, 1, 40, 200, 401};
+  for (const DetailAxes axes : kAllAxes) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Eigen::MatrixXd details,
+        ComputeDetails(sequence_, figure_.rig, track_, some, {.axes = axes}));
+    ASSERT_EQ(details.cols(), 15);
+    for (int t = 0; t < 12; ++t) {
+      BoneTransforms transforms;
+      ComputeBoneTransforms(figure_.rig.skeleton, track_.poses[t], {}, &transforms);
+      Eigen::Matrix3Xd skinned, subset(3, 5), positions;
+      SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms, &skinned);
+      for (int c = 0; c < 5; ++c) subset.col(c) = skinned.col(some[c]);
+      std::vector<Eigen::Quaterniond> rotations;
+      ComputeDetailRotations(axes, figure_.rig.weights, some, transforms, &rotations);
+      const Eigen::VectorXd row = details.row(t).transpose();
+      ApplyDetails(subset, rotations, row, &positions);
+      for (int c = 0; c < 5; ++c) {
+        EXPECT_LT((positions.col(c) - sequence_.FrameAsDouble(t).col(some[c])).norm(), 1e-9);
+      }
+      const Eigen::VectorXf single = row.cast<float>();
+      ApplyDetails(subset, rotations, single, &subset);  // in place, float details
+      EXPECT_LT((positions - subset).cwiseAbs().maxCoeff(), 1e-8);
+    }
+  }
+}
+
+TEST_F(DetailsTest, RootAndLocalDetailsIgnoreRigidMotionOfTheWholeBody) {
+  const Eigen::Quaterniond turn = QuaternionFromExponentialMap({0.3, 2, -0.5});
+  const Eigen::Vector3d shift(3, -1, 2);
+  PoseTrack moved_track = track_;
+  std::vector<Eigen::Matrix3Xf> moved_frames;
+  for (int t = 0; t < 12; ++t) {
+    moved_frames.push_back(
+        ((turn.toRotationMatrix() * sequence_.FrameAsDouble(t)).colwise() + shift).cast<float>());
+    moved_track.poses[t].root_position = turn * track_.poses[t].root_position + shift;
+    moved_track.poses[t].rotations[0] = turn * track_.poses[t].rotations[0];
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence moved,
+                             MeshSequence::Create(figure_.topology, std::move(moved_frames)));
+  for (const DetailAxes axes : kAllAxes) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Eigen::MatrixXd before,
+        ComputeDetails(sequence_, figure_.rig, track_, all_, {.axes = axes}));
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Eigen::MatrixXd after,
+        ComputeDetails(moved, figure_.rig, moved_track, all_, {.axes = axes}));
+    const double change = (after - before).cwiseAbs().maxCoeff();
+    if (axes == DetailAxes::kWorld) {
+      EXPECT_GT(change, 1e-3);
+    } else {
+      EXPECT_LT(change, 3e-6);
+    }
+  }
+}
+
+TEST_F(DetailsTest, SameForEveryThreadCount) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Eigen::MatrixXd one,
+      ComputeDetails(sequence_, figure_.rig, track_, all_, {.num_threads = 1}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Eigen::MatrixXd three,
+      ComputeDetails(sequence_, figure_.rig, track_, all_, {.num_threads = 3}));
+  EXPECT_EQ(one, three);
+}
+
+TEST_F(DetailsTest, WrongInputIsRefusedWithWords) {
+  const SkinnedFigure other = MakeSkinnedFigure({.num_rings = 4});
+  EXPECT_THAT(ComputeDetails(sequence_, other.rig, track_, {0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rig")));
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, track_, {0, 612}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex 612")));
+  PoseTrack broken = track_;
+  broken.poses[4].rotations.pop_back();
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, broken, {0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("joints")));
+  broken.poses.pop_back();
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, broken, {0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("11 frames")));
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, track_, all_, {},
+                             Progress(nullptr, [] { return true; })),
+              HasStatus(absl::StatusCode::kCancelled, HasSubstr("")));
+}
+
+}  // namespace
+}  // namespace pleat

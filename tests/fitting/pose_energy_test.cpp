@@ -1,0 +1,127 @@
+#include "pleat/fitting/pose_energy.h"
+
+#include <gtest/gtest.h>
+
+#include "pleat/math/rotations.h"
+#include "pleat/optimize/objective.h"
+#include "support/skinned_figure.h"
+
+namespace pleat {
+namespace {
+
+// The energy along tangent vectors at `base`.
+class TangentObjective : public Objective {
+ public:
+  TangentObjective(const PoseEnergy& energy, const ChainPose& base)
+      : energy_(energy), base_(base) {}
+  int num_unknowns() const override { return 3 * base_.num_joints() + 3; }
+  double Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) override {
+    ChainPose pose = base_;
+    pose.Move(x);
+    if (gradient == nullptr) return energy_.Value(pose);
+    Eigen::MatrixXd hessian;
+    return energy_.Linearize(pose, gradient, &hessian);
+  }
+
+ private:
+  const PoseEnergy& energy_;
+  const ChainPose& base_;
+};
+
+class PoseEnergyTest : public ::testing::Test {
+ protected:
+  PoseEnergyTest()
+      : figure_(MakeSkinnedFigure()),
+        track_(MakeSmoothPoses(figure_.rig.skeleton, 8, 5)),
+        sequence_(MakeSkinnedSequence(figure_, track_)),
+        moments_(ComputeRigMoments(figure_.rig)),
+        chain_(ComputeChainMoments(moments_, figure_.rig.skeleton)) {}
+
+  // An energy with every term, and a pose away from its minimum.
+  PoseEnergy MakeEnergy(int t, double bend, double attraction) {
+    PoseEnergy energy(chain_, figure_.rig.skeleton, bend);
+    const FrameMoments frame = ComputeFrameMoments(figure_.rig, moments_, sequence_.frame(t));
+    energy.SetFrame(ComputeChainCross(moments_, frame, figure_.rig.skeleton), frame.sum_squares);
+    if (attraction > 0) energy.AddAttraction(PoseAt(2).rotations, attraction);
+    return energy;
+  }
+  ChainPose PoseAt(int t) const {
+    return ToChainPose(figure_.rig.skeleton, track_.poses[t], {0.3, 0.8, 0.4});
+  }
+
+  SkinnedFigure figure_;
+  PoseTrack track_;
+  MeshSequence sequence_;
+  RigMoments moments_;
+  ChainMoments chain_;
+};
+
+TEST_F(PoseEnergyTest, GradientAgreesWithDifferences) {
+  for (const double attraction : {0.0, 0.7}) {
+    const PoseEnergy energy = MakeEnergy(7, 0.5, attraction);
+    const ChainPose base = PoseAt(0);
+    TangentObjective objective(energy, base);
+    const GradientCheck check =
+        CheckGradient(objective, Eigen::VectorXd::Zero(objective.num_unknowns()));
+    EXPECT_LT(check.max_relative_error, 1e-6) << "unknown " << check.worst_unknown;
+  }
+}
+
+TEST_F(PoseEnergyTest, GaussNewtonMatrixIsTheCurvatureOfTheLinearisedVertices) {
+  // E of vertices moved linearly along a tangent d is E + g.d + d.H.d / 2 exactly, so H is checked
+  // through the Jacobian: |J d|^2 = d.H.d / 2, with J d by central differences of the vertices.
+  const PoseEnergy energy = MakeEnergy(7, 0, 0);
+  const ChainPose base = PoseAt(3);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  energy.Linearize(base, &gradient, &hessian);
+  EXPECT_LT((hessian - hessian.transpose()).cwiseAbs().maxCoeff(), 1e-9);
+  auto vertices = [&](const Eigen::VectorXd& step) {
+    ChainPose pose = base;
+    pose.Move(step);
+    const Pose local = FromChainPose(figure_.rig.skeleton, pose, Eigen::Vector3d::Zero());
+    BoneTransforms transforms;
+    ComputeBoneTransforms(figure_.rig.skeleton, local, {}, &transforms);
+    Eigen::Matrix3Xd positions;
+    SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms, &positions);
+    return positions;
+  };
+  Random random(4);
+  for (int trial = 0; trial < 5; ++trial) {
+    Eigen::VectorXd direction(gradient.size());
+    for (double& entry : direction) entry = random.Normal();
+    const double h = 1e-5;
+    const Eigen::Matrix3Xd derivative =
+        (vertices(h * direction) - vertices(-h * direction)) / (2 * h);
+    const double expected = 2 * derivative.squaredNorm();
+    EXPECT_NEAR(direction.dot(hessian * direction), expected, 1e-5 * expected);
+  }
+}
+
+TEST_F(PoseEnergyTest, StiffnessTermsAreWhatTheySay) {
+  const ChainPose pose = PoseAt(5), target = PoseAt(2);
+  const double data = MakeEnergy(1, 0, 0).Value(pose);
+  double bend = 0, attraction = 0;
+  for (int a = 0; a < pose.num_joints(); ++a) {
+    attraction += (pose.rotation(a) - target.rotation(a)).squaredNorm();
+    if (a == 0) continue;
+    const int parent = figure_.rig.skeleton.parent(a);
+    bend += (pose.rotation(a) - pose.rotation(parent)).squaredNorm();
+  }
+  EXPECT_NEAR(MakeEnergy(1, 0.5, 0.7).Value(pose), data + 0.5 * bend + 0.7 * attraction, 1e-9);
+  EXPECT_NEAR(MakeEnergy(1, 0.5, 0.7).DataValue(pose), data, 1e-9);
+}
+
+TEST_F(PoseEnergyTest, ChainPoseRoundTrip) {
+  const Skeleton& skeleton = figure_.rig.skeleton;
+  const Eigen::Vector3d centre(1, 2, 3);
+  const Pose pose = FromChainPose(skeleton, ToChainPose(skeleton, track_.poses[6], centre), centre);
+  EXPECT_LT((pose.root_position - track_.poses[6].root_position).norm(), 1e-12);
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    EXPECT_LT(pose.rotations[j].angularDistance(track_.poses[6].rotations[j]), 1e-7);
+    EXPECT_GE(pose.rotations[j].w(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace pleat
