@@ -1,24 +1,23 @@
 #include "pleat/formats/sequence_file.h"
 
-#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "array_io.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
+#include "sealed_file.h"
 
 namespace pleat {
 namespace {
 
-constexpr std::string_view kMagic = "PLEATSEQ";
-constexpr uint32_t kVersion = 1;
+constexpr SealedFileKind kKind = {"PLEATSEQ", 1, "sequence file"};
 constexpr size_t kMaxNameBytes = 4096;
 constexpr uint32_t kHasCornerTexcoords = 1, kHasFaceMaterials = 2;
-constexpr size_t kChecksumBytes = std::tuple_size_v<Sha256Digest>;
 
 // Fields 3 to 11.
 struct Header {
@@ -54,29 +53,6 @@ Header MakeHeader(const MeshSequence& sequence) {
   return header;
 }
 
-// Checks magic, version and checksum; returns what stands between version and checksum.
-absl::StatusOr<std::string_view> OpenEnvelope(std::string_view bytes) {
-  ByteReader reader(bytes);
-  if (bytes.empty()) return absl::InvalidArgumentError("the sequence file is empty");
-  PLEAT_ASSIGN_OR_RETURN(const std::string_view magic, reader.ReadRaw(kMagic.size(), "magic"));
-  if (magic != kMagic) {
-    return absl::InvalidArgumentError("not a Pleat sequence file: it does not begin with PLEATSEQ");
-  }
-  PLEAT_ASSIGN_OR_RETURN(const uint32_t version, reader.Read<uint32_t>("version"));
-  if (version != kVersion) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("sequence file version ", version, "; this program reads version ", kVersion));
-  }
-  PLEAT_RETURN_IF_ERROR(reader.Require(kChecksumBytes, 1, "checksum"));
-  const std::string_view content = bytes.substr(0, bytes.size() - kChecksumBytes);
-  const Sha256Digest digest = ComputeSha256(content);
-  if (std::memcmp(digest.data(), bytes.data() + content.size(), kChecksumBytes) != 0) {
-    return absl::DataLossError(
-        "the checksum of the sequence file does not fit its content: it is cut off or corrupt");
-  }
-  return content.substr(reader.offset());
-}
-
 absl::StatusOr<Header> ReadHeader(ByteReader* reader, const MeshFileLimits& limits) {
   Header header;
   PLEAT_RETURN_IF_ERROR(
@@ -97,14 +73,6 @@ absl::StatusOr<Header> ReadHeader(ByteReader* reader, const MeshFileLimits& limi
     return absl::InvalidArgumentError(absl::StrCat("unknown flags ", header.flags));
   }
   return header;
-}
-
-template <typename T>
-absl::Status ReadVector(ByteReader* reader, uint64_t count, absl::string_view what,
-                        std::vector<T>* values) {
-  PLEAT_RETURN_IF_ERROR(reader->Require(count, sizeof(T), what));
-  values->resize(count);
-  return reader->ReadArray(std::span(*values), what);
 }
 
 absl::StatusOr<MeshSequenceOptions> ReadNames(ByteReader* reader, const Header& header) {
@@ -164,8 +132,7 @@ std::string EncodeSequence(const MeshSequence& sequence) {
   const Topology& topology = sequence.topology();
   const Header header = MakeHeader(sequence);
   ByteWriter writer;
-  writer.WriteRaw(kMagic);
-  writer.Write(kVersion);
+  BeginSealedFile(kKind, &writer);
   writer.WriteArray(std::span(reinterpret_cast<const uint32_t*>(&header), 9));
   writer.WriteString(Clip(sequence.name()));
   writer.WriteString(Clip(appearance.material_library));
@@ -181,14 +148,12 @@ std::string EncodeSequence(const MeshSequence& sequence) {
     const Eigen::Matrix3Xf& frame = sequence.frame(t);
     writer.WriteArray(std::span(frame.data(), static_cast<size_t>(frame.size())));
   }
-  const Sha256Digest digest = ComputeSha256(writer.bytes());
-  writer.WriteArray(std::span<const uint8_t>(digest));
-  return writer.Release();
+  return SealFile(&writer);
 }
 
 absl::StatusOr<MeshSequence> DecodeSequence(std::string_view bytes, const MeshFileLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string_view content, OpenEnvelope(bytes));
-  ByteReader reader(content);
+  PLEAT_ASSIGN_OR_RETURN(const std::string_view content, OpenSealedFile(kKind, bytes));
+  ByteReader reader(content.substr(kSealedHeaderBytes));
   PLEAT_ASSIGN_OR_RETURN(const Header header, ReadHeader(&reader, limits));
   PLEAT_ASSIGN_OR_RETURN(MeshSequenceOptions options, ReadNames(&reader, header));
   std::vector<int32_t> face_sizes, corner_vertices;

@@ -30,33 +30,6 @@ absl::Status CheckFrame(const Eigen::Matrix3Xf& frame, int num_vertices, const s
   return absl::OkStatus();
 }
 
-// Every index of `indices` is -1 (none) or names one of `num_items` items.
-absl::Status CheckIndices(const std::vector<int32_t>& indices, int num_expected, size_t num_items,
-                          absl::string_view what) {
-  if (indices.empty()) return absl::OkStatus();
-  if (indices.size() != static_cast<size_t>(num_expected)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("there are ", indices.size(), " ", what, " for ", num_expected));
-  }
-  for (size_t i = 0; i < indices.size(); ++i) {
-    if (indices[i] < -1 || indices[i] >= static_cast<int64_t>(num_items)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(what, ": entry ", i, " is ", indices[i], ", there are ", num_items));
-    }
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CheckAppearance(const MeshAppearance& appearance, const Topology& topology) {
-  if (absl::Status status = CheckIndices(appearance.corner_texcoords, topology.num_corners(),
-                                         appearance.texcoords.size(), "corner texture coordinates");
-      !status.ok()) {
-    return status;
-  }
-  return CheckIndices(appearance.face_materials, topology.num_faces(),
-                      appearance.material_names.size(), "face materials");
-}
-
 }  // namespace
 
 absl::StatusOr<MeshSequence> MeshSequence::Create(Topology topology,

@@ -5,6 +5,26 @@
 #include "absl/strings/str_cat.h"
 
 namespace pleat {
+namespace {
+
+// Every index of `indices` is -1 (none) or names one of `num_items` items.
+absl::Status CheckIndices(const std::vector<int32_t>& indices, int num_expected, size_t num_items,
+                          absl::string_view what) {
+  if (indices.empty()) return absl::OkStatus();
+  if (indices.size() != static_cast<size_t>(num_expected)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("there are ", indices.size(), " ", what, " for ", num_expected));
+  }
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] < -1 || indices[i] >= static_cast<int64_t>(num_items)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(what, ": entry ", i, " is ", indices[i], ", there are ", num_items));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
 
 absl::StatusOr<Topology> Topology::Create(int num_vertices, std::vector<int32_t> corner_vertices,
                                           std::vector<int32_t> face_sizes) {
@@ -54,6 +74,16 @@ absl::StatusOr<Topology> Topology::FromTriangles(int num_vertices,
   return Create(num_vertices,
                 std::vector<int32_t>(triangles.data(), triangles.data() + triangles.size()),
                 std::vector<int32_t>(triangles.cols(), 3));
+}
+
+absl::Status CheckAppearance(const MeshAppearance& appearance, const Topology& topology) {
+  if (absl::Status status = CheckIndices(appearance.corner_texcoords, topology.num_corners(),
+                                         appearance.texcoords.size(), "corner texture coordinates");
+      !status.ok()) {
+    return status;
+  }
+  return CheckIndices(appearance.face_materials, topology.num_faces(),
+                      appearance.material_names.size(), "face materials");
 }
 
 }  // namespace pleat

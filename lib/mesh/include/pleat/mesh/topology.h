@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 
 namespace pleat {
@@ -60,5 +61,8 @@ struct MeshAppearance {
   std::vector<int32_t> face_materials;  // per face: index into material_names, -1 = none
   std::string material_library;         // OBJ mtllib
 };
+
+// kInvalidArgument when an index of `appearance` is out of range or a list has the wrong length.
+absl::Status CheckAppearance(const MeshAppearance& appearance, const Topology& topology);
 
 }  // namespace pleat

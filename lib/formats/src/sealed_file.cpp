@@ -1,0 +1,53 @@
+#include "sealed_file.h"
+
+#include <cstring>
+#include <span>
+#include <tuple>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/sha256.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+
+namespace {
+constexpr size_t kChecksumBytes = std::tuple_size_v<Sha256Digest>;
+}  // namespace
+
+void BeginSealedFile(const SealedFileKind& kind, ByteWriter* writer) {
+  writer->WriteRaw(kind.magic);
+  writer->Write(kind.version);
+}
+
+std::string SealFile(ByteWriter* writer) {
+  const Sha256Digest digest = ComputeSha256(writer->bytes());
+  writer->WriteArray(std::span<const uint8_t>(digest));
+  return writer->Release();
+}
+
+absl::StatusOr<std::string_view> OpenSealedFile(const SealedFileKind& kind,
+                                                std::string_view bytes) {
+  if (bytes.empty())
+    return absl::InvalidArgumentError(absl::StrCat("the ", kind.name, " is empty"));
+  ByteReader reader(bytes);
+  PLEAT_ASSIGN_OR_RETURN(const std::string_view magic, reader.ReadRaw(kind.magic.size(), "magic"));
+  if (magic != kind.magic) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "not a Pleat ", kind.name, ": it does not begin with ", std::string(kind.magic)));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t version, reader.Read<uint32_t>("version"));
+  if (version != kind.version) {
+    return absl::InvalidArgumentError(absl::StrCat(kind.name, " version ", version,
+                                                   "; this program reads version ", kind.version));
+  }
+  PLEAT_RETURN_IF_ERROR(reader.Require(kChecksumBytes, 1, "checksum"));
+  const std::string_view content = bytes.substr(0, bytes.size() - kChecksumBytes);
+  const Sha256Digest digest = ComputeSha256(content);
+  if (std::memcmp(digest.data(), bytes.data() + content.size(), kChecksumBytes) != 0) {
+    return absl::DataLossError(absl::StrCat("the checksum of the ", kind.name,
+                                            " does not fit its content: it is cut off or corrupt"));
+  }
+  return content;
+}
+
+}  // namespace pleat
