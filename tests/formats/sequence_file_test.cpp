@@ -1,5 +1,6 @@
 #include "pleat/formats/sequence_file.h"
 
+#include "pleat/base/file.h"
 #include "pleat/mesh/shapes.h"
 #include "tests/support/hostile_bytes.h"
 #include "tests/support/status_matchers.h"
@@ -119,6 +120,19 @@ TEST(SequenceFileTest, EveryCorruptionFailsOrIsAValidSequence) {
     EXPECT_EQ(EncodeSequence(*sequence), Reseal(damaged));
   });
   EXPECT_GT(num_valid, 100);
+}
+
+// tests/golden/sequence_v1.pseq was written from docs/formats/sequence_file.md by other code.
+TEST(SequenceFileTest, GoldenFileOfVersion1StaysReadable) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
+                             ReadFile(PLEAT_SOURCE_DIR "/tests/golden/sequence_v1.pseq"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence, DecodeSequence(bytes));
+  EXPECT_EQ(sequence.name(), "tiny");
+  EXPECT_EQ(sequence.num_frames(), 2);
+  EXPECT_EQ(sequence.frame(1).col(3), Eigen::Vector3f(0, 2, 0.5f));
+  EXPECT_THAT(sequence.topology().face(1), testing::ElementsAre(0, 2, 3));
+  EXPECT_THAT(sequence.appearance().material_names, testing::ElementsAre("skin", "cloth"));
+  EXPECT_EQ(EncodeSequence(sequence), bytes);
 }
 
 TEST(SequenceFileTest, FilesRoundTripAndErrorsNameThem) {

@@ -12,7 +12,6 @@ namespace pleat {
 namespace {
 
 constexpr std::string_view kMagic("POINTCACHE2\0", 12);
-constexpr uint64_t kHeaderBytes = 32;
 
 struct Header {
   int32_t num_vertices = 0, num_frames = 0;
@@ -103,7 +102,6 @@ std::string EncodePointCache(const PointCache& cache) {
   writer.Write(cache.start_frame);
   writer.Write(cache.sample_rate);
   writer.Write(static_cast<int32_t>(cache.frames.size()));
-  assert(writer.size() == kHeaderBytes);
   for (const Eigen::Matrix3Xf& frame : cache.frames) {
     assert(frame.cols() == cache.frames[0].cols());
     writer.WriteArray(std::span(frame.data(), static_cast<size_t>(frame.size())));
