@@ -32,8 +32,8 @@ TEST_P(CheckValuesTest, StartsAndEndsWhereItShould) {
   SharedGplvmSummary summary;
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const SharedGplvm model,
-      TrainSharedGplvm(poses, MakeDetailView(details, ViewScaling::kPerColumn), {0},
-                       CheckOptions(), &summary));
+      TrainSharedGplvm(poses, MakeDetailView(details, ViewScaling::kPerColumn), {0}, CheckOptions(),
+                       &summary));
   const OptimizationSummary& run = summary.optimization;
   EXPECT_NEAR(run.initial_objective, GetParam().start, 1e-6 * std::abs(GetParam().start));
   // 100 chaotic steps: the last digits depend on the order of sums.

@@ -18,7 +18,7 @@ absl::Status Refuse(const std::string& what) {
 // 0 at 0, 1 from `full` on, smooth between.
 double Fade(double confidence, double full) {
   if (confidence >= full) return 1;
-  const double t = std::max(confidence / full, 0.0);
+  const double t = confidence / full;
   return t * t * (3 - 2 * t);
 }
 
@@ -86,9 +86,10 @@ double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>&
     stages_[0].Predict(features, 0, &w.stages[0], w.latent, &latent_variance);
     stages_[1].Predict(w.latent, latent_variance, &w.stages[1], w.coefficients, &variance);
   }
-  const double confidence = std::clamp(1 - variance / stages_.back().prior_variance(), 0.0, 1.0);
+  double confidence = std::min(1 - variance / stages_.back().prior_variance(), 1.0);
+  if (!(confidence > 0)) confidence = 0;  // also for features that are not numbers
   const double fade = Fade(confidence, fade_confidence_);
-  // A fade of zero also removes what has overflowed.
+  // A fade of zero also removes what is not finite.
   if (fade > 0) {
     coefficients = (fade * w.coefficients).cast<float>();
   } else {

@@ -12,6 +12,8 @@
 namespace pleat {
 namespace {
 
+constexpr double kFarthest = 1e6;  // normalised units
+
 // whitened = W k, W lower triangular, in blocks of rows: no temporary, half the work.
 void Whiten(const Eigen::MatrixXf& whitener, const Eigen::VectorXf& kernel,
             Eigen::VectorXf* whitened) {
@@ -75,8 +77,8 @@ GpRegression::GpRegression(GpRegressionParameters parameters)
     : parameters_(std::move(parameters)),
       values_(KernelValuesOf(parameters_.kernel_options, parameters_.kernel)),
       squared_norms_(parameters_.inputs.rowwise().squaredNorm()) {
-  prior_variance_ = (values_.a + values_.b + values_.c * squared_norms_.mean()) *
-                    parameters_.output_scale * parameters_.output_scale;
+  prior_variance_ = (values_.a + values_.c * squared_norms_.mean()) * parameters_.output_scale *
+                    parameters_.output_scale;
 }
 
 absl::StatusOr<GpRegression> GpRegression::FromParameters(GpRegressionParameters parameters) {
@@ -93,6 +95,10 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
   assert(row.size() == p.inputs.cols() && mean.size() == p.alpha.cols());
   const Eigen::Index n = p.inputs.rows();
   w.row = (row - p.input_mean) / p.input_scale;
+  // Beyond a million times the range of the training nothing changes but the risk of overflow.
+  if (const double largest = w.row.cwiseAbs().maxCoeff(); largest > kFarthest) {
+    w.row *= kFarthest / largest;
+  }
   w.products.resize(n);
   w.products.noalias() = p.inputs * w.row;
   const double squared_norm = w.row.squaredNorm();

@@ -28,8 +28,8 @@ std::string LearnerName(Learner learner);
 
 struct DetailModelOptions {
   Learner learner = Learner::kGp;
-  GpRegressionOptions gp;     // of the direct learner
-  SharedGplvmOptions sgplvm;  // of the shared GPLVM
+  GpRegressionOptions gp{};     // of the direct learner
+  SharedGplvmOptions sgplvm{};  // of the shared GPLVM
   // Of Y_S -> X, after training. With back-constraints the constraint itself is the map.
   GpRegressionOptions back_map{.kernel = {.bias = true, .linear = false}};
 

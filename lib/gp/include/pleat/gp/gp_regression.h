@@ -96,7 +96,8 @@ class GpRegression {
   void PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::MatrixXd* means,
                     Eigen::VectorXd* variances) const;
 
-  // Variance of the function before any data, at a typical training input, (output unit)^2.
+  // Variance of the function before any data, at a typical training input, (output unit)^2. The
+  // bias is left out: any data fix it, so that far from all of them the variance is a, not a + b.
   double prior_variance() const { return prior_variance_; }
 
  private:

@@ -1,0 +1,246 @@
+#include "pleat/gp/detail_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "allocation_counter.h"
+#include "gplvm_data.h"
+#include "random_data.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+DetailModelOptions SmallOptions(Learner learner, bool back_constraints = true) {
+  DetailModelOptions options;
+  options.learner = learner;
+  options.sgplvm.latent_dimension = 4;
+  options.sgplvm.max_iterations = 40;
+  options.sgplvm.back_constraints = back_constraints;
+  return options;
+}
+
+// RMS error per entry on `motion`, and the mean confidence.
+double HeldOutRms(const DetailModel& model, const SyntheticMotion& motion,
+                  double* confidence = nullptr) {
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf detail(model.num_details());
+  double squares = 0, sum = 0;
+  for (Eigen::Index i = 0; i < motion.features.rows(); ++i) {
+    sum += model.Predict(motion.features.row(i).transpose(), &workspace, detail);
+    squares += (detail.cast<double>().transpose() - motion.details.row(i)).squaredNorm();
+  }
+  if (confidence) *confidence = sum / double(motion.features.rows());
+  return std::sqrt(squares / double(motion.details.size()));
+}
+
+struct Variant {
+  const char* name;
+  Learner learner;
+  bool back_constraints;
+};
+
+class DetailModelTest : public ::testing::TestWithParam<Variant> {
+ protected:
+  DetailModelOptions Options() const {
+    return SmallOptions(GetParam().learner, GetParam().back_constraints);
+  }
+};
+
+TEST_P(DetailModelTest, PredictsFramesItHasNotSeen) {
+  const SyntheticMotion seen = MakeSyntheticMotion(120, 10, 60, 1);
+  const SyntheticMotion next = MakeSyntheticMotion(20, 10, 60, 1, 120);
+  DetailModelSummary summary;
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const DetailModel model,
+      TrainDetailModel(seen.features, seen.details, {0, 60}, Options(), &summary));
+  const double scale =
+      std::sqrt((next.details.rowwise() - seen.details.colwise().mean()).squaredNorm() /
+                double(next.details.size()));
+  double confidence = 0;
+  EXPECT_LT(HeldOutRms(model, next, &confidence), .25 * scale);
+  EXPECT_GT(confidence, .8);
+  EXPECT_NEAR(HeldOutRms(model, seen), summary.training_rms, 1e-3 * scale);
+  EXPECT_LT(summary.training_rms, .05 * scale);
+  EXPECT_LE(summary.num_components, 6 + 1);
+  EXPECT_GE(summary.kept_energy, .9999);
+}
+
+TEST_P(DetailModelTest, FadesToTheMeanFarAway) {
+  const SyntheticMotion seen = MakeSyntheticMotion(80, 10, 30, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
+                             TrainDetailModel(seen.features, seen.details, {0}, Options()));
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf detail(30);
+  for (const double distance : {1e3, 1e8, 1e200}) {
+    const Eigen::VectorXd far = distance * RandomMatrix(10, 1, 77);
+    EXPECT_EQ(model.Predict(far, &workspace, detail), 0) << distance;
+    EXPECT_LT((detail - model.mean()).norm(), 1e-5 * model.mean().norm()) << distance;
+  }
+  // Confidence falls along the way, and the detail never leaves the range of the training.
+  const float largest =
+      (seen.details.cast<float>().rowwise() - model.mean().transpose()).rowwise().norm().maxCoeff();
+  const Eigen::VectorXd direction = RandomMatrix(10, 1, 78);
+  double last = 1;
+  for (double s = 1; s < 200; s *= 1.3) {
+    const double confidence = model.Predict(s * direction, &workspace, detail);
+    EXPECT_LE(confidence, last + 1e-3);
+    EXPECT_LT((detail - model.mean()).norm(), 4 * largest) << s;
+    last = confidence;
+  }
+}
+
+TEST_P(DetailModelTest, IsDeterministicAndRestorable) {
+  const SyntheticMotion seen = MakeSyntheticMotion(60, 10, 30, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel first,
+                             TrainDetailModel(seen.features, seen.details, {0, 30}, Options()));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel second,
+                             TrainDetailModel(seen.features, seen.details, {0, 30}, Options()));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel restored,
+                             DetailModel::FromParameters(first.parameters()));
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf a(30), b(30), c(30);
+  for (int t = 0; t < 60; t += 7) {
+    const Eigen::VectorXd row = seen.features.row(t).transpose() * 1.1;
+    const double confidence = first.Predict(row, &workspace, a);
+    EXPECT_EQ(second.Predict(row, &workspace, b), confidence);
+    EXPECT_EQ(restored.Predict(row, &workspace, c), confidence);
+    EXPECT_EQ((a - b).norm(), 0);
+    EXPECT_EQ((a - c).norm(), 0);
+  }
+}
+
+TEST_P(DetailModelTest, PredictDoesNotAllocate) {
+  if (NumAllocations() < 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+  const SyntheticMotion seen = MakeSyntheticMotion(150, 10, 300, 1);
+  DetailModelOptions options = Options();
+  options.sgplvm.max_iterations = options.gp.max_iterations = 3;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
+                             TrainDetailModel(seen.features, seen.details, {0}, options));
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf detail(300);
+  const Eigen::VectorXd row = seen.features.row(3).transpose();
+  model.Predict(row, &workspace, detail);
+  const long before = NumAllocations();
+  for (int i = 0; i < 10; ++i) model.Predict(row, &workspace, detail);
+  EXPECT_EQ(NumAllocations(), before);
+}
+
+TEST_P(DetailModelTest, StopsWhenCancelled) {
+  const SyntheticMotion seen = MakeSyntheticMotion(60, 10, 30, 1);
+  int num_tests = 0;
+  const Progress progress(nullptr, [&] { return ++num_tests > 30; });
+  EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(), nullptr, progress),
+              HasStatus(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
+}
+
+TEST_P(DetailModelTest, ReportsRisingProgress) {
+  const SyntheticMotion seen = MakeSyntheticMotion(40, 10, 30, 1);
+  double last = 0;
+  int num_updates = 0;
+  const Progress progress(
+      [&](const ProgressUpdate& update) {
+        EXPECT_GE(update.fraction, last - 1e-12) << update.stage;
+        last = update.fraction;
+        ++num_updates;
+      },
+      nullptr);
+  ASSERT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(), nullptr, progress),
+              IsOk());
+  EXPECT_EQ(last, 1);
+  EXPECT_GT(num_updates, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Learners, DetailModelTest,
+                         ::testing::Values(Variant{"Gp", Learner::kGp, false},
+                                           Variant{"Sgplvm", Learner::kSgplvm, false},
+                                           Variant{"BackConstrained", Learner::kSgplvm, true}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {
+  const SyntheticMotion seen = MakeSyntheticMotion(20, 6, 12, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const DetailModel model,
+      TrainDetailModel(seen.features, seen.details, {0}, SmallOptions(Learner::kSgplvm)));
+  const auto refused = [&](auto change, const std::string& words) {
+    DetailModelParameters p = model.parameters();
+    change(p);
+    EXPECT_THAT(DetailModel::FromParameters(p),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(words)));
+  };
+  refused([](auto& p) { p = {}; }, "1 stages, got 0");
+  refused([](auto& p) { p.stages.pop_back(); }, "2 stages, got 1");
+  refused([](auto& p) { p.learner = Learner::kGp; }, "1 stages, got 2");
+  refused([](auto& p) { std::swap(p.stages[0], p.stages[1]); }, "the second");
+  refused([](auto& p) { p.basis.conservativeResize(12, 1); }, "basis is");
+  refused([](auto& p) { p.mean.conservativeResize(3); }, "basis is");
+  refused([](auto& p) { p.mean.resize(0), p.basis.resize(0, p.basis.cols()); }, "basis is");
+  refused([](auto& p) { p.mean[2] = std::numeric_limits<float>::quiet_NaN(); }, "not finite");
+  refused([](auto& p) { p.basis(2, 1) = std::numeric_limits<float>::infinity(); }, "not finite");
+  refused([](auto& p) { p.fade_confidence = 2; }, "fading");
+  refused([](auto& p) { p.stages[1].alpha(0, 0) = std::nan(""); }, "alpha");
+}
+
+TEST(TrainDetailModelTest, RefusesWrongDataWithWords) {
+  const SyntheticMotion seen = MakeSyntheticMotion(20, 6, 12, 1);
+  EXPECT_THAT(TrainDetailModel(seen.features.topRows(5), seen.details, {0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("two frames")));
+  EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0, 99}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rows")));
+  EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0}, {.max_components = 0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("component")));
+  Eigen::MatrixXd hole = seen.details;
+  hole(0, 0) = std::nan("");
+  EXPECT_THAT(TrainDetailModel(seen.features, hole, {0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("not finite")));
+}
+
+TEST(TrainDetailModelTest, ConstantDetailsAreThePredictedMean) {
+  SyntheticMotion seen = MakeSyntheticMotion(20, 6, 12, 1);
+  seen.details.setConstant(2.5);
+  for (const Learner learner : {Learner::kGp, Learner::kSgplvm}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const DetailModel model,
+        TrainDetailModel(seen.features, seen.details, {0}, SmallOptions(learner)));
+    EXPECT_LT(HeldOutRms(model, seen), 1e-6);
+  }
+}
+
+struct HeldOut {
+  const char* name;
+  double gp, paper, back_constrained;  // RMS vertex error, cm; method.md section 7
+};
+
+class HeldOutTest : public ::testing::TestWithParam<HeldOut> {};
+
+TEST_P(HeldOutTest, IsAsGoodAsThePrototypes) {
+  const std::string base = std::string("gplvm/") + GetParam().name;
+  PLEAT_SHARED_DATA_OR_SKIP(poses, base + "_poses.csv");
+  PLEAT_SHARED_DATA_OR_SKIP(details, base + "_details.csv");
+  PLEAT_SHARED_DATA_OR_SKIP(next_poses, base + "_poses_next.csv");
+  PLEAT_SHARED_DATA_OR_SKIP(next_details, base + "_details_next.csv");
+  const SyntheticMotion seen{ReadCsv(poses), ReadCsv(details)};
+  const SyntheticMotion next{ReadCsv(next_poses), ReadCsv(next_details)};
+  const auto error = [&](const DetailModelOptions& options) {
+    const auto model = TrainDetailModel(seen.features, seen.details, {0}, options);
+    return model.ok() ? HeldOutRms(*model, next) * std::sqrt(3.0) : 1e9;
+  };
+  DetailModelOptions options;
+  EXPECT_LE(error(options), GetParam().gp + .005);
+  options.learner = Learner::kSgplvm;
+  EXPECT_LE(error(options), GetParam().back_constrained + .005);
+  options.sgplvm = SharedGplvmOptions::Paper();
+  EXPECT_LE(error(options), GetParam().paper + .005);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gplvm, HeldOutTest,
+                         ::testing::Values(HeldOut{"n100", .18, .27, .24},
+                                           HeldOut{"n200", .30, .89, .45}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,169 @@
+#include "pleat/gp/gram_term.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "pleat/optimize/objective.h"
+#include "random_data.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The covariance written out entry by entry.
+Eigen::MatrixXd WrittenOutKernel(const Eigen::MatrixXd& x, const KernelOptions& options,
+                                 const KernelLogs& logs) {
+  const Eigen::Index n = x.rows();
+  Eigen::MatrixXd k(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      k(i, j) = std::exp(logs.amplitude) *
+                std::exp(-.5 * std::exp(logs.inverse_width) * (x.row(i) - x.row(j)).squaredNorm());
+      if (options.bias) k(i, j) += std::exp(logs.bias);
+      if (options.linear) k(i, j) += std::exp(logs.linear) * x.row(i).dot(x.row(j));
+    }
+    k(i, i) += std::exp(logs.noise) + options.relative_noise_floor * std::exp(logs.amplitude) +
+               options.absolute_jitter;
+  }
+  return k;
+}
+
+// The Gram term over [X, logs].
+class GramObjective : public Objective {
+ public:
+  GramObjective(GramData data, int dims, const KernelOptions& options, double weight)
+      : data_(std::move(data)),
+        rows_(static_cast<int>(data_.factor.rows())),
+        dims_(dims),
+        options_(options),
+        weight_(weight),
+        term_(rows_, options) {}
+  int num_unknowns() const override { return rows_ * dims_ + NumKernelUnknowns(options_); }
+  double Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) override {
+    const int num_logs = NumKernelUnknowns(options_);
+    const Eigen::MatrixXd inputs = Eigen::Map<const Eigen::MatrixXd>(x.data(), rows_, dims_);
+    term_.SetInputs(inputs);
+    const double value = term_.Evaluate(UnpackKernelLogs(options_, x.tail(num_logs)), data_,
+                                        weight_, gradient != nullptr);
+    if (gradient) {
+      gradient->resize(num_unknowns());
+      Eigen::MatrixXd input_gradient;
+      term_.InputGradient(input_gradient);
+      gradient->head(rows_ * dims_) = input_gradient.reshaped();
+      gradient->tail(num_logs) = term_.log_gradient();
+    }
+    return value;
+  }
+
+ private:
+  GramData data_;
+  int rows_, dims_;
+  KernelOptions options_;
+  double weight_;
+  GramTerm term_;
+};
+
+class GramTermTest : public ::testing::TestWithParam<KernelOptions> {};
+
+TEST_P(GramTermTest, ValueIsTheLikelihoodWrittenOut) {
+  const Eigen::MatrixXd x = RandomMatrix(31, 3, 1), y = RandomMatrix(31, 50, 2);
+  const KernelLogs logs{-.4, .3, -1, -1.5, -.7};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(y));
+  GramTerm term(31, GetParam());
+  term.SetInputs(x);
+  const double value = term.Evaluate(logs, data, .8, false);
+  const Eigen::LLT<Eigen::MatrixXd> llt(WrittenOutKernel(x, GetParam(), logs));
+  double log_determinant = 0;
+  for (int i = 0; i < 31; ++i) log_determinant += 2 * std::log(llt.matrixLLT()(i, i));
+  const double expected = .8 * (25 * log_determinant + .5 * (llt.solve(y).cwiseProduct(y)).sum());
+  EXPECT_NEAR(value, expected, 1e-9 * std::abs(expected));
+}
+
+TEST_P(GramTermTest, GradientIsRight) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData wide, MakeGramData(RandomMatrix(17, 40, 2)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData narrow, MakeGramData(RandomMatrix(17, 5, 3)));
+  EXPECT_TRUE(wide.lower_triangular);
+  EXPECT_FALSE(narrow.lower_triangular);
+  for (const GramData& data : {wide, narrow}) {
+    GramObjective objective(data, 3, GetParam(), 1.7);
+    Eigen::VectorXd x(objective.num_unknowns());
+    x.head(51) = RandomMatrix(51, 1, 4);
+    PackKernelLogs(GetParam(), {-.4, .3, -1, -1.5, -.7}, x.tail(NumKernelUnknowns(GetParam())));
+    const GradientCheck check = CheckGradient(objective, x);
+    EXPECT_LT(check.max_relative_error, 1e-5)
+        << "unknown " << check.worst_unknown << ": " << check.analytic << " vs " << check.numeric;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kernels, GramTermTest,
+    ::testing::Values(KernelOptions{.bias = true, .linear = false},
+                      KernelOptions{.bias = false, .linear = false, .relative_noise_floor = .05},
+                      KernelOptions{.bias = true, .linear = true, .absolute_jitter = 1e-3},
+                      KernelOptions{.bias = false, .linear = true}));
+
+TEST(GramTermTest, DoesNotDependOnTheOrderOfOutputs) {
+  const Eigen::MatrixXd x = RandomMatrix(20, 2, 1), y = RandomMatrix(20, 30, 2);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(y));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData reversed, MakeGramData(y.rowwise().reverse()));
+  GramTerm term(20, {});
+  term.SetInputs(x);
+  const double value = term.Evaluate({}, data, 1, false);
+  EXPECT_NEAR(term.Evaluate({}, reversed, 1, false), value, 1e-9 * std::abs(value));
+}
+
+TEST(GramTermTest, GramAloneGivesTheSameAsTheOutputs) {
+  const Eigen::MatrixXd x = RandomMatrix(20, 2, 1), y = RandomMatrix(20, 12, 2);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData narrow, MakeGramData(y));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData gram, MakeGramDataFromGram(y * y.transpose(), 12));
+  GramTerm term(20, {});
+  term.SetInputs(x);
+  const double value = term.Evaluate({}, narrow, 1, false);
+  EXPECT_NEAR(term.Evaluate({}, gram, 1, false), value, 1e-8 * std::abs(value));
+}
+
+TEST(GramTermTest, DuplicatedRowsWithoutNoiseNeedJitterAndGetIt) {
+  Eigen::MatrixXd x = RandomMatrix(20, 2, 1);
+  x.bottomRows(10) = x.topRows(10);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(RandomMatrix(20, 4, 2)));
+  GramTerm term(20, {.bias = true, .relative_noise_floor = 0});
+  term.SetInputs(x);
+  EXPECT_TRUE(std::isfinite(term.Evaluate({.noise = -1e9}, data, 1, true)));
+}
+
+TEST(GramTermTest, ClampedLogsHaveNoGradient) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(RandomMatrix(10, 4, 2)));
+  GramTerm term(10, {});
+  term.SetInputs(RandomMatrix(10, 2, 1));
+  const double value = term.Evaluate({.noise = -20}, data, 1, true);
+  EXPECT_EQ(term.log_gradient()[3], 0);
+  EXPECT_NE(term.log_gradient()[0], 0);
+  EXPECT_EQ(term.Evaluate({.noise = -30}, data, 1, false), value);
+}
+
+TEST(GramTermTest, CancelledEvaluationIsNotANumber) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(RandomMatrix(10, 4, 2)));
+  GramTerm term(10, {});
+  term.SetInputs(RandomMatrix(10, 2, 1));
+  const Progress cancelled(nullptr, [] { return true; });
+  EXPECT_TRUE(std::isnan(term.Evaluate({}, data, 1, true, cancelled)));
+}
+
+TEST(GramDataTest, RefusesWhatIsNoGramMatrix) {
+  EXPECT_THAT(MakeGramDataFromGram(Eigen::MatrixXd::Zero(3, 4), 1),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("not square")));
+  Eigen::MatrixXd indefinite = Eigen::MatrixXd::Identity(3, 3);
+  indefinite(0, 0) = -.5;
+  EXPECT_THAT(MakeGramDataFromGram(indefinite, 1),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("semidefinite")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData zero,
+                             MakeGramDataFromGram(Eigen::MatrixXd::Zero(3, 3), 2));
+  EXPECT_EQ(zero.factor.norm(), 0);
+}
+
+}  // namespace
+}  // namespace pleat
