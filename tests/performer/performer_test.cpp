@@ -222,6 +222,46 @@ TEST(Performer, LongerSequencesBeginWithTheShorterOnes) {
   EXPECT_TRUE(brief.sequence.frame(19) == longer.sequence.frame(19));
 }
 
+TEST(Performer, WalkTravelsForward) {
+  PerformerOptions options = SmallOptions();
+  options.style = PerformerStyle::kWalk;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Performer performer, GeneratePerformer(options));
+  const PoseTrack& track = performer.truth.track;
+  double along = 0;
+  for (int t = 31; t < track.num_frames(); ++t) {
+    const Eigen::Vector3d step = track.poses[t].root_position - track.poses[t - 1].root_position;
+    along += step.dot(track.poses[t].rotations[0] * Eigen::Vector3d::UnitZ());
+  }
+  const double metres_per_second = along / (track.num_frames() - 31) * track.fps;
+  EXPECT_GT(metres_per_second, .5);
+  EXPECT_LT(metres_per_second, 2.0);
+}
+
+TEST(Performer, StandingFeetDoNotSlide) {
+  for (PerformerStyle style : {PerformerStyle::kWalk, PerformerStyle::kDance}) {
+    PerformerOptions options = SmallOptions();
+    options.style = style;
+    options.num_frames = 120;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Performer performer, GeneratePerformer(options));
+    BoneTransforms bones;
+    Eigen::Matrix3Xd previous;
+    int num_still = 0;
+    for (int t = 40; t < 120; ++t) {
+      ComputeBoneTransforms(performer.truth.rig.skeleton, performer.truth.track.poses[t], {},
+                            &bones);
+      if (t > 40) {  // at least one foot stands, except in a jump
+        double slowest = 1;
+        for (int j : {kLeftToes, kRightToes}) {
+          slowest = std::min(slowest, (bones.joint_positions.col(j) - previous.col(j)).norm());
+        }
+        num_still += slowest < .006;
+      }
+      previous = bones.joint_positions;
+    }
+    EXPECT_GT(num_still, 60);
+  }
+}
+
 TEST(Performer, HeightAndFrameRateAreHonoured) {
   PerformerOptions options = SmallOptions();
   options.num_frames = 5;

@@ -18,11 +18,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStretchCompliance = 2e-7, kShearCompliance = 6e-5, kBendCompliance = 1.2e-3;
-constexpr double kHemFrequency = 4.5;     // rad/s at which the hem swings about the skinned bell
+constexpr double kHemFrequency = 3.2;     // rad/s at which the hem swings about the skinned bell
 constexpr double kWaistFrequency = 45.0;  // rad/s
-constexpr double kDamping = 2.0;          // 1/s, against the moving bell
-constexpr double kAirDrag = .5;           // 1/s, against still air
-constexpr double kLegMargin = .012;       // cloth over skin, body heights
+constexpr double kDamping = 1.0;          // 1/s, against the moving bell
+constexpr double kAirDrag = .6;           // 1/s, against still air
+constexpr double kLegMargin = .015;       // cloth over skin, body heights
 constexpr double kStep_s = 1. / 400;      // longest substep
 
 // Catmull-Rom weights of four neighbours at fraction u.
