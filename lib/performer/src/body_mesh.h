@@ -14,8 +14,8 @@ absl::StatusOr<TriangleSoup> BuildBodyMesh(const CharacterShape& shape, int num_
 // Smooth weights with at most four influences: bones assigned by region, diffused over the surface.
 absl::StatusOr<SkinWeights> BuildBodyWeights(const CharacterShape& shape, const TriangleSoup& mesh);
 
-// The weights of a point of the bell at (theta, s) before diffusion; `share`: SkirtShare there.
-// num_joints values, sum 1.
-Eigen::VectorXd SkirtBoneWeights(double x, double s, double share);
+// The weights of a point of the skirt before diffusion, num_joints values of sum 1. x: to the left;
+// s: 0 waist .. 1 hem; off_leg: 1 on the bell, falling to 0 where the underside meets a leg.
+Eigen::VectorXd SkirtBoneWeights(double x, double s, double off_leg);
 
 }  // namespace pleat

@@ -66,7 +66,8 @@ Eigen::MatrixXd AssignBones(const CharacterShape& shape, const TriangleSoup& mes
     const BodyRegion region = shape.NearestRegion(p);
     if (region == BodyRegion::kSkirt) {
       const double s = std::clamp(shape.skirt().Fraction(p.y()), 0.0, 1.0);
-      weights.row(v) = SkirtBoneWeights(p.x(), s, shape.SkirtShare(p)).transpose();
+      const double off_leg = Smoothstep(.002, .022, shape.LegDistance(p));
+      weights.row(v) = SkirtBoneWeights(p.x(), s, off_leg).transpose();
     } else {
       weights(v, NearestBone(shape, region, p)) = 1;
     }
@@ -105,12 +106,12 @@ Eigen::SparseMatrix<double> DiffusionMatrix(const TriangleSoup& mesh, double coe
 
 }  // namespace
 
-Eigen::VectorXd SkirtBoneWeights(double x, double s, double share) {
+Eigen::VectorXd SkirtBoneWeights(double x, double s, double off_leg) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(kNumHumanJoints);
   const double left = Smoothstep(-.09, .09, x);
   const double waist = .6 * (1 - Smoothstep(0, .25, s));
-  // The bell follows the thighs only in part; its underside follows them towards the legs.
-  const double thighs = (1 - waist) * Smoothstep(.15, 1, s) * (1 - .60 * share);
+  // The bell follows the thighs only in part; its underside meets them at the legs.
+  const double thighs = (1 - waist) * Smoothstep(.15, 1, s) * (1 - .60 * off_leg);
   const double pelvis = 1 - waist - thighs;
   weights[kSpine] = waist;
   weights[kLeftUpperLeg] = pelvis * left;

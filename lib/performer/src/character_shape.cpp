@@ -145,11 +145,11 @@ void CharacterShape::AddTorso(double girth) {
     return Vector3d(girth * x, y, girth * z);
   };
   parts = {
-      Ellipsoid({0, .520, -.006}, wide(.086, .075, .066), .02),     // pelvis
-      Ellipsoid({0, .630, -.004}, wide(.064, .085, .046), .04),     // waist
-      Ellipsoid({0, .718, -.014}, wide(.076, .085, .054), .04),     // ribs
-      Ellipsoid({.034, .728, .024}, wide(.034, .036, .034), .025),  // bust
-      Ellipsoid({-.034, .728, .024}, wide(.034, .036, .034), .025),
+      Ellipsoid({0, .520, -.006}, wide(.086, .075, .066), .02),    // pelvis
+      Ellipsoid({0, .630, -.004}, wide(.064, .085, .046), .04),    // waist
+      Ellipsoid({0, .718, -.014}, wide(.076, .085, .054), .04),    // ribs
+      Ellipsoid({.033, .728, .020}, wide(.033, .034, .031), .03),  // bust
+      Ellipsoid({-.033, .728, .020}, wide(.033, .034, .031), .03),
       Capsule(inward.cwiseProduct(left), inward.cwiseProduct(right), .027 * girth, .027 * girth,
               .035),                                                 // shoulders
       Capsule({0, .795, -.022}, {0, .880, -.008}, .030, .026, .03),  // neck

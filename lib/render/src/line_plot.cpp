@@ -71,14 +71,14 @@ void Plot::DrawFrame(const LinePlotOptions& options) {
   const auto step = [](const std::vector<double>& ticks) {
     return ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
   };
-  const std::vector<double> y_ticks = RoundTicks(y_.low, y_.high, 5);
+  const std::vector<double> y_ticks = RoundTicks(y_.low, y_.high, 7);
   for (double tick : y_ticks) {
     const int y = static_cast<int>(std::lround(Y(tick)));
     image_.FillRectangle(kLeft, y, right_ - kLeft, 1, kGrid);
     const std::string label = TickLabel(tick, step(y_ticks));
     DrawText(&image_, kLeft - 6 - TextWidth(label, 1), y - 4, label, 1, kInk);
   }
-  const std::vector<double> x_ticks = RoundTicks(x_.low, x_.high, 8);
+  const std::vector<double> x_ticks = RoundTicks(x_.low, x_.high, 12);
   for (double tick : x_ticks) {
     const int x = static_cast<int>(std::lround(X(tick)));
     image_.FillRectangle(x, top_, 1, bottom_ - top_, kGrid);
