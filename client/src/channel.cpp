@@ -1,0 +1,90 @@
+#include "channel.h"
+
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <grpcpp/support/channel_arguments.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace pleat {
+namespace {
+
+// The header of a large character (vertex order, topology) is more than the default 4 MiB.
+constexpr int kMaxReceiveBytes = 64 << 20;
+constexpr int kKeepaliveMs = 120'000;
+constexpr int kLiveLookaheadBytes = 65536;
+constexpr auto kPoll = std::chrono::milliseconds(50);
+
+// Calls that may be repeated without harm are, when the server was not reached. A job is created at
+// most once.
+constexpr char kServiceConfig[] = R"({"methodConfig":[{"name":[
+  {"service":"pleat.v1.SequenceService"},{"service":"pleat.v1.ModelService"},
+  {"service":"pleat.v1.PoseService"},{"service":"pleat.v1.JobService","method":"GetJob"},
+  {"service":"pleat.v1.JobService","method":"ListJobs"}],
+  "retryPolicy":{"maxAttempts":4,"initialBackoff":"0.1s","maxBackoff":"2s",
+  "backoffMultiplier":2,"retryableStatusCodes":["UNAVAILABLE"]}}]})";
+
+std::shared_ptr<grpc::ChannelCredentials> MakeCredentials(const RemoteOptions& options) {
+  if (!options.tls) return grpc::InsecureChannelCredentials();
+  grpc::SslCredentialsOptions tls;
+  tls.pem_root_certs = options.tls_root_certificates;
+  tls.pem_cert_chain = options.tls_client_certificate;
+  tls.pem_private_key = options.tls_client_key;
+  return grpc::SslCredentials(tls);
+}
+
+}  // namespace
+
+std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const RemoteOptions& options,
+                                           ChannelUse use) {
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(kMaxReceiveBytes);
+  arguments.SetServiceConfigJSON(kServiceConfig);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2000);
+  // Channels with equal arguments would share one connection and its windows.
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  if (use == ChannelUse::kLive) {
+    arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+    arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kLiveLookaheadBytes);
+  }
+  return grpc::CreateCustomChannel(address, MakeCredentials(options), arguments);
+}
+
+absl::Status FromGrpcStatus(const grpc::Status& status) {
+  return absl::Status(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
+}
+
+bool IsTransient(const absl::Status& status) {
+  return status.code() == absl::StatusCode::kUnavailable ||
+         status.code() == absl::StatusCode::kAborted;
+}
+
+bool BackOff(int attempt, const Progress& progress) {
+  const auto wait = std::chrono::milliseconds(std::min(100 << std::min(attempt, 6), 4000));
+  const auto end = std::chrono::steady_clock::now() + wait;
+  while (std::chrono::steady_clock::now() < end) {
+    if (progress.cancelled()) return false;
+    std::this_thread::sleep_for(kPoll);
+  }
+  return true;
+}
+
+CancelWatcher::CancelWatcher(grpc::ClientContext* context, const Progress& progress)
+    : thread_([this, context, progress] {
+        while (!done_) {
+          if (progress.cancelled()) {
+            context->TryCancel();
+            return;
+          }
+          std::this_thread::sleep_for(kPoll);
+        }
+      }) {}
+
+CancelWatcher::~CancelWatcher() {
+  done_ = true;
+  thread_.join();
+}
+
+}  // namespace pleat

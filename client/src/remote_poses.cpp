@@ -1,0 +1,180 @@
+// Poses over the network: clips, single poses, live sessions.
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+#include "pleat/codec/frame_decoder.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "pleat/wire/stream_messages.h"
+#include "state.h"
+
+namespace pleat {
+namespace {
+
+v1::Character CharacterOf(const ClipQuery& query) {
+  return ToProto(CharacterQuery{query.model_id, query.bone_scales, query.skinned_only});
+}
+
+absl::Status BrokenStream(absl::string_view why) {
+  return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
+}
+
+class RemoteLiveSession final : public LiveSession {
+ public:
+  explicit RemoteLiveSession(std::shared_ptr<grpc::Channel> channel)
+      : channel_(std::move(channel)), stub_(v1::PoseService::NewStub(channel_)) {}
+  ~RemoteLiveSession() override {
+    context_.TryCancel();
+    if (stream_ != nullptr && !finished_) stream_->Finish();
+  }
+
+  absl::Status Open(const ClipQuery& character, const FrameEncoderOptions& encoding) {
+    stream_ = stub_->LiveSession(&context_);
+    v1::LiveSessionRequest request;
+    *request.mutable_start()->mutable_character() = CharacterOf(character);
+    *request.mutable_start()->mutable_options() = ToProto(encoding);
+    stream_->Write(request);  // a failure shows in the read
+    v1::LiveSessionResponse response;
+    if (!stream_->Read(&response)) return End();
+    if (!response.has_header()) return BrokenStream("no header");
+    PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(response.header()));
+    PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(header)));
+    decoder_.emplace(std::move(decoder));
+    return absl::OkStatus();
+  }
+
+  const FrameDecoder& decoder() const override { return *decoder_; }
+
+  absl::Status Send(uint64_t number, const Pose& pose, const std::vector<Pose>& history,
+                    bool restart) override {
+    v1::LiveSessionRequest request;
+    v1::LiveSessionRequest::LivePose* message = request.mutable_pose();
+    message->set_number(number);
+    *message->mutable_pose() = ToProto(pose);
+    for (const Pose& earlier : history) *message->add_history() = ToProto(earlier);
+    message->set_restart(restart);
+    if (stream_->Write(request)) return absl::OkStatus();
+    return absl::UnavailableError("the live session has ended; Receive says why");
+  }
+
+  absl::Status Receive(LiveFrame* frame) override {
+    v1::LiveSessionResponse response;
+    if (!stream_->Read(&response)) return End();
+    if (!response.has_frame()) return BrokenStream("a second header");
+    frame->number = response.frame().number();
+    frame->confidence = response.frame().confidence();
+    frame->draco = std::move(*response.mutable_frame()->mutable_draco());
+    return decoder_->Decode(frame->draco, &frame->positions);
+  }
+
+  void SendDone() override { stream_->WritesDone(); }
+
+ private:
+  // Why there is no more to read.
+  absl::Status End() {
+    if (!finished_) end_ = FromGrpcStatus(stream_->Finish());
+    finished_ = true;
+    return end_.ok() ? absl::OutOfRangeError("the live session has ended") : end_;
+  }
+
+  std::shared_ptr<grpc::Channel> channel_;
+  std::unique_ptr<v1::PoseService::Stub> stub_;
+  grpc::ClientContext context_;
+  std::unique_ptr<grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>>
+      stream_;
+  std::optional<FrameDecoder> decoder_;
+  bool finished_ = false;
+  absl::Status end_;
+};
+
+}  // namespace
+
+absl::Status RemoteCharacterService::StreamClip(const ClipQuery& query,
+                                                const FrameEncoderOptions& encoding,
+                                                const ClipStreamSink& sink) {
+  v1::EvaluateClipRequest request;
+  *request.mutable_character() = CharacterOf(query);
+  *request.mutable_track() = ToProto(query.track);
+  *request.mutable_options() = ToProto(encoding);
+  grpc::ClientContext context;
+  auto reader = state_->poses->EvaluateClip(&context, request);
+  v1::EvaluateClipResponse response;
+  absl::Status status;
+  bool has_header = false;
+  int next = 0;
+  while (status.ok() && reader->Read(&response)) {
+    if (response.has_header() != !has_header) {
+      status = BrokenStream("the header is not first");
+    } else if (!has_header) {
+      has_header = true;
+      const absl::StatusOr<StreamHeader> header = FromProto(response.header());
+      status = header.status();
+      if (status.ok() && sink.on_header) status = sink.on_header(*header);
+    } else if (response.frame().number() != static_cast<uint64_t>(next)) {
+      status = BrokenStream("a frame is missing");
+    } else {
+      status = sink.on_frame(next++, response.frame().draco(), response.frame().confidence());
+    }
+  }
+  if (!status.ok()) context.TryCancel();
+  const absl::Status end = FromGrpcStatus(reader->Finish());
+  PLEAT_RETURN_IF_ERROR(status);
+  PLEAT_RETURN_IF_ERROR(end);
+  return next == query.track.num_frames() ? absl::OkStatus() : BrokenStream("it ended too early");
+}
+
+absl::Status RemoteCharacterService::EvaluateClip(
+    const ClipQuery& query,
+    const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume) {
+  std::optional<FrameDecoder> decoder;
+  EvaluatedFrame frame;
+  return StreamClip(
+      query, state_->options.stream,
+      {.on_header = [&](const StreamHeader& header) -> absl::Status {
+         PLEAT_ASSIGN_OR_RETURN(FrameDecoder created, FrameDecoder::Create(header));
+         decoder.emplace(std::move(created));
+         return absl::OkStatus();
+       },
+       .on_frame = [&](int t, std::string_view draco, double confidence) -> absl::Status {
+         PLEAT_RETURN_IF_ERROR(decoder->Decode(draco, &frame.positions));
+         frame.confidence = confidence;
+         return consume(t, frame);
+       }});
+}
+
+absl::StatusOr<EvaluatedFrame> RemoteCharacterService::EvaluatePose(
+    const ClipQuery& character, const std::vector<Pose>& poses) {
+  v1::GetStreamHeaderRequest header_request;
+  v1::GetStreamHeaderResponse header_response;
+  header_request.set_model_id(character.model_id);
+  *header_request.mutable_options() = ToProto(state_->options.stream);
+  PLEAT_RETURN_IF_ERROR(state_->Call(state_->poses.get(), &v1::PoseService::Stub::GetStreamHeader,
+                                     header_request, &header_response));
+  PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(header_response.header()));
+  PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(header)));
+
+  v1::EvaluatePoseRequest request;
+  v1::EvaluatePoseResponse response;
+  *request.mutable_character() = CharacterOf(character);
+  for (const Pose& pose : poses) *request.add_poses() = ToProto(pose);
+  *request.mutable_options() = ToProto(state_->options.stream);
+  PLEAT_RETURN_IF_ERROR(
+      state_->Call(state_->poses.get(), &v1::PoseService::Stub::EvaluatePose, request, &response));
+  EvaluatedFrame frame;
+  frame.confidence = response.frame().confidence();
+  PLEAT_RETURN_IF_ERROR(decoder.Decode(response.frame().draco(), &frame.positions));
+  return frame;
+}
+
+absl::StatusOr<std::unique_ptr<LiveSession>> RemoteCharacterService::OpenLiveSession(
+    const ClipQuery& character, const FrameEncoderOptions& encoding) {
+  std::shared_ptr<grpc::Channel> channel =
+      state_->address.empty() ? state_->channel
+                              : MakeChannel(state_->address, state_->options, ChannelUse::kLive);
+  auto session = std::make_unique<RemoteLiveSession>(std::move(channel));
+  PLEAT_RETURN_IF_ERROR(session->Open(character, encoding));
+  return session;
+}
+
+}  // namespace pleat

@@ -1,0 +1,43 @@
+// The network side of the server.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "pleat/service/local_character_service.h"
+
+namespace grpc {
+class Channel;
+}
+
+namespace pleat {
+
+struct GrpcServerOptions {
+  std::string listen = "127.0.0.1:0";  // HOST:PORT, unix:PATH; port 0 = any free one
+  // PEM texts; both or none. With client_ca, clients must show a certificate that it signed.
+  std::string tls_certificate, tls_key, tls_client_ca;
+  int num_pose_threads = 0;         // 0 = one per core
+  int num_storage_threads = 4;      // disk, catalogue, checking uploads
+  int max_receive_bytes = 4 << 20;  // of one message
+  int max_streams_per_connection = 128;
+  int max_open_streams = 256;  // uploads, watches, clips, live sessions, downloads
+};
+
+class GrpcServer {
+ public:
+  // Serves `service`, which must outlive the server. kUnavailable when the address cannot be bound,
+  // kInvalidArgument for certificates that do not fit.
+  static absl::StatusOr<std::unique_ptr<GrpcServer>> Start(LocalCharacterService* service,
+                                                           const GrpcServerOptions& options);
+  virtual ~GrpcServer() = default;  // Shutdown(0)
+
+  virtual int port() const = 0;  // 0 for addresses without port
+  // A channel without network, for tests and embedding.
+  virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
+  // Takes no new calls, lets running ones go on for `drain_seconds`, then cancels them. Calls that
+  // never end by themselves (watch, live) are ended at once with kUnavailable when they next act.
+  virtual void Shutdown(double drain_seconds) = 0;
+};
+
+}  // namespace pleat

@@ -1,0 +1,24 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/service_messages.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "pleat/wire/training_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTrainingJobRequest& request,
+                               v1::CreateTrainingJobResponse* response) {
+  for (const std::string& id : request.sequence_ids()) {
+    PLEAT_RETURN_IF_ERROR(CheckContentId(id, "sequence_ids"));
+  }
+  PLEAT_RETURN_IF_ERROR(CheckName(request.model_name(), "model_name"));
+  PLEAT_ASSIGN_OR_RETURN(const TrainOptions options, FromProto(request.options()));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo info,
+                         context.service->CreateTrainingJob(
+                             {request.sequence_ids().begin(), request.sequence_ids().end()},
+                             options, request.model_name()));
+  *response->mutable_job() = ToProto(info);
+  return absl::OkStatus();
+}
+
+}  // namespace pleat

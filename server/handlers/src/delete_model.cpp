@@ -1,0 +1,13 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status DeleteModel(HandlerContext& context, const v1::DeleteModelRequest& request,
+                         v1::DeleteModelResponse*) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
+  return context.service->DeleteModel(request.id());
+}
+
+}  // namespace pleat

@@ -1,0 +1,13 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status DeleteSequence(HandlerContext& context, const v1::DeleteSequenceRequest& request,
+                            v1::DeleteSequenceResponse*) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
+  return context.service->DeleteSequence(request.id());
+}
+
+}  // namespace pleat

@@ -1,0 +1,16 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/service_messages.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status GetSequence(HandlerContext& context, const v1::GetSequenceRequest& request,
+                         v1::GetSequenceResponse* response) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
+  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, context.service->GetSequence(request.id()));
+  *response->mutable_sequence() = ToProto(info);
+  return absl::OkStatus();
+}
+
+}  // namespace pleat

@@ -1,0 +1,36 @@
+// What every handler gets.
+#pragma once
+
+#include <atomic>
+
+#include "pleat/jobs/executor.h"
+#include "pleat/service/local_character_service.h"
+
+namespace pleat {
+
+struct HandlerContext {
+  LocalCharacterService* service = nullptr;
+  Executor* pose_executor = nullptr;     // milliseconds of computation
+  Executor* storage_executor = nullptr;  // disk, catalogue, checking uploads
+  int max_open_streams = 0;
+  std::atomic<int> num_open_streams = 0;
+  std::atomic<bool> draining = false;  // the server shuts down
+};
+
+// Counts one open stream as long as it lives.
+class StreamSlot {
+ public:
+  explicit StreamSlot(HandlerContext* context)
+      : context_(context), granted_(++context->num_open_streams <= context->max_open_streams) {}
+  ~StreamSlot() { --context_->num_open_streams; }
+  StreamSlot(const StreamSlot&) = delete;
+  StreamSlot& operator=(const StreamSlot&) = delete;
+
+  absl::Status status() const;
+
+ private:
+  HandlerContext* context_;
+  bool granted_;
+};
+
+}  // namespace pleat

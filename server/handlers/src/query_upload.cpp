@@ -1,0 +1,16 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status QueryUpload(HandlerContext& context, const v1::QueryUploadRequest& request,
+                         v1::QueryUploadResponse* response) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
+  PLEAT_ASSIGN_OR_RETURN(const UploadStatus status, context.service->QueryUpload(request.id()));
+  response->set_received_bytes(status.received_bytes);
+  response->set_complete(status.complete);
+  return absl::OkStatus();
+}
+
+}  // namespace pleat

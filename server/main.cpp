@@ -1,0 +1,75 @@
+// pleatd: the Pleat server. Exit codes: 0 ended by a signal, 1 cannot run, 2 wrong command line.
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "options.h"
+
+namespace pleat {
+namespace {
+
+int Fail(const absl::Status& status) {
+  spdlog::error("pleatd cannot run: {}", std::string(status.message()));
+  return 1;
+}
+
+std::string Address(const GrpcServerOptions& options, int port) {
+  const size_t colon = options.listen.rfind(':');
+  if (port == 0 || colon == std::string::npos) return options.listen;
+  return options.listen.substr(0, colon + 1) + std::to_string(port);
+}
+
+int Run(const ServerOptions& options) {
+  if (const absl::Status status = ConfigureLogging(options.logging); !status.ok()) {
+    std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
+    return 2;
+  }
+  // Blocked in every thread, so that only sigwait below sees them.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+
+  absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
+      LocalCharacterService::Open(options.service);
+  if (!service.ok()) return Fail(service.status());
+  for (const std::string& id : (*service)->missing_files()) {
+    spdlog::error("the file of '{}' is gone from the data folder; restore or delete it", id);
+  }
+  absl::StatusOr<std::unique_ptr<GrpcServer>> server =
+      GrpcServer::Start(service->get(), options.grpc);
+  if (!server.ok()) return Fail(server.status());
+  const std::string address = Address(options.grpc, (*server)->port());
+  // On standard output, so that a script can wait for it and read the port.
+  std::printf("listening on %s\n", address.c_str());
+  std::fflush(stdout);
+  spdlog::info("pleatd {} listening on {}, data in {}, {} workers", PLEAT_VERSION, address,
+               options.service.data_dir, options.service.num_workers);
+
+  int signal = 0;
+  sigwait(&signals, &signal);
+  spdlog::info("signal {}: shutting down, running calls have {} s", signal, options.drain_seconds);
+  // A second signal ends the process the hard way.
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+  (*service)->Shutdown();  // jobs are queued again, their watchers end
+  (*server)->Shutdown(options.drain_seconds);
+  spdlog::info("pleatd has ended");
+  return 0;
+}
+
+}  // namespace
+}  // namespace pleat
+
+int main(int argc, char** argv) {
+  const pleat::CommandLine line = pleat::ParseCommandLine(argc, argv);
+  if (line.exit) {
+    std::fputs(line.message.c_str(), line.exit_code == 0 ? stdout : stderr);
+    return line.exit_code;
+  }
+  return pleat::Run(line.options);
+}

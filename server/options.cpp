@@ -1,0 +1,109 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <sstream>
+
+#include "pleat/base/file.h"
+
+namespace pleat {
+namespace {
+
+struct TlsPaths {
+  std::string certificate, key, client_ca;
+};
+
+void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
+  app->add_option("--data-dir", service->data_dir, "Folder that keeps sequences, jobs and models")
+      ->required();
+  app->add_option("--workers", service->num_workers, "Training jobs that run at the same time")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  app->add_option("--threads-per-job", service->num_threads_per_job, "0 = one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_option("--cache-bytes", service->cache_bytes, "Memory for models (e.g. 2GB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app->add_option("--reserve-bytes", service->reserve_bytes, "Kept free on the disk")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  ServiceLimits* limits = &service->limits;
+  app->add_option("--max-upload-bytes", limits->max_upload_bytes, "Largest sequence file")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app->add_option("--max-vertices", limits->max_vertices, "Most vertices of a mesh")
+      ->check(CLI::Range(1, 4'000'000))
+      ->capture_default_str();
+  app->add_option("--max-frames", limits->max_frames, "Most frames of a sequence or clip")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+}
+
+void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
+  app->add_option("--listen", grpc->listen,
+                  "HOST:PORT or unix:PATH; port 0 = any free one, printed at the start")
+      ->capture_default_str();
+  app->add_option("--pose-threads", grpc->num_pose_threads, "0 = one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_option("--max-message-bytes", grpc->max_receive_bytes, "Largest message from a client")
+      ->check(CLI::Range(64 << 10, 256 << 20))
+      ->capture_default_str();
+  app->add_option("--max-open-streams", grpc->max_open_streams,
+                  "Uploads, downloads, watches, clips and live sessions together")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app->add_option("--tls-cert", tls->certificate, "PEM file with the server's certificate chain");
+  app->add_option("--tls-key", tls->key, "PEM file with its private key");
+  app->add_option("--tls-client-ca", tls->client_ca,
+                  "PEM file with the authority of client certificates; then each client needs one");
+}
+
+absl::Status ReadTlsFiles(const TlsPaths& paths, GrpcServerOptions* grpc) {
+  for (const auto& [path, text] :
+       {std::pair(&paths.certificate, &grpc->tls_certificate),
+        std::pair(&paths.key, &grpc->tls_key), std::pair(&paths.client_ca, &grpc->tls_client_ca)}) {
+    if (path->empty()) continue;
+    absl::StatusOr<std::string> bytes = ReadFile(*path, 1 << 20);
+    if (!bytes.ok()) return bytes.status();
+    *text = *std::move(bytes);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+CommandLine ParseCommandLine(int argc, const char* const* argv) {
+  CommandLine line;
+  TlsPaths tls;
+  line.options.grpc.listen = "127.0.0.1:7320";
+  CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
+  app.set_version_flag("--version", PLEAT_VERSION);
+  AddNetworkFlags(&app, &line.options.grpc, &tls);
+  AddServiceFlags(&app, &line.options.service);
+  app.add_option("--drain-seconds", line.options.drain_seconds,
+                 "How long running calls may go on after SIGTERM")
+      ->check(CLI::Range(0, 3600))
+      ->capture_default_str();
+  app.add_option("--log-level", line.options.logging.level,
+                 "trace, debug, info, warning, error or off")
+      ->capture_default_str();
+  app.add_flag("--log-json", line.options.logging.json, "Log JSON, one object per line");
+  std::ostringstream out;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    line.exit = true;
+    line.exit_code = app.exit(error, out, out) == 0 ? 0 : 2;
+    line.message = out.str();
+    return line;
+  }
+  if (const absl::Status status = ReadTlsFiles(tls, &line.options.grpc); !status.ok()) {
+    line.exit = true;
+    line.exit_code = 2;
+    line.message = std::string(status.message()) + "\n";
+  }
+  return line;
+}
+
+}  // namespace pleat

@@ -1,0 +1,31 @@
+// The command line of pleatd.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/handlers/grpc_server.h"
+#include "pleat/observe/logging.h"
+#include "pleat/service/local_character_service.h"
+
+namespace pleat {
+
+struct ServerOptions {
+  LocalServiceOptions service;
+  GrpcServerOptions grpc;
+  LoggingOptions logging;
+  double drain_seconds = 10;  // how long running calls may go on after SIGTERM
+};
+
+// What the command line asks for: options, or a text to print and an exit code (--help, --version,
+// wrong flags). Reads the certificate files.
+struct CommandLine {
+  ServerOptions options;
+  bool exit = false;
+  int exit_code = 0;
+  std::string message;
+};
+CommandLine ParseCommandLine(int argc, const char* const* argv);
+
+}  // namespace pleat

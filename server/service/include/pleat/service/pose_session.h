@@ -1,0 +1,75 @@
+// One stream of frames: poses of one character -> Draco bytes, without gRPC.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/character/pose_evaluator.h"
+#include "pleat/codec/frame_encoder.h"
+#include "pleat/skeleton/pose_history.h"
+
+namespace pleat {
+
+struct PoseSessionOptions {
+  std::vector<double> bone_scales;  // J or empty
+  bool skinned_only = false;
+  FrameEncoderOptions encoder;
+};
+
+struct EncodedFrame {
+  std::string draco;
+  double confidence = 0;
+};
+
+// Keeps the model in use as long as it lives. Not for two threads at once.
+class PoseSession {
+ public:
+  static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
+      std::shared_ptr<const CharacterModel> model, PoseSessionOptions options);
+
+  const StreamHeader& header() const { return encoder_.header(); }
+
+  // poses[0] is shown, poses[h] is the pose h training-frame intervals earlier.
+  absl::StatusOr<EncodedFrame> Show(const std::vector<const Pose*>& poses);
+
+  // Shows `pose`; its history are the poses shown by this function before, one training-frame
+  // interval apart each, unless `restart` forgets them.
+  absl::StatusOr<EncodedFrame> ShowNext(const Pose& pose, bool restart);
+
+ private:
+  PoseSession(std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
+              FrameEncoder encoder);
+
+  PoseSessionOptions options_;
+  PoseEvaluator evaluator_;
+  FrameEncoder encoder_;
+  EvaluatedFrame frame_;
+  std::vector<Pose> shown_;  // newest first, at most as many as the model's history needs
+};
+
+// The frames of one clip, one after the other, as fast as the caller takes them.
+class ClipSession {
+ public:
+  // kInvalidArgument names the first pose that does not fit the skeleton.
+  static absl::StatusOr<std::unique_ptr<ClipSession>> Open(
+      std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options);
+
+  const StreamHeader& header() const { return session_->header(); }
+  bool done() const { return next_ >= track_.num_frames(); }
+  int next_frame() const { return next_; }
+  // The frame next_frame(); call while not done.
+  absl::StatusOr<EncodedFrame> Next();
+
+ private:
+  ClipSession(std::unique_ptr<PoseSession> session, PoseTrack track, const CharacterModel& model);
+
+  std::unique_ptr<PoseSession> session_;
+  const PoseTrack track_;
+  PoseHistory history_;  // of track_
+  std::vector<const Pose*> poses_;
+  int next_ = 0;
+};
+
+}  // namespace pleat

@@ -1,0 +1,82 @@
+#include "pleat/service/pose_session.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+
+absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseSessionOptions options) {
+  // Fails early, before the first pose, when the scales do not fit.
+  PoseEvaluator evaluator(model);
+  EvaluatedFrame frame;
+  PLEAT_RETURN_IF_ERROR(
+      evaluator.EvaluateSkinned(Pose::Rest(model->skeleton()), options.bone_scales, &frame));
+  PLEAT_ASSIGN_OR_RETURN(
+      FrameEncoder encoder,
+      FrameEncoder::Create(model->topology(), model->rig().rest_positions.cast<float>(),
+                           options.encoder));
+  return std::unique_ptr<PoseSession>(
+      new PoseSession(std::move(model), std::move(options), std::move(encoder)));
+}
+
+PoseSession::PoseSession(std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
+                         FrameEncoder encoder)
+    : options_(std::move(options)), evaluator_(std::move(model)), encoder_(std::move(encoder)) {}
+
+absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& poses) {
+  if (options_.skinned_only && !poses.empty()) {
+    PLEAT_RETURN_IF_ERROR(evaluator_.EvaluateSkinned(*poses[0], options_.bone_scales, &frame_));
+  } else {
+    PLEAT_RETURN_IF_ERROR(evaluator_.Evaluate(poses, options_.bone_scales, &frame_));
+  }
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes, encoder_.Encode(frame_.positions));
+  return EncodedFrame{std::move(bytes), frame_.confidence};
+}
+
+absl::StatusOr<EncodedFrame> PoseSession::ShowNext(const Pose& pose, bool restart) {
+  if (restart) shown_.clear();
+  shown_.insert(shown_.begin(), pose);
+  const size_t depth = static_cast<size_t>(evaluator_.model().options().history);
+  if (shown_.size() > depth) shown_.resize(depth);
+  std::vector<const Pose*> poses;
+  for (const Pose& shown : shown_) poses.push_back(&shown);
+  return Show(poses);
+}
+
+absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options) {
+  // The history interpolates between poses, so all of them must fit before the first is shown.
+  const size_t num_joints = model->skeleton().joints().size();
+  for (int t = 0; t < track.num_frames(); ++t) {
+    if (track.poses[t].rotations.size() != num_joints) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("frame ", t, ": the pose has ", track.poses[t].rotations.size(),
+                       " rotations, the skeleton has ", num_joints, " joints"));
+    }
+  }
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<PoseSession> session,
+                         PoseSession::Open(model, std::move(options)));
+  return std::unique_ptr<ClipSession>(
+      new ClipSession(std::move(session), std::move(track), *model));
+}
+
+ClipSession::ClipSession(std::unique_ptr<PoseSession> session, PoseTrack track,
+                         const CharacterModel& model)
+    : session_(std::move(session)),
+      track_(std::move(track)),
+      history_(track_, model.frame_rate().fps(), model.options().history) {}
+
+absl::StatusOr<EncodedFrame> ClipSession::Next() {
+  const int t = next_++;
+  history_.At(t, &poses_);
+  absl::StatusOr<EncodedFrame> frame = session_->Show(poses_);
+  if (frame.ok()) return frame;
+  return absl::Status(frame.status().code(),
+                      absl::StrCat("frame ", t, ": ", absl::string_view(frame.status().message())));
+}
+
+}  // namespace pleat
