@@ -80,10 +80,12 @@ absl::StatusOr<FrameEmbedding> FindRestFrame(const MeshSequence& sequence,
   }
   if (best.embedding.residual > options.refused_residual) {
     return absl::FailedPreconditionError(absl::StrFormat(
-        "%s does not look like one standing human: the best of %d frames, frame %d, fits the "
-        "skeleton with a residual of %.3f, above %.3f; %s",
+        "%s does not look like one standing human: in the best of %d frames, frame %d, the "
+        "skeleton "
+        "fits with a residual of %.3f, above %.3f (%.0f %% of the surface is far from every "
+        "bone); %s",
         sequence.name(), summary->num_frames_tried, best.frame, best.embedding.residual,
-        options.refused_residual, kWhatToDo));
+        options.refused_residual, 100 * best.embedding.uncovered_share, kWhatToDo));
   }
   return best;
 }
@@ -117,13 +119,13 @@ void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
   }
   for (const FacingResidual& facing : embedding.facings) {
     if (facing.yaw_degrees == embedding.yaw_degrees ||
-        facing.residual - embedding.residual >= options.facing_margin) {
+        facing.residual - embedding.search_residual >= options.facing_margin) {
       continue;
     }
     summary->warnings.push_back(absl::StrFormat(
         "facing is doubtful: %.0f degrees (residual %.4f) against %.0f degrees (%.4f); set the "
         "yaw if left and right are swapped",
-        embedding.yaw_degrees, embedding.residual, facing.yaw_degrees, facing.residual));
+        embedding.yaw_degrees, embedding.search_residual, facing.yaw_degrees, facing.residual));
   }
   const SurfaceReport& surface = summary->surface;
   if (surface.num_boundary_edges > 0 || surface.num_nonmanifold_edges > 0 ||

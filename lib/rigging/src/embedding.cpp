@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "pleat/base/status.h"
+#include "pleat/rigging/bone_visibility.h"
 #include "pleat/skeleton/human_template.h"
 
 namespace pleat {
@@ -18,6 +21,7 @@ namespace {
 // around them: things that float beside the character are left out.
 struct MainBody {
   std::vector<Sphere> spheres;
+  std::vector<char> is_body;  // per mesh component
   Eigen::AlignedBox3d bounds;
 };
 
@@ -49,23 +53,41 @@ MainBody FindMainBody(const BodyVolume& volume, const SphereGraph& graph) {
   MainBody body;
   body.spheres = LargestConnectedGroup(graph);
   const SolidSurface& surface = volume.surface;
-  std::vector<char> is_near(surface.report.num_components, 0);
+  body.is_body.assign(surface.report.num_components, 0);
   for (int f = 0; f < surface.triangles.cols(); ++f) {
     const int component = surface.triangle_components[f];
-    if (is_near[component]) continue;
+    if (body.is_body[component]) continue;
     const Eigen::Vector3d corner = surface.positions.col(surface.triangles(0, f));
-    is_near[component] =
+    body.is_body[component] =
         std::any_of(body.spheres.begin(), body.spheres.end(), [&](const Sphere& sphere) {
           return (sphere.centre - corner).norm() < 1.5 * sphere.radius + volume.field.spacing();
         });
   }
   for (int f = 0; f < surface.triangles.cols(); ++f) {
-    if (!is_near[surface.triangle_components[f]]) continue;
+    if (!body.is_body[surface.triangle_components[f]]) continue;
     for (int k = 0; k < 3; ++k) {
       body.bounds.extend(Eigen::Vector3d(surface.positions.col(surface.triangles(k, f))));
     }
   }
   return body;
+}
+
+// Share of the area of the body's components that lies farther than `reach` from every bone.
+double UncoveredShare(const SolidSurface& surface, const std::vector<char>& is_body,
+                      const Eigen::Matrix3Xd& joints, double reach) {
+  double total = 0, uncovered = 0;
+  for (int f = 0; f < surface.triangles.cols(); ++f) {
+    if (!is_body[surface.triangle_components[f]]) continue;
+    const Eigen::Vector3d a = surface.positions.col(surface.triangles(0, f));
+    const Eigen::Vector3d b = surface.positions.col(surface.triangles(1, f));
+    const Eigen::Vector3d c = surface.positions.col(surface.triangles(2, f));
+    const double area = (b - a).cross(c - a).norm();
+    total += area;
+    const NearestBones nearest =
+        FindNearestBones(HumanTemplate(), joints, (a + b + c) / 3, nullptr, nullptr, 0);
+    if (nearest.distance > reach) uncovered += area;
+  }
+  return uncovered / total;
 }
 
 // Step 8: all 18 joints, those of degree two along the paths.
@@ -95,6 +117,67 @@ Eigen::Matrix3Xd WorldFromUnit(const BodyVolume& volume, const Eigen::Matrix3Xd&
   return (points.colwise() - volume.offset) / volume.scale;
 }
 
+// One facing of the template and how far its search has come.
+struct FacingSearch {
+  FacingSearch(const SphereGraph& graph, double yaw_degrees, double floor_height, double body_size,
+               const EmbeddingOptions& options)
+      : tree(MakeHumanSearchTree(body_size, yaw_degrees * std::numbers::pi / 180)),
+        model(graph, tree, floor_height, body_size, options.penalties),
+        search(model, options.search) {
+    facing = {yaw_degrees, 0, true};
+  }
+
+  // Searches placements up to `bound`. Only kCancelled is an error.
+  absl::Status Deepen(double bound, const Progress& progress) {
+    absl::StatusOr<SearchResult> result = search.Run(bound, progress);
+    if (absl::IsCancelled(result.status())) return result.status();
+    if (result.ok()) {
+      found = *std::move(result);
+      facing = {facing.yaw_degrees, found->penalty, false};
+    } else if (absl::IsNotFound(result.status())) {
+      facing.residual = bound;
+    } else {
+      is_given_up = true;  // too many placements, all of them bad ones
+    }
+    return absl::OkStatus();
+  }
+  bool is_open() const { return !found && !is_given_up; }
+
+  SearchTree tree;
+  PenaltyModel model;
+  EmbeddingSearch search;
+  std::optional<SearchResult> found;
+  bool is_given_up = false;
+  FacingResidual facing;
+};
+
+// Deepens all facings together until one of them has a placement; returns the cheapest, null when
+// there is none below the largest bound.
+absl::StatusOr<const FacingSearch*> SearchFacings(
+    const EmbeddingOptions& options, std::vector<std::unique_ptr<FacingSearch>>& searches,
+    const Progress& progress) {
+  const FacingSearch* best = nullptr;
+  const auto deepen_open = [&](double bound) -> absl::Status {
+    for (auto& search : searches) {
+      if (!search->is_open() || search->facing.residual >= bound) continue;
+      PLEAT_RETURN_IF_ERROR(progress.Report(0.5));
+      PLEAT_RETURN_IF_ERROR(search->Deepen(bound, progress));
+      if (search->found && (!best || search->facing.residual < best->facing.residual)) {
+        best = search.get();
+      }
+    }
+    return absl::OkStatus();
+  };
+  for (double bound = options.search.first_bound; bound <= options.search.max_bound && !best;
+       bound *= 2) {
+    PLEAT_RETURN_IF_ERROR(deepen_open(bound));
+  }
+  if (best) {
+    PLEAT_RETURN_IF_ERROR(deepen_open(best->facing.residual + options.facing_margin));
+  }
+  return best;
+}
+
 }  // namespace
 
 absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const EmbeddingOptions& options,
@@ -108,35 +191,35 @@ absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const Embeddin
   const double body_size = body.bounds.sizes().maxCoeff();
   const double floor_height = body.bounds.min().y();
 
+  std::vector<std::unique_ptr<FacingSearch>> searches;
+  for (double yaw : options.yaws_degrees) {
+    searches.push_back(
+        std::make_unique<FacingSearch>(graph, yaw, floor_height, body_size, options));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const FacingSearch* best, SearchFacings(options, searches, progress));
+  if (!best) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& search : searches) least = std::min(least, search->facing.residual);
+    return absl::NotFoundError(absl::StrFormat(
+        "the human skeleton does not fit this body: its residual is above %.2f in each of the %d "
+        "facings tried",
+        least, searches.size()));
+  }
   Embedding embedding;
   embedding.num_spheres = graph.size();
-  embedding.residual = std::numeric_limits<double>::infinity();
-  Eigen::Matrix3Xd best_joints;
-  const int num_yaws = static_cast<int>(options.yaws_degrees.size());
-  for (int k = 0; k < num_yaws; ++k) {
-    PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(k) / num_yaws));
-    const double yaw = options.yaws_degrees[k];
-    const SearchTree tree = MakeHumanSearchTree(body_size, yaw * std::numbers::pi / 180);
-    const PenaltyModel model(graph, tree, floor_height, body_size, options.penalties);
-    const absl::StatusOr<SearchResult> found = SearchEmbedding(model, options.search, progress);
-    if (absl::IsCancelled(found.status())) return found.status();
-    embedding.facings.push_back(
-        {yaw, found.ok() ? found->penalty : std::numeric_limits<double>::infinity()});
-    if (!found.ok() || found->penalty >= embedding.residual) continue;
-    embedding.residual = found->penalty;
-    embedding.yaw_degrees = yaw;
-    best_joints = PlaceAllJoints(graph, tree, found->spheres);
-  }
-  if (!std::isfinite(embedding.residual)) {
-    return absl::NotFoundError(
-        absl::StrCat("the human skeleton fits into this body in none of the ", num_yaws,
-                     " facings tried (", graph.size(), " spheres)"));
-  }
+  embedding.search_residual = best->facing.residual;
+  embedding.yaw_degrees = best->facing.yaw_degrees;
+  for (const auto& search : searches) embedding.facings.push_back(search->facing);
+  const Eigen::Matrix3Xd best_joints = PlaceAllJoints(graph, best->tree, best->found->spheres);
   embedding.initial_joints = WorldFromUnit(volume, best_joints);
   const Eigen::Matrix3Xd refined = RefineEmbedding(
       best_joints, TurnedTemplate(embedding.yaw_degrees * std::numbers::pi / 180, body_size),
       volume.medial_samples, options.refinement);
   embedding.joints = WorldFromUnit(volume, refined);
+  embedding.uncovered_share =
+      UncoveredShare(volume.surface, body.is_body, refined, options.cover_distance * body_size);
+  embedding.residual = embedding.search_residual +
+                       options.uncovered_weight * std::min(0.25, embedding.uncovered_share);
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
   return embedding;
 }

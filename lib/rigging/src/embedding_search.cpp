@@ -12,10 +12,17 @@
 namespace pleat {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+struct State {
+  double cost = 0;  // of the joints placed
+  int num_placed = 0;
+  int previous = -1;   // state without the last joint
+  int candidate = -1;  // of the last joint placed
+};
+
+}  // namespace
 
 // Pair penalties of all joints and the admissible remainders made from them.
-class PairTable {
+class EmbeddingSearch::PairTable {
  public:
   explicit PairTable(const PenaltyModel& model) {
     const SearchTree& tree = model.tree();
@@ -48,24 +55,21 @@ class PairTable {
   std::vector<Eigen::VectorXd> remainders_;  // parent's candidates
 };
 
-struct State {
-  double cost = 0;   // of the joints placed
-  double bound = 0;  // cost + remainder of the open ones
-  int num_placed = 0;
-  int previous = -1;   // state without the last joint
-  int candidate = -1;  // of the last joint placed
-};
-
-class BestFirstSearch {
+// One best-first search under one bound.
+class EmbeddingSearch::BestFirst {
  public:
-  BestFirstSearch(const PenaltyModel& model, const PairTable& table, const SearchOptions& options,
-                  const Progress& progress)
+  BestFirst(const PenaltyModel& model, const PairTable& table, const SearchOptions& options,
+            const Progress& progress)
       : model_(model), table_(table), options_(options), progress_(progress) {}
 
   // The cheapest placement that costs at most `limit`; kNotFound when there is none.
   absl::StatusOr<SearchResult> Run(double limit) {
     states_ = {State{}};
-    while (!queue_.empty()) queue_.pop();
+    for (size_t j = 0; j < model_.tree().size(); ++j) {
+      if (model_.candidates(static_cast<int>(j)).empty()) {
+        return absl::NotFoundError("a joint has no sphere to lie on");
+      }
+    }
     queue_.push({0, 0});
     const int num_joints = static_cast<int>(model_.tree().size());
     while (!queue_.empty()) {
@@ -107,8 +111,9 @@ class BestFirstSearch {
     const SearchTree& tree = model_.tree();
     const int j = state.num_placed;
     std::vector<int> placed = PlacedCandidates(index);
-    std::vector<int> spheres(j + 1);
+    std::vector<int> spheres(j);
     for (int k = 0; k < j; ++k) spheres[k] = model_.candidates(k)[placed[k]];
+    const PlacementContext context = model_.MakeContext(j, spheres);
     // Remainder of the open subtrees that hang on joints placed before j.
     double others = 0;
     for (size_t k = j + 1; k < tree.size(); ++k) {
@@ -127,10 +132,9 @@ class BestFirstSearch {
       }
       if (!(cost + remainder <= limit)) continue;
       ++num_generated_;
-      spheres[j] = candidates[c];
-      cost += model_.ContextPenalty(j, spheres);
+      cost += model_.ContextPenalty(context, candidates[c]);
       if (!(cost + remainder <= limit)) continue;
-      states_.push_back({cost, cost + remainder, j + 1, index, static_cast<int>(c)});
+      states_.push_back({cost, j + 1, index, static_cast<int>(c)});
       queue_.push({cost + remainder, static_cast<int>(states_.size()) - 1});
     }
   }
@@ -145,20 +149,21 @@ class BestFirstSearch {
   int num_generated_ = 0;
 };
 
-}  // namespace
+EmbeddingSearch::EmbeddingSearch(const PenaltyModel& model, const SearchOptions& options)
+    : model_(model), options_(options), table_(std::make_unique<const PairTable>(model)) {}
+
+EmbeddingSearch::~EmbeddingSearch() = default;
+
+absl::StatusOr<SearchResult> EmbeddingSearch::Run(double bound, const Progress& progress) const {
+  return BestFirst(model_, *table_, options_, progress).Run(bound);
+}
 
 absl::StatusOr<SearchResult> SearchEmbedding(const PenaltyModel& model,
                                              const SearchOptions& options,
                                              const Progress& progress) {
-  for (size_t j = 0; j < model.tree().size(); ++j) {
-    if (model.candidates(static_cast<int>(j)).empty()) {
-      return absl::NotFoundError("a joint has no sphere to lie on");
-    }
-  }
-  const PairTable table(model);
-  BestFirstSearch search(model, table, options, progress);
+  const EmbeddingSearch search(model, options);
   for (double bound = options.first_bound; bound <= options.max_bound; bound *= 2) {
-    absl::StatusOr<SearchResult> found = search.Run(bound);
+    absl::StatusOr<SearchResult> found = search.Run(bound, progress);
     if (found.ok() || !absl::IsNotFound(found.status())) return found;
   }
   return absl::NotFoundError(

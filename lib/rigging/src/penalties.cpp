@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// 0 for equal directions, 1 at a right angle, 4 for opposite ones; 1 when one has no length.
+double Square(double x) { return x * x; }
+
+// 0 for equal directions, .09 at 45 degrees (arms of a T-pose against the template's), 2 at a right
+// angle, 10 for opposite ones; that of a right angle when one has no length.
 double DirectionMismatch(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const double lengths = a.norm() * b.norm();
-  if (!(lengths > 1e-12)) return 1;
-  const double one_minus_cosine = 1 - a.dot(b) / lengths;
-  return one_minus_cosine * one_minus_cosine;
+  const double turn = lengths > 1e-12 ? 1 - a.dot(b) / lengths : 1;
+  return Square(turn) + 2 * Square(std::max(0.0, turn - 0.3));
 }
-
-double Square(double x) { return x * x; }
 
 }  // namespace
 
@@ -90,10 +90,8 @@ double PenaltyModel::LocalDirection(const SearchJoint& joint, const std::vector<
   Eigen::Vector3d start = graph_.sphere(path[0]).centre;
   double mismatch = 0;
   for (size_t k = 0; k < joint.chain.size(); ++k) {
-    const Eigen::Vector3d bone = points.col(k) - start;
-    const double length = bone.norm();
-    const double cosine = length > 0 ? bone.dot(joint.directions.col(k)) / length : 0;
-    mismatch += joint.bone_lengths[k] / joint.length * (1 - cosine);
+    mismatch += joint.bone_lengths[k] / joint.length *
+                DirectionMismatch(points.col(k) - start, joint.directions.col(k));
     start = points.col(k);
   }
   return mismatch;
@@ -124,8 +122,8 @@ double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
   const std::vector<int> path = graph_.Path(parent_sphere, sphere);
   // A chain at the body's own size has the stretch 1 / template_scale.
   const double natural = stretch * options_.template_scale;
-  double cost = weights.length *
-                (Square(std::max(0.0, 1 / natural - 1)) + Square(std::max(0.0, natural - 1.5)));
+  double cost = weights.length * (0.5 * Square(std::max(0.0, 1 / natural - 1)) +
+                                  2 * Square(std::max(0.0, natural - 1.15)));
   cost += weights.direction *
           DirectionMismatch(graph_.sphere(sphere).centre - graph_.sphere(parent_sphere).centre,
                             joint.position - tree_[joint.parent].position);
@@ -140,53 +138,61 @@ double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
   return cost <= 1 ? cost : kInfinite;
 }
 
-double PenaltyModel::ContextPenalty(int j, const std::vector<int>& spheres) const {
-  if (j == 0) return 0;
+PlacementContext PenaltyModel::MakeContext(int j, const std::vector<int>& spheres) const {
+  PlacementContext context;
+  context.joint = j;
+  if (j == 0) return context;
   const SearchJoint& joint = tree_[j];
-  const PenaltyWeights& weights = options_.weights;
-  const std::vector<int> path = graph_.Path(spheres[joint.parent], spheres[j]);
-  const double length = graph_.PathLength(spheres[joint.parent], spheres[j]);
-  std::vector<char> is_used(graph_.size(), 0);
-  // Length of the embedded skeleton from joint j to every joint placed before.
-  std::vector<double> from_root(j + 1, 0.0);
-  double cost = 0;
-  for (int k = 1; k <= j; ++k) {
-    from_root[k] =
-        from_root[tree_[k].parent] + graph_.PathLength(spheres[tree_[k].parent], spheres[k]);
+  context.parent_sphere = spheres[joint.parent];
+  context.is_used.assign(graph_.size(), 0);
+  std::vector<double> from_root(j, 0.0);  // along the embedded skeleton
+  for (int k = 1; k < j; ++k) {
+    const int parent_sphere = spheres[tree_[k].parent];
+    from_root[k] = from_root[tree_[k].parent] + graph_.PathLength(parent_sphere, spheres[k]);
+    for (int i : graph_.Path(parent_sphere, spheres[k])) context.is_used[i] = 1;
   }
   for (int k = 0; k < j; ++k) {
-    if (k > 0) {
-      for (int i : graph_.Path(spheres[tree_[k].parent], spheres[k])) is_used[i] = 1;
-    }
     if (k == joint.parent) continue;
-    const Eigen::Vector3d offset =
-        graph_.sphere(spheres[j]).centre - graph_.sphere(spheres[k]).centre;
-    if (tree_[k].parent == joint.parent) {
-      cost += weights.direction * DirectionMismatch(offset, joint.position - tree_[k].position);
-    }
-    int ancestor = joint.parent;
-    for (int a = k; a != ancestor;) {  // indices grow from the root: climb from the larger one
-      if (a > ancestor) {
-        a = tree_[a].parent;
-      } else {
-        ancestor = tree_[ancestor].parent;
-      }
-    }
-    const double along = from_root[j] + from_root[k] - 2 * from_root[ancestor];
-    const double in_body = graph_.PathLength(spheres[k], spheres[j]);
-    if (along > 0) cost += weights.proximity * std::max(0.0, 1 - 2 * in_body / along);
+    int a = k, b = joint.parent;  // indices grow from the root: climb from the larger one
+    while (a != b) (a > b ? a : b) = tree_[a > b ? a : b].parent;
+    context.others.push_back({spheres[k], from_root[joint.parent] + from_root[k] - 2 * from_root[a],
+                              tree_[k].parent == joint.parent, joint.position - tree_[k].position});
   }
-  double shared = 0;
-  for (size_t i = 1; i < path.size(); ++i) {
-    if (is_used[path[i]]) {
-      shared += (graph_.sphere(path[i]).centre - graph_.sphere(path[i - 1]).centre).norm();
-    }
-  }
-  if (length > 0) cost += weights.shared_path * shared / length;
   if (joint.mirror >= 0 && joint.mirror < j) {
     const int m = joint.mirror;
-    const double other = graph_.PathLength(spheres[tree_[m].parent], spheres[m]);
-    if (length > 0 && other > 0) cost += weights.symmetry * 10 * Square(std::log(length / other));
+    context.mirror_length = graph_.PathLength(spheres[tree_[m].parent], spheres[m]);
+  }
+  return context;
+}
+
+double PenaltyModel::ContextPenalty(const PlacementContext& context, int sphere) const {
+  if (context.joint == 0) return 0;
+  const PenaltyWeights& weights = options_.weights;
+  const double length = graph_.PathLength(context.parent_sphere, sphere);
+  const Eigen::Vector3d& centre = graph_.sphere(sphere).centre;
+  double cost = 0;
+  for (const PlacementContext::Other& other : context.others) {
+    if (other.is_sibling) {
+      cost += weights.direction *
+              DirectionMismatch(centre - graph_.sphere(other.sphere).centre, other.template_offset);
+    }
+    const double along = other.length_to_parent + length;
+    const double in_body = graph_.PathLength(other.sphere, sphere);
+    if (along > 0) cost += weights.proximity * std::max(0.0, 1 - 2 * in_body / along);
+  }
+  if (length > 0) {
+    double shared = 0;
+    for (int i = sphere; i != context.parent_sphere;) {
+      const int before = graph_.Predecessor(context.parent_sphere, i);
+      if (context.is_used[i]) {
+        shared += (graph_.sphere(i).centre - graph_.sphere(before).centre).norm();
+      }
+      i = before;
+    }
+    cost += weights.shared_path * shared / length;
+    if (context.mirror_length > 0) {
+      cost += weights.symmetry * 10 * Square(std::log(length / context.mirror_length));
+    }
   }
   return cost <= 1 ? cost : kInfinite;
 }

@@ -50,6 +50,9 @@ class RefinementObjective {
 
  private:
   static int Parent(int b) { return HumanTemplate().parent(b); }
+  static bool CrossesTrunk(int b) {
+    return b == kLeftUpperLeg || b == kRightUpperLeg || b == kLeftUpperArm || b == kRightUpperArm;
+  }
 
   double Centring(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                   Eigen::VectorXd* gradient) const {
@@ -88,9 +91,10 @@ class RefinementObjective {
     const Eigen::Vector3d direction = bone / length;
 
     const double length_residual = length / target_length - 1;
-    AddRow(options_.length, length_residual, {{Parent(b), b}}, {direction / target_length}, hessian,
+    const double length_weight = CrossesTrunk(b) ? options_.trunk_length : options_.length;
+    AddRow(length_weight, length_residual, {{Parent(b), b}}, {direction / target_length}, hessian,
            gradient);
-    double energy = options_.length * length_residual * length_residual;
+    double energy = length_weight * length_residual * length_residual;
 
     // |u - t|^2 = 2 (1 - cos)
     const Eigen::Vector3d angle_residual = direction - target / target_length;

@@ -19,27 +19,38 @@ struct EmbeddingOptions {
   int max_spheres = 1000;
   PenaltyOptions penalties;
   SearchOptions search;
+  // Facings that cost up to this much more than the best one are still measured.
+  double facing_margin = .01;
+  // Surface farther from every bone than this share of the body's size is not explained by the
+  // skeleton (the hind part of a horse). Its share of the surface, up to a quarter, times the
+  // weight is added to the residual.
+  double cover_distance = .2;
+  double uncovered_weight = .2;
   RefinementOptions refinement;
 };
 
-// What one facing costs; infinite when the search found nothing.
+// What one facing costs. The search of a facing stops once it is certain that another one is
+// better: its residual is then at least this.
 struct FacingResidual {
-  double yaw_degrees;
-  double residual;
+  double yaw_degrees = 0;
+  double residual = 0;
+  bool is_lower_bound = false;
 };
 
 struct Embedding {
-  Eigen::Matrix3Xd joints;              // 3 x 18, template order, in the units of the mesh
-  Eigen::Matrix3Xd initial_joints;      // the same before the continuous refinement
-  double residual = 0;                  // of the search; .03-.10 is doubtful, over .15 is no human
-  double yaw_degrees = 0;               // where the character faces
+  Eigen::Matrix3Xd joints;          // 3 x 18, template order, in the units of the mesh
+  Eigen::Matrix3Xd initial_joints;  // the same before the continuous refinement
+  double residual = 0;              // search + uncovered surface; .03-.10 is doubtful, .15 no human
+  double search_residual = 0;       // penalties alone
+  double uncovered_share = 0;       // of the body's surface, 0..1
+  double yaw_degrees = 0;           // where the character faces
   std::vector<FacingResidual> facings;  // every facing tried, in the order given
   int num_spheres = 0;
 };
 
-// Baran and Popovic 2007, "Automatic rigging and animation of 3D characters": sphere packing,
-// graph, search over the facings, refinement. kNotFound when the skeleton fits in no facing,
-// kInvalidArgument when no facing is given, kCancelled.
+// The whole embedding of Baran and Popovic 2007, "Automatic rigging and animation of 3D
+// characters": sphere packing, graph, search over the facings, refinement. kNotFound when the
+// skeleton fits in no facing, kInvalidArgument when no facing is given, kCancelled.
 absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume,
                                         const EmbeddingOptions& options = {},
                                         const Progress& progress = {});

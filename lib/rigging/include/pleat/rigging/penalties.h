@@ -30,6 +30,21 @@ struct PenaltyOptions {
   double template_scale = 0.58;
 };
 
+// The joints placed so far, as the next joint sees them.
+struct PlacementContext {
+  struct Other {  // a joint placed before, not the parent
+    int sphere;
+    double length_to_parent;  // along the embedded skeleton, to the next joint's parent
+    bool is_sibling;
+    Eigen::Vector3d template_offset;  // from it to the next joint
+  };
+  int joint = 0;
+  int parent_sphere = -1;
+  double mirror_length = 0;  // of the mirrored chain, 0 = not placed
+  std::vector<Other> others;
+  std::vector<char> is_used;  // per sphere: on the path of a chain placed before
+};
+
 // Costs of placing the joints of `tree` on the spheres of `graph`, one joint after the other. All
 // costs are >= 0; infinite = forbidden. The graph and the tree must outlive this object.
 class PenaltyModel {
@@ -45,9 +60,11 @@ class PenaltyModel {
 
   // What joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`.
   double PairPenalty(int j, int sphere, int parent_sphere) const;
-  // What joint j on spheres[j] costs against joints 0..j-1 on spheres[0..j-1], its parent's share
-  // in PairPenalty left out.
-  double ContextPenalty(int j, const std::vector<int>& spheres) const;
+  // What joint j is compared with when joints 0..j-1 lie on spheres[0..j-1].
+  PlacementContext MakeContext(int j, const std::vector<int>& spheres) const;
+  // What the joint of `context` on `sphere` costs against the joints placed before it, its parent's
+  // share in PairPenalty left out. Its parent must reach `sphere`.
+  double ContextPenalty(const PlacementContext& context, int sphere) const;
 
  private:
   double LocalDirection(const SearchJoint& joint, const std::vector<int>& path) const;

@@ -13,8 +13,11 @@ namespace pleat {
 struct RefinementOptions {
   double centring = 15000;  // squared distance of the bone to the medial surface, mean over it
   double length = .25;      // relative deviation from the template's length
-  double angle = 2;         // 1 - cosine to the template's direction
-  double symmetry = 1;      // relative difference of mirrored lengths
+  // The same for the bones across the trunk, from hips and chest to the limbs: the surface says
+  // nothing about their length, under a skirt least of all.
+  double trunk_length = 30;
+  double angle = 2;     // 1 - cosine to the template's direction
+  double symmetry = 1;  // relative difference of mirrored lengths
   int samples_per_bone = 10;
   int max_iterations = 60;
 };

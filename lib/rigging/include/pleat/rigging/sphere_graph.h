@@ -26,6 +26,8 @@ class SphereGraph {
 
   // Length of the shortest path, infinite when there is none.
   double PathLength(int from, int to) const { return distances_(to, from); }
+  // The node before `to` on the shortest path, -1 at its start or when there is none.
+  int Predecessor(int from, int to) const { return predecessors_(to, from); }
   // Nodes of the shortest path, both ends included; empty when there is none.
   std::vector<int> Path(int from, int to) const;
 
