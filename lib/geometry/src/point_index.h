@@ -27,6 +27,13 @@ class PointIndex {
     return result;
   }
 
+  // All points nearer than `radius`, in no particular order: (index, squared distance).
+  std::vector<std::pair<size_t, double>> Within(const Eigen::Vector3d& query, double radius) const {
+    std::vector<std::pair<size_t, double>> result;
+    tree_.radiusSearch(query.data(), radius * radius, result, nanoflann::SearchParams());
+    return result;
+  }
+
   // The interface that nanoflann asks for.
   size_t kdtree_get_point_count() const { return static_cast<size_t>(points_.cols()); }
   double kdtree_get_pt(size_t index, size_t axis) const { return points_(axis, index); }

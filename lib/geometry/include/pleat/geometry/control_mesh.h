@@ -9,12 +9,13 @@
 
 namespace pleat {
 
-// Chooses round(fraction * V) vertices, ascending, by edge-collapse simplification of the frame
-// `reference` (3 x V, metres) with meshoptimizer (quadric error metric, Garland and Heckbert 1997),
-// which keeps a subset of the vertices. Where it cannot meet the count exactly (borders, topology),
-// the closest pairs are thinned or the largest gaps filled. Every connected component keeps at
-// least one vertex, which can raise the count; coincident vertices count as connected. fraction 1
-// returns all vertices. Deterministic. kInvalidArgument when fraction is not in (0, 1] or the
+// Chooses round(fraction * V) vertices, ascending, of the mesh in the frame `reference` (3 x V,
+// metres). Half of them are what edge-collapse simplification by meshoptimizer (quadric error
+// metric, Garland and Heckbert 1997) leaves, which is a subset of the vertices; the other half fill
+// the largest gaps, and all are centred in the cells they serve: the flat places that a
+// simplification leaves bare are where cloth folds in other frames. Every connected component keeps
+// at least one vertex, which can raise the count; coincident vertices count as connected. fraction
+// 1 returns all vertices. Deterministic. kInvalidArgument when fraction is not in (0, 1] or the
 // counts of `topology` and `reference` differ.
 absl::StatusOr<std::vector<int>> SelectControlVertices(const Topology& topology,
                                                        const Eigen::Matrix3Xd& reference,
