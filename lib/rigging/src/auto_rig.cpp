@@ -14,6 +14,7 @@
 namespace pleat {
 namespace {
 
+constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left and right
 constexpr char kWhatToDo[] =
     "choose another rest frame, one that stands upright with arms and legs apart, or bring your "
     "own rig";
@@ -45,7 +46,10 @@ absl::StatusOr<FrameEmbedding> EmbedFrame(const MeshSequence& sequence, int fram
                          ComputeBodyVolume(sequence.topology(), sequence.FrameAsDouble(frame),
                                            volume_options, progress.Stage("rig", 0, .7)));
   EmbeddingOptions embedding_options = options.embedding;
-  if (options.yaw_degrees) embedding_options.yaws_degrees = {*options.yaw_degrees};
+  if (options.yaw_degrees) {
+    embedding_options.yaws_degrees = {*options.yaw_degrees};
+    embedding_options.adjust_yaw = false;
+  }
   PLEAT_ASSIGN_OR_RETURN(result.embedding, EmbedSkeleton(result.volume, embedding_options,
                                                          progress.Stage("rig", .7, 1)));
   return result;
@@ -118,7 +122,8 @@ void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
         found.frame, embedding.residual, options.trusted_residual, kWhatToDo));
   }
   for (const FacingResidual& facing : embedding.facings) {
-    if (facing.yaw_degrees == embedding.yaw_degrees ||
+    const double turn = std::remainder(facing.yaw_degrees - embedding.yaw_degrees, 360);
+    if (std::abs(turn) < kOtherFacingDegrees ||
         facing.residual - embedding.search_residual >= options.facing_margin) {
       continue;
     }

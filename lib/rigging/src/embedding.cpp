@@ -17,6 +17,9 @@
 namespace pleat {
 namespace {
 
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kMinYawChangeDegrees = 10;
+
 // The spheres that hang together and hold the most volume, and the bounds of the mesh components
 // around them: things that float beside the character are left out.
 struct MainBody {
@@ -121,7 +124,7 @@ Eigen::Matrix3Xd WorldFromUnit(const BodyVolume& volume, const Eigen::Matrix3Xd&
 struct FacingSearch {
   FacingSearch(const SphereGraph& graph, double yaw_degrees, double floor_height, double body_size,
                const EmbeddingOptions& options)
-      : tree(MakeHumanSearchTree(body_size, yaw_degrees * std::numbers::pi / 180)),
+      : tree(MakeHumanSearchTree(body_size, yaw_degrees / kDegrees)),
         model(graph, tree, floor_height, body_size, options.penalties),
         search(model, options.search) {
     facing = {yaw_degrees, 0, true};
@@ -154,7 +157,7 @@ struct FacingSearch {
 // Deepens all facings together until one of them has a placement; returns the cheapest, null when
 // there is none below the largest bound.
 absl::StatusOr<const FacingSearch*> SearchFacings(
-    const EmbeddingOptions& options, std::vector<std::unique_ptr<FacingSearch>>& searches,
+    const EmbeddingOptions& options, const std::vector<std::unique_ptr<FacingSearch>>& searches,
     const Progress& progress) {
   const FacingSearch* best = nullptr;
   const auto deepen_open = [&](double bound) -> absl::Status {
@@ -176,6 +179,35 @@ absl::StatusOr<const FacingSearch*> SearchFacings(
     PLEAT_RETURN_IF_ERROR(deepen_open(best->facing.residual + options.facing_margin));
   }
   return best;
+}
+
+// Where a placement faces by its own left and right feet and hands, degrees in [0, 360).
+double MeasuredYaw(const SphereGraph& graph, const FacingSearch& facing) {
+  Eigen::Vector3d right_to_left = Eigen::Vector3d::Zero();
+  for (size_t j = 0; j < facing.tree.size(); ++j) {
+    const int mirror = facing.tree[j].mirror;
+    if (mirror <= static_cast<int>(j)) continue;  // the left one comes first
+    right_to_left += graph.sphere(facing.found->spheres[j]).centre -
+                     graph.sphere(facing.found->spheres[mirror]).centre;
+  }
+  const double yaw = std::atan2(-right_to_left.z(), right_to_left.x()) * kDegrees;
+  return yaw < 0 ? yaw + 360 : yaw;
+}
+
+// Adds the facing that `best` shows when it differs from the one it was found with, and returns the
+// better of the two.
+absl::StatusOr<const FacingSearch*> AdjustFacing(
+    const SphereGraph& graph, const FacingSearch* best, double floor_height, double body_size,
+    const EmbeddingOptions& options, std::vector<std::unique_ptr<FacingSearch>>* searches,
+    const Progress& progress) {
+  const double yaw = MeasuredYaw(graph, *best);
+  if (std::abs(std::remainder(yaw - best->facing.yaw_degrees, 360)) < kMinYawChangeDegrees) {
+    return best;
+  }
+  searches->push_back(std::make_unique<FacingSearch>(graph, yaw, floor_height, body_size, options));
+  FacingSearch& adjusted = *searches->back();
+  PLEAT_RETURN_IF_ERROR(adjusted.Deepen(best->facing.residual, progress));
+  return adjusted.found ? &adjusted : best;
 }
 
 }  // namespace
@@ -205,6 +237,10 @@ absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const Embeddin
         "facings tried",
         least, searches.size()));
   }
+  if (options.adjust_yaw) {
+    PLEAT_ASSIGN_OR_RETURN(
+        best, AdjustFacing(graph, best, floor_height, body_size, options, &searches, progress));
+  }
   Embedding embedding;
   embedding.num_spheres = graph.size();
   embedding.search_residual = best->facing.residual;
@@ -212,9 +248,9 @@ absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const Embeddin
   for (const auto& search : searches) embedding.facings.push_back(search->facing);
   const Eigen::Matrix3Xd best_joints = PlaceAllJoints(graph, best->tree, best->found->spheres);
   embedding.initial_joints = WorldFromUnit(volume, best_joints);
-  const Eigen::Matrix3Xd refined = RefineEmbedding(
-      best_joints, TurnedTemplate(embedding.yaw_degrees * std::numbers::pi / 180, body_size),
-      volume.medial_samples, options.refinement);
+  const Eigen::Matrix3Xd refined =
+      RefineEmbedding(best_joints, TurnedTemplate(embedding.yaw_degrees / kDegrees, body_size),
+                      volume.medial_samples, options.refinement);
   embedding.joints = WorldFromUnit(volume, refined);
   embedding.uncovered_share =
       UncoveredShare(volume.surface, body.is_body, refined, options.cover_distance * body_size);

@@ -16,6 +16,9 @@ namespace pleat {
 struct EmbeddingOptions {
   // Facings to try, degrees about +y from +z towards +x. A wrong one costs milliseconds.
   std::vector<double> yaws_degrees = {0, 90, 180, 270};
+  // Once the best of them is known, also try the facing that its own left and right feet and hands
+  // show: characters that stand across the four.
+  bool adjust_yaw = true;
   int max_spheres = 1000;
   PenaltyOptions penalties;
   SearchOptions search;
