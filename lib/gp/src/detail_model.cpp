@@ -15,6 +15,12 @@ absl::Status Refuse(const std::string& what) {
   return absl::InvalidArgumentError("detail model parameters: " + what);
 }
 
+// 1 where `stage` is sure, 0 where it knows no more than its prior; also 0 for not a number.
+double Confidence(double variance, const GpRegression& stage) {
+  const double confidence = std::min(1 - variance / stage.prior_variance(), 1.0);
+  return confidence > 0 ? confidence : 0;
+}
+
 // 0 at 0, 1 from `full` on, smooth between.
 double Fade(double confidence, double full) {
   if (confidence >= full) return 1;
@@ -78,17 +84,21 @@ double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>&
   w.stages.resize(stages_.size());
   w.coefficients.resize(num_components());
   double variance = 0;
+  double fade_confidence = 0;
   if (stages_.size() == 1) {
     stages_[0].Predict(features, 0, &w.stages[0], w.coefficients, &variance);
+    fade_confidence = Confidence(variance, stages_[0]);
   } else {
     w.latent.resize(stages_[0].num_outputs());
     double latent_variance = 0;
     stages_[0].Predict(features, 0, &w.stages[0], w.latent, &latent_variance);
     stages_[1].Predict(w.latent, latent_variance, &w.stages[1], w.coefficients, &variance);
+    // The first-order variance is too careful to fade by: where the detail varies fast along the
+    // latent points it is above the prior long before the back-map is lost.
+    fade_confidence = Confidence(latent_variance, stages_[0]);
   }
-  double confidence = std::min(1 - variance / stages_.back().prior_variance(), 1.0);
-  if (!(confidence > 0)) confidence = 0;  // also for features that are not numbers
-  const double fade = Fade(confidence, fade_confidence_);
+  const double confidence = Confidence(variance, stages_.back());
+  const double fade = Fade(fade_confidence, fade_confidence_);
   // A fade of zero also removes what is not finite.
   if (fade > 0) {
     coefficients = (fade * w.coefficients).cast<float>();
