@@ -1,0 +1,75 @@
+#include "cli/command_line.h"
+
+#include <algorithm>
+#include <memory>
+#include <new>
+
+#include "CLI/CLI.hpp"
+#include "cli/verbs.h"
+
+namespace pleat {
+namespace {
+
+std::unique_ptr<CLI::App> MakeParser(Session& session) {
+  auto app = std::make_unique<CLI::App>(
+      "Pleat: from a captured mesh sequence to an editable character.\n"
+      "INPUT is a folder or glob of .obj or .ply files, a .pc2 beside its .obj, or a .pseq.",
+      "pleat");
+  app->require_subcommand(1);
+  app->footer(std::string("\n") + ExitCodeHelp());
+  AddInspectVerb(*app, session);
+  AddTrainVerb(*app, session);
+  AddMotionVerb(*app, session);
+  AddPoseVerb(*app, session);
+  AddEvaluateVerb(*app, session);
+  AddRenderVerb(*app, session);
+  AddCompareVerb(*app, session);
+  AddGenerateVerb(*app, session);
+  AddUploadVerb(*app, session);
+  AddSequencesVerb(*app, session);
+  AddJobsVerb(*app, session);
+  AddModelsVerb(*app, session);
+  AddVersionVerb(*app, session);
+  return app;
+}
+
+// The verb that the arguments name, for messages of the parser.
+std::string Prefix(const std::vector<std::string>& arguments, const CLI::App& app) {
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!arguments.empty() && verb->get_name() == arguments[0]) return "pleat " + arguments[0];
+  }
+  return "pleat";
+}
+
+}  // namespace
+
+ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& session) {
+  const std::unique_ptr<CLI::App> app = MakeParser(session);
+  try {
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    app->parse(reversed);
+  } catch (const CLI::Success& help) {
+    app->exit(help, *session.out, *session.err);
+    return ExitCode::kOk;
+  } catch (const CLI::ParseError& error) {
+    const std::string prefix = Prefix(arguments, *app);
+    *session.err << prefix << ": " << error.what() << "\nTry '" << prefix << " --help'.\n";
+    return ExitCode::kUsage;
+  }
+
+  absl::Status status;
+  try {
+    status = session.run();
+  } catch (const std::bad_alloc&) {
+    status = absl::ResourceExhaustedError("out of memory: try fewer or smaller frames");
+  } catch (const std::exception& exception) {
+    status = absl::InternalError(exception.what());
+  }
+  if (!status.ok()) {
+    *session.err << "pleat " << session.verb << ": " << std::string(status.message()) << "\n";
+  }
+  session.out->flush();
+  return ExitCodeOf(status);
+}
+
+}  // namespace pleat

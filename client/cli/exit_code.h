@@ -1,0 +1,31 @@
+// Exit codes of `pleat`: one per kind of failure, the same for every verb (client/README.md).
+#pragma once
+
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace pleat {
+
+enum class ExitCode : int {
+  kOk = 0,
+  kInternal = 1,     // a fault of Pleat itself
+  kUsage = 2,        // unknown verb or flag, wrong value of a flag
+  kBadInput = 3,     // a file that cannot be read as what it should be
+  kNotFound = 4,     // a file, sequence, job or model that is not there
+  kRefused = 5,      // readable, but not possible: no human-like rig, model in use, job failed
+  kUnavailable = 6,  // the server cannot be reached or did not answer in time
+  kCancelled = 7,    // Ctrl-C, or the job was cancelled
+  kLimit = 8,        // over a limit of size, memory or disk
+};
+
+ExitCode ExitCodeOf(const absl::Status& status);
+
+// A mistake in the command line that the parser cannot see; ends with ExitCode::kUsage.
+absl::Status UsageError(const std::string& message);
+bool IsUsageError(const absl::Status& status);
+
+// The table of codes as --help prints it.
+const char* ExitCodeHelp();
+
+}  // namespace pleat

@@ -1,0 +1,14 @@
+// What the service says about its objects, as JSON for machines.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "pleat/character/character_service.h"
+
+namespace pleat {
+
+nlohmann::ordered_json SequenceJson(const SequenceInfo& info);
+nlohmann::ordered_json JobJson(const JobInfo& info);
+nlohmann::ordered_json ModelJson(const ModelInfo& info);
+
+}  // namespace pleat

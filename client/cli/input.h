@@ -1,0 +1,17 @@
+// Reading INPUT arguments, with progress and Ctrl-C.
+#pragma once
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "cli/session.h"
+#include "pleat/mesh/mesh_sequence.h"
+
+namespace pleat {
+
+// What ReadSequence reads, and folders of Draco frames (draco_folder.h). fps: text of --fps, empty
+// when it was not given.
+absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string& input,
+                                       const std::string& fps = "");
+
+}  // namespace pleat

@@ -1,0 +1,77 @@
+#include <chrono>
+#include <future>
+#include <map>
+#include <mutex>
+
+#include "absl/strings/str_cat.h"
+#include "cli/interrupt.h"
+#include "cli/progress_display.h"
+#include "cli/service.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr auto kInterruptInterval = std::chrono::milliseconds(50);
+
+// What the watching thread saw last.
+struct Watched {
+  std::mutex mutex;
+  JobInfo job;
+};
+
+absl::Status EndOf(const JobInfo& job) {
+  switch (job.state) {
+    case JobState::kSucceeded:
+      return absl::OkStatus();
+    case JobState::kCancelled:
+      return absl::CancelledError(absl::StrCat("job ", job.id, " was cancelled"));
+    case JobState::kFailed:
+      return absl::Status(job.error.ok() ? absl::StatusCode::kInternal : job.error.code(),
+                          absl::StrCat("job ", job.id, " failed: ", job.error.message()));
+    default:
+      return absl::UnavailableError(absl::StrCat("the service stopped telling about job ", job.id,
+                                                 ", which is ", JobStateName(job.state),
+                                                 ": see 'pleat jobs show ", job.id, "'"));
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<JobInfo> WatchJobToEnd(CharacterService& service, const std::string& id,
+                                      const Session& session, bool cancel_on_interrupt,
+                                      std::map<std::string, double>* stage_seconds) {
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  Watched watched;
+  watched.job.id = id;
+  std::future<absl::Status> watching = std::async(std::launch::async, [&] {
+    return service.WatchJob(id, [&](const JobInfo& job) {
+      if (job.state == JobState::kRunning || job.state == JobState::kSucceeded) {
+        const bool done = job.state == JobState::kSucceeded;
+        display.Update({done ? "done" : job.stage, done ? 1.0 : job.fraction, job.objective},
+                       job.eta_seconds);
+      } else if (job.state == JobState::kQueued) {
+        display.Update({"queued", 0, std::nullopt});
+      }
+      std::lock_guard lock(watched.mutex);
+      watched.job = job;
+      return true;
+    });
+  });
+  bool cancelled = false;
+  while (watching.wait_for(kInterruptInterval) != std::future_status::ready) {
+    if (!cancel_on_interrupt || cancelled || !Interrupted()) continue;
+    cancelled = true;
+    // The watch ends by itself when the job is cancelled; when it cannot be, its error says so.
+    if (absl::Status status = service.CancelJob(id); !status.ok()) {
+      *session.err << "cannot cancel job " << id << ": " << status.message() << std::endl;
+    }
+  }
+  display.Finish();
+  if (stage_seconds != nullptr) *stage_seconds = display.stage_seconds();
+  PLEAT_RETURN_IF_ERROR(watching.get());
+  PLEAT_RETURN_IF_ERROR(EndOf(watched.job));
+  return watched.job;
+}
+
+}  // namespace pleat

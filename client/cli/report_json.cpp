@@ -1,0 +1,87 @@
+#include "cli/report_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace pleat {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json JointsJson(const Skeleton& skeleton) {
+  ordered_json joints = ordered_json::array();
+  for (const Joint& joint : skeleton.joints()) {
+    const Eigen::Vector3d& p = joint.rest_position;
+    joints.push_back(
+        {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
+  }
+  return joints;
+}
+
+ordered_json ErrorsJson(const std::map<std::string, ErrorSummary>& errors) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [name, error] : errors) json[name] = ErrorJson(error);
+  return json;
+}
+
+}  // namespace
+
+ordered_json ErrorJson(const ErrorSummary& error) {
+  return {{"mean_percent", error.mean_percent},
+          {"rms_percent", error.rms_percent},
+          {"p95_percent", error.p95_percent},
+          {"max_percent", error.max_percent},
+          {"mean_mm", error.mean_mm}};
+}
+
+ordered_json OptionsJson(const TrainOptions& options) {
+  ordered_json json;
+  VisitTrainOptions(options, [&json](const char* name, const auto& value) { json[name] = value; });
+  return json;
+}
+
+ordered_json TrainReportJson(const CharacterModel& model, const TrainCosts& costs) {
+  const TrainingRecord& record = model.record();
+  ordered_json json;
+  json["schema"] = "pleat.train/1";
+  json["rig"] = {{"rest_frame", record.rest_frame},
+                 {"yaw_degrees", record.yaw_degrees},
+                 {"residual", record.rig_residual},
+                 {"joints", JointsJson(model.skeleton())},
+                 {"warnings", record.warnings}};
+  json["fit"] = ErrorJson(record.fit);
+  json["reconstruction"] = ErrorJson(record.reconstruction);
+  json["learner"] = record.learner;
+  json["options"] = OptionsJson(model.options());
+  json["num_frames"] = record.num_frames;
+  json["num_vertices"] = model.num_vertices();
+  json["diagonal_m"] = record.diagonal_m;
+  json["seconds"] = costs.seconds;
+  json["peak_memory_bytes"] = costs.peak_memory_bytes;
+  json["model_bytes"] = costs.model_bytes;
+  json["model_id"] = costs.model_id;
+  return json;
+}
+
+ordered_json EvaluateReportJson(const EvaluateReport& report) {
+  ordered_json json;
+  json["schema"] = "pleat.evaluate/1";
+  json["protocol"] = report.protocol;
+  json["diagonal_m"] = report.diagonal_m;
+  json["learner"] = report.learner;
+  json["skinned"] = ErrorJson(report.skinned);
+  json["hybrid"] = ErrorJson(report.hybrid);
+  json["baselines"] = ErrorsJson(report.baselines);
+  json["learners"] = ErrorsJson(report.learners);
+  json["seconds"] = report.seconds;
+  json["num_train_frames"] = report.num_train_frames;
+  json["num_test_frames"] = report.num_test_frames;
+  json["test_frames"] = report.test_frames;
+  json["frame_mean_percent"] = {{"skinned", report.skinned.frame_mean_percent},
+                                {"hybrid", report.hybrid.frame_mean_percent}};
+  json["motion_mean_percent"] = {{"skinned", report.skinned.motion_mean_percent},
+                                 {"hybrid", report.hybrid.motion_mean_percent}};
+  json["options"] = OptionsJson(report.options);
+  return json;
+}
+
+}  // namespace pleat

@@ -1,0 +1,36 @@
+// The JSON reports of `train` and `evaluate` (client/README.md).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "pleat/character/character_model.h"
+#include "pleat/character/evaluate.h"
+#include "pleat/character/train_options.h"
+#include "pleat/mesh/error_metrics.h"
+
+namespace pleat {
+
+// {"mean_percent", "rms_percent", "p95_percent", "max_percent", "mean_mm"}
+nlohmann::ordered_json ErrorJson(const ErrorSummary& error);
+
+// Every option by name, numbers as numbers.
+nlohmann::ordered_json OptionsJson(const TrainOptions& options);
+
+// What the computation cost, beside what the model itself knows.
+struct TrainCosts {
+  std::map<std::string, double> seconds;  // per stage
+  uint64_t peak_memory_bytes = 0;         // of this process
+  uint64_t model_bytes = 0;
+  std::string model_id;  // content id of those bytes
+};
+
+// "pleat.train/1"
+nlohmann::ordered_json TrainReportJson(const CharacterModel& model, const TrainCosts& costs);
+
+// "pleat.evaluate/1"
+nlohmann::ordered_json EvaluateReportJson(const EvaluateReport& report);
+
+}  // namespace pleat

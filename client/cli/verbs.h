@@ -1,0 +1,38 @@
+// The verbs of `pleat`: one function and one file (verb_<name>.cpp) each. A function adds its verb
+// to the parser; the verb runs later, through Session::run.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "CLI/CLI.hpp"
+#include "absl/status/status.h"
+#include "cli/session.h"
+
+namespace pleat {
+
+// A verb with the flags that all verbs share (--quiet, --json). When the parser chooses it,
+// `run` becomes the session's.
+CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
+                  const std::string& description, std::function<absl::Status()> run);
+
+// --server, --local, --data-dir: for verbs that can run on a server.
+void AddServerFlags(CLI::App* verb, Session& session);
+// --local alone, for verbs that always run in this process.
+void AddInProcessFlag(CLI::App* verb, Session& session);
+
+void AddGenerateVerb(CLI::App& app, Session& session);
+void AddInspectVerb(CLI::App& app, Session& session);
+void AddCompareVerb(CLI::App& app, Session& session);
+void AddRenderVerb(CLI::App& app, Session& session);
+void AddTrainVerb(CLI::App& app, Session& session);
+void AddPoseVerb(CLI::App& app, Session& session);
+void AddMotionVerb(CLI::App& app, Session& session);
+void AddEvaluateVerb(CLI::App& app, Session& session);
+void AddUploadVerb(CLI::App& app, Session& session);
+void AddSequencesVerb(CLI::App& app, Session& session);
+void AddJobsVerb(CLI::App& app, Session& session);
+void AddModelsVerb(CLI::App& app, Session& session);
+void AddVersionVerb(CLI::App& app, Session& session);
+
+}  // namespace pleat
