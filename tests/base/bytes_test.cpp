@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

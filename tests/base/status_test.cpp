@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

@@ -5,9 +5,9 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/math/rotations.h"
 #include "pleat/skeleton/human_template.h"
-#include "tests/support/hostile_bytes.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/hostile_bytes.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

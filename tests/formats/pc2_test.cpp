@@ -1,8 +1,8 @@
 #include "pleat/formats/pc2.h"
 
-#include "tests/support/hostile_bytes.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/hostile_bytes.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
-#include "tests/support/hostile_bytes.h"
-#include "tests/support/status_matchers.h"
+#include "support/hostile_bytes.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

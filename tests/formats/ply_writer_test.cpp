@@ -4,8 +4,8 @@
 
 #include "pleat/formats/ply_reader.h"
 #include "pleat/mesh/shapes.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

@@ -5,9 +5,9 @@
 #include "pleat/formats/obj_writer.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/formats/sequence_reader.h"
-#include "tests/support/shared_data.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/shared_data.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

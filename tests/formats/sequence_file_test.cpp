@@ -2,9 +2,9 @@
 
 #include "pleat/base/file.h"
 #include "pleat/mesh/shapes.h"
-#include "tests/support/hostile_bytes.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/hostile_bytes.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

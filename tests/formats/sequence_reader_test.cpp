@@ -8,8 +8,8 @@
 #include "pleat/formats/pc2.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/mesh/shapes.h"
-#include "tests/support/status_matchers.h"
-#include "tests/support/temporary_folder.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "pleat/formats/sequence_file.h"
-#include "tests/support/hostile_bytes.h"
+#include "support/hostile_bytes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   // With the right checksum, so that the fuzzer gets behind it.

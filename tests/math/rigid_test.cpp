@@ -2,7 +2,7 @@
 
 #include "pleat/base/random.h"
 #include "pleat/math/rotations.h"
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

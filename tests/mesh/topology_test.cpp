@@ -1,6 +1,6 @@
 #include "pleat/mesh/topology.h"
 
-#include "tests/support/status_matchers.h"
+#include "support/status_matchers.h"
 
 namespace pleat {
 namespace {

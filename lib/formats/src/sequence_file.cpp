@@ -69,7 +69,10 @@ absl::StatusOr<Header> ReadHeader(ByteReader* reader, const MeshFileLimits& limi
   if (header.rate_numerator > kMaxRate || header.rate_denominator > kMaxRate) {
     return absl::InvalidArgumentError("the frame rate is out of range");
   }
-  if (header.flags > (kHasCornerTexcoords | kHasFaceMaterials)) {
+  // A flag for an empty list would give one sequence two forms, and two ids.
+  const uint32_t known_flags = (header.num_corners > 0 ? kHasCornerTexcoords : 0) |
+                               (header.num_faces > 0 ? kHasFaceMaterials : 0);
+  if ((header.flags & ~known_flags) != 0) {
     return absl::InvalidArgumentError(absl::StrCat("unknown flags ", header.flags));
   }
   return header;

@@ -1,0 +1,140 @@
+#include "detail_section.h"
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "array_io.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr uint32_t kHasBias = 1, kHasLinear = 2;
+constexpr uint32_t kMaxStages = 2;
+
+// The floating-point fields in front of a stage's sizes, in the order of the file.
+std::array<double, 7> KernelNumbers(const GpRegressionParameters& stage) {
+  const KernelLogs& logs = stage.kernel;
+  return {stage.kernel_options.relative_noise_floor,
+          stage.kernel_options.absolute_jitter,
+          logs.inverse_width,
+          logs.amplitude,
+          logs.bias,
+          logs.noise,
+          logs.linear};
+}
+
+void WriteStage(const GpRegressionParameters& stage, ByteWriter* writer) {
+  writer->Write((stage.kernel_options.bias ? kHasBias : 0) |
+                (stage.kernel_options.linear ? kHasLinear : 0));
+  const std::array<double, 7> numbers = KernelNumbers(stage);
+  writer->WriteArray(std::span<const double>(numbers));
+  writer->Write(static_cast<uint32_t>(stage.inputs.rows()));
+  writer->Write(static_cast<uint32_t>(stage.inputs.cols()));
+  writer->Write(static_cast<uint32_t>(stage.alpha.cols()));
+  writer->Write(stage.input_scale);
+  writer->Write(stage.output_scale);
+  WriteMatrix(stage.input_mean, writer);
+  WriteMatrix(stage.inputs, writer);
+  WriteMatrix(stage.output_mean, writer);
+  WriteMatrix(stage.alpha, writer);
+  for (Eigen::Index row = 0; row < stage.whitener.rows(); ++row) {
+    const Eigen::VectorXf values = stage.whitener.row(row).head(row + 1).transpose();
+    WriteMatrix(values, writer);
+  }
+}
+
+absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_unfolded_bytes,
+                          Eigen::MatrixXf* whitener) {
+  PLEAT_RETURN_IF_ERROR(reader->Require(num_rows * (num_rows + 1) / 2, sizeof(float), "whitener"));
+  if (num_rows * num_rows * sizeof(float) > max_unfolded_bytes) {
+    return absl::ResourceExhaustedError(absl::StrCat("a Gaussian process of ", num_rows,
+                                                     " rows needs more than the limit of ",
+                                                     max_unfolded_bytes, " bytes"));
+  }
+  const auto size = static_cast<Eigen::Index>(num_rows);
+  whitener->setZero(size, size);
+  Eigen::VectorXf values;
+  for (Eigen::Index row = 0; row < size; ++row) {
+    PLEAT_RETURN_IF_ERROR(
+        ReadMatrix(reader, static_cast<uint64_t>(row) + 1, 1, "whitener", &values));
+    whitener->row(row).head(row + 1) = values.transpose();
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint64_t max_unfolded_bytes) {
+  GpRegressionParameters stage;
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t flags, reader->Read<uint32_t>("stage flags"));
+  if (flags > (kHasBias | kHasLinear)) {
+    return absl::InvalidArgumentError(absl::StrCat("unknown stage flags ", flags));
+  }
+  stage.kernel_options.bias = (flags & kHasBias) != 0;
+  stage.kernel_options.linear = (flags & kHasLinear) != 0;
+  std::array<double, 7> numbers;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<double>(numbers), "kernel"));
+  stage.kernel_options.relative_noise_floor = numbers[0];
+  stage.kernel_options.absolute_jitter = numbers[1];
+  stage.kernel = {numbers[2], numbers[3], numbers[4], numbers[5], numbers[6]};
+  std::array<uint32_t, 3> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "stage sizes"));
+  const auto [num_rows, num_inputs, num_outputs] = counts;
+  if (num_rows == 0 || num_inputs == 0) {
+    return absl::InvalidArgumentError("a Gaussian process without rows or inputs");
+  }
+  PLEAT_ASSIGN_OR_RETURN(stage.input_scale, reader->Read<double>("input scale"));
+  PLEAT_ASSIGN_OR_RETURN(stage.output_scale, reader->Read<double>("output scale"));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_inputs, 1, "input mean", &stage.input_mean));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_inputs, "inputs", &stage.inputs));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &stage.output_mean));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_outputs, "alpha", &stage.alpha));
+  PLEAT_RETURN_IF_ERROR(ReadWhitener(reader, num_rows, max_unfolded_bytes, &stage.whitener));
+  return stage;
+}
+
+absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
+  for (const Learner learner : {Learner::kGp, Learner::kSgplvm}) {
+    if (LearnerName(learner) == name) return learner;
+  }
+  return absl::InvalidArgumentError(absl::StrCat("unknown learner '", name, "'"));
+}
+
+}  // namespace
+
+void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer) {
+  writer->WriteString(LearnerName(parameters.learner));
+  writer->Write(parameters.fade_confidence);
+  writer->Write(static_cast<uint32_t>(parameters.basis.rows()));
+  writer->Write(static_cast<uint32_t>(parameters.basis.cols()));
+  WriteMatrix(parameters.mean, writer);
+  WriteMatrix(parameters.basis, writer);
+  writer->Write(static_cast<uint32_t>(parameters.stages.size()));
+  for (const GpRegressionParameters& stage : parameters.stages) WriteStage(stage, writer);
+}
+
+absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint64_t max_unfolded_bytes) {
+  DetailModelParameters parameters;
+  PLEAT_ASSIGN_OR_RETURN(const std::string learner, reader->ReadString(64, "learner"));
+  PLEAT_ASSIGN_OR_RETURN(parameters.learner, LearnerFromName(learner));
+  PLEAT_ASSIGN_OR_RETURN(parameters.fade_confidence, reader->Read<double>("fade confidence"));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_details, reader->Read<uint32_t>("detail size"));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_components, reader->Read<uint32_t>("component count"));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, 1, "mean detail", &parameters.mean));
+  PLEAT_RETURN_IF_ERROR(
+      ReadMatrix(reader, num_details, num_components, "detail basis", &parameters.basis));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_stages, reader->Read<uint32_t>("stage count"));
+  if (num_stages == 0 || num_stages > kMaxStages) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(num_stages, " stages of the detail model, expected 1 or 2"));
+  }
+  for (uint32_t s = 0; s < num_stages; ++s) {
+    PLEAT_ASSIGN_OR_RETURN(GpRegressionParameters stage, ReadStage(reader, max_unfolded_bytes));
+    parameters.stages.push_back(std::move(stage));
+  }
+  return parameters;
+}
+
+}  // namespace pleat

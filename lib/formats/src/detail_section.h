@@ -1,0 +1,14 @@
+// Section 9 of the model file: the learnt detail.
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "pleat/base/bytes.h"
+#include "pleat/gp/detail_model.h"
+
+namespace pleat {
+
+void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer);
+// max_unfolded_bytes: for the whiteners, which the file holds as triangles.
+absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint64_t max_unfolded_bytes);
+
+}  // namespace pleat

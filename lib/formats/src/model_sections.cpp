@@ -1,0 +1,280 @@
+#include "model_sections.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "array_io.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr size_t kMaxNameBytes = 4096, kMaxJointNameBytes = 256;
+constexpr uint32_t kMaxJoints = 65'535, kMaxWarnings = 10'000;
+constexpr uint32_t kHasCornerTexcoords = 1, kHasFaceMaterials = 2;
+
+std::string_view Clip(const std::string& text, size_t max_bytes = kMaxNameBytes) {
+  return std::string_view(text).substr(0, max_bytes);
+}
+
+// Reads `N` counts at once.
+template <size_t N>
+absl::StatusOr<std::array<uint32_t, N>> ReadCounts(ByteReader* reader, absl::string_view what) {
+  std::array<uint32_t, N> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), what));
+  return counts;
+}
+
+std::array<double, 6> ErrorNumbers(const ErrorSummary& error) {
+  return {error.mean_percent, error.rms_percent, error.p95_percent,
+          error.max_percent,  error.mean_mm,     error.motion_mean_percent};
+}
+
+absl::Status ReadError(ByteReader* reader, ErrorSummary* error) {
+  std::array<double, 6> numbers;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<double>(numbers), "errors"));
+  error->mean_percent = numbers[0];
+  error->rms_percent = numbers[1];
+  error->p95_percent = numbers[2];
+  error->max_percent = numbers[3];
+  error->mean_mm = numbers[4];
+  error->motion_mean_percent = numbers[5];
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void WriteInfo(const CharacterModel::Parts& parts, ByteWriter* writer) {
+  writer->WriteString(Clip(parts.name));
+  writer->Write(static_cast<uint32_t>(parts.frame_rate.numerator));
+  writer->Write(static_cast<uint32_t>(parts.frame_rate.denominator));
+}
+
+absl::Status ReadInfo(ByteReader* reader, std::string* name, FrameRate* frame_rate) {
+  PLEAT_ASSIGN_OR_RETURN(*name, reader->ReadString(kMaxNameBytes, "name"));
+  PLEAT_ASSIGN_OR_RETURN(const auto rate, ReadCounts<2>(reader, "frame rate"));
+  constexpr uint32_t kMaxRate = 0x7fffffff;
+  if (rate[0] == 0 || rate[1] == 0 || rate[0] > kMaxRate || rate[1] > kMaxRate) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frame rate ", rate[0], "/", rate[1], " is out of range"));
+  }
+  *frame_rate = {static_cast<int32_t>(rate[0]), static_cast<int32_t>(rate[1])};
+  return absl::OkStatus();
+}
+
+void WriteTopology(const Topology& topology, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(topology.num_vertices()));
+  writer->Write(static_cast<uint32_t>(topology.num_faces()));
+  writer->Write(static_cast<uint32_t>(topology.num_corners()));
+  for (int f = 0; f < topology.num_faces(); ++f) {
+    writer->Write(static_cast<int32_t>(topology.face(f).size()));
+  }
+  writer->WriteArray(std::span(topology.corner_vertices()));
+}
+
+absl::StatusOr<Topology> ReadTopology(ByteReader* reader, const MeshFileLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const auto counts, ReadCounts<3>(reader, "mesh sizes"));
+  const auto [num_vertices, num_faces, num_corners] = counts;
+  if (num_vertices > limits.max_vertices || num_faces > limits.max_faces) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(num_vertices, " vertices and ", num_faces, " faces are over the limit of ",
+                     limits.max_vertices, " vertices, ", limits.max_faces, " faces"));
+  }
+  std::vector<int32_t> face_sizes, corner_vertices;
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_faces, "face sizes", &face_sizes));
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_corners, "corner vertices", &corner_vertices));
+  return Topology::Create(static_cast<int>(num_vertices), std::move(corner_vertices),
+                          std::move(face_sizes));
+}
+
+void WriteAppearance(const MeshAppearance& appearance, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(appearance.texcoords.size()));
+  writer->Write(static_cast<uint32_t>(appearance.material_names.size()));
+  writer->Write((appearance.corner_texcoords.empty() ? 0 : kHasCornerTexcoords) |
+                (appearance.face_materials.empty() ? 0 : kHasFaceMaterials));
+  writer->WriteString(Clip(appearance.material_library));
+  for (const std::string& name : appearance.material_names) writer->WriteString(Clip(name));
+  for (const Eigen::Vector2f& texcoord : appearance.texcoords) WriteMatrix(texcoord, writer);
+  writer->WriteArray(std::span(appearance.corner_texcoords));
+  writer->WriteArray(std::span(appearance.face_materials));
+}
+
+absl::StatusOr<MeshAppearance> ReadAppearance(ByteReader* reader, const Topology& topology) {
+  PLEAT_ASSIGN_OR_RETURN(const auto counts, ReadCounts<3>(reader, "appearance sizes"));
+  const auto [num_texcoords, num_materials, flags] = counts;
+  // A flag for an empty list would give one model two forms, and two ids.
+  const uint32_t known_flags = (topology.num_corners() > 0 ? kHasCornerTexcoords : 0) |
+                               (topology.num_faces() > 0 ? kHasFaceMaterials : 0);
+  if ((flags & ~known_flags) != 0) {
+    return absl::InvalidArgumentError(absl::StrCat("unknown appearance flags ", flags));
+  }
+  MeshAppearance appearance;
+  PLEAT_ASSIGN_OR_RETURN(appearance.material_library,
+                         reader->ReadString(kMaxNameBytes, "material library"));
+  PLEAT_RETURN_IF_ERROR(reader->Require(num_materials, 4, "material names"));
+  for (uint32_t m = 0; m < num_materials; ++m) {
+    PLEAT_ASSIGN_OR_RETURN(std::string name, reader->ReadString(kMaxNameBytes, "material name"));
+    appearance.material_names.push_back(std::move(name));
+  }
+  std::vector<float> coordinates;
+  PLEAT_RETURN_IF_ERROR(
+      ReadVector(reader, uint64_t{2} * num_texcoords, "texture coordinates", &coordinates));
+  for (size_t i = 0; i < coordinates.size(); i += 2) {
+    appearance.texcoords.emplace_back(coordinates[i], coordinates[i + 1]);
+  }
+  if (flags & kHasCornerTexcoords) {
+    PLEAT_RETURN_IF_ERROR(ReadVector(reader, static_cast<uint64_t>(topology.num_corners()),
+                                     "corner texture coordinates", &appearance.corner_texcoords));
+  }
+  if (flags & kHasFaceMaterials) {
+    PLEAT_RETURN_IF_ERROR(ReadVector(reader, static_cast<uint64_t>(topology.num_faces()),
+                                     "face materials", &appearance.face_materials));
+  }
+  PLEAT_RETURN_IF_ERROR(CheckAppearance(appearance, topology));
+  return appearance;
+}
+
+void WriteSkeleton(const Skeleton& skeleton, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(skeleton.num_joints()));
+  for (const Joint& joint : skeleton.joints()) {
+    writer->WriteString(Clip(joint.name, kMaxJointNameBytes));
+    writer->Write(static_cast<int32_t>(joint.parent));
+    WriteMatrix(joint.rest_position, writer);
+  }
+}
+
+absl::StatusOr<Skeleton> ReadSkeleton(ByteReader* reader) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_joints, reader->Read<uint32_t>("joint count"));
+  if (num_joints > kMaxJoints) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(num_joints, " joints, the limit is ", kMaxJoints));
+  }
+  constexpr uint64_t kMinJointBytes = 4 + 4 + 3 * sizeof(double);
+  PLEAT_RETURN_IF_ERROR(reader->Require(num_joints, kMinJointBytes, "joints"));
+  std::vector<Joint> joints(num_joints);
+  for (Joint& joint : joints) {
+    PLEAT_ASSIGN_OR_RETURN(joint.name, reader->ReadString(kMaxJointNameBytes, "joint name"));
+    PLEAT_ASSIGN_OR_RETURN(joint.parent, reader->Read<int32_t>("joint parent"));
+    PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, 3, 1, "joint position", &joint.rest_position));
+  }
+  return Skeleton::Create(std::move(joints));
+}
+
+void WriteSkin(const Rig& rig, ByteWriter* writer) {
+  WriteMatrix(rig.rest_positions, writer);
+  for (const VertexInfluences& vertex : rig.weights.influences()) {
+    writer->WriteArray(std::span<const uint16_t>(vertex.bones));
+    writer->WriteArray(std::span<const float>(vertex.weights));
+  }
+}
+
+absl::StatusOr<Rig> ReadSkin(ByteReader* reader, const Skeleton& skeleton, int num_vertices) {
+  const auto count = static_cast<uint64_t>(num_vertices);
+  Eigen::Matrix3Xd rest_positions;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, 3, count, "rest positions", &rest_positions));
+  constexpr uint64_t kInfluenceBytes = kMaxInfluences * (sizeof(uint16_t) + sizeof(float));
+  PLEAT_RETURN_IF_ERROR(reader->Require(count, kInfluenceBytes, "skin weights"));
+  std::vector<VertexInfluences> influences(count);
+  for (VertexInfluences& vertex : influences) {
+    PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint16_t>(vertex.bones), "bones"));
+    PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<float>(vertex.weights), "skin weights"));
+  }
+  PLEAT_ASSIGN_OR_RETURN(SkinWeights weights,
+                         SkinWeights::Create(skeleton.num_joints(), std::move(influences)));
+  return Rig{skeleton, std::move(weights), std::move(rest_positions)};
+}
+
+void WriteControl(const CharacterModel::Parts& parts, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(parts.control_vertices.size()));
+  writer->WriteArray(std::span<const int32_t>(parts.control_vertices));
+  writer->Write(static_cast<uint32_t>(parts.upsampler.has_value()));
+  if (!parts.upsampler) return;
+  const RbfUpsampler::Matrix& matrix = parts.upsampler->matrix();
+  std::vector<uint32_t> row_sizes;
+  std::vector<int32_t> columns;
+  std::vector<float> values;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    const size_t begin = columns.size();
+    for (RbfUpsampler::Matrix::InnerIterator entry(matrix, row); entry; ++entry) {
+      columns.push_back(static_cast<int32_t>(entry.col()));
+      values.push_back(entry.value());
+    }
+    row_sizes.push_back(static_cast<uint32_t>(columns.size() - begin));
+  }
+  writer->WriteArray(std::span<const uint32_t>(row_sizes));
+  writer->WriteArray(std::span<const int32_t>(columns));
+  writer->WriteArray(std::span<const float>(values));
+}
+
+absl::Status ReadControl(ByteReader* reader, int num_vertices, std::vector<int>* control_vertices,
+                         std::optional<RbfUpsampler>* upsampler) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_control, reader->Read<uint32_t>("control count"));
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_control, "control vertices", control_vertices));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t has_upsampler, reader->Read<uint32_t>("upsampler flag"));
+  if (has_upsampler > 1) return absl::InvalidArgumentError("unknown upsampler flag");
+  if (has_upsampler == 0) return absl::OkStatus();
+  std::vector<uint32_t> row_sizes;
+  PLEAT_RETURN_IF_ERROR(
+      ReadVector(reader, static_cast<uint64_t>(num_vertices), "upsampler rows", &row_sizes));
+  uint64_t num_entries = 0;
+  for (const uint32_t size : row_sizes) num_entries += size;
+  std::vector<int32_t> columns;
+  std::vector<float> values;
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_entries, "upsampler columns", &columns));
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_entries, "upsampler values", &values));
+  if (num_entries > std::numeric_limits<int32_t>::max()) {
+    return absl::ResourceExhaustedError(absl::StrCat(num_entries, " upsampler entries"));
+  }
+  std::vector<int32_t> row_starts = {0};
+  for (const uint32_t size : row_sizes) {
+    row_starts.push_back(row_starts.back() + static_cast<int32_t>(size));
+  }
+  PLEAT_ASSIGN_OR_RETURN(*upsampler, RbfUpsampler::FromRows(static_cast<int>(num_control),
+                                                            row_starts, columns, values));
+  return absl::OkStatus();
+}
+
+void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
+  writer->WriteString(Clip(record.learner));
+  writer->Write(static_cast<int32_t>(record.num_frames));
+  writer->Write(static_cast<int32_t>(record.rest_frame));
+  writer->Write(record.yaw_degrees);
+  writer->Write(record.rig_residual);
+  writer->Write(record.diagonal_m);
+  for (const ErrorSummary* error : {&record.fit, &record.reconstruction}) {
+    const std::array<double, 6> numbers = ErrorNumbers(*error);
+    writer->WriteArray(std::span<const double>(numbers));
+  }
+  const size_t num_warnings = std::min<size_t>(record.warnings.size(), kMaxWarnings);
+  writer->Write(static_cast<uint32_t>(num_warnings));
+  for (size_t i = 0; i < num_warnings; ++i) writer->WriteString(Clip(record.warnings[i]));
+}
+
+absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
+  TrainingRecord record;
+  PLEAT_ASSIGN_OR_RETURN(record.learner, reader->ReadString(kMaxNameBytes, "learner"));
+  PLEAT_ASSIGN_OR_RETURN(record.num_frames, reader->Read<int32_t>("frame count"));
+  PLEAT_ASSIGN_OR_RETURN(record.rest_frame, reader->Read<int32_t>("rest frame"));
+  PLEAT_ASSIGN_OR_RETURN(record.yaw_degrees, reader->Read<double>("facing"));
+  PLEAT_ASSIGN_OR_RETURN(record.rig_residual, reader->Read<double>("rig residual"));
+  PLEAT_ASSIGN_OR_RETURN(record.diagonal_m, reader->Read<double>("diagonal"));
+  PLEAT_RETURN_IF_ERROR(ReadError(reader, &record.fit));
+  PLEAT_RETURN_IF_ERROR(ReadError(reader, &record.reconstruction));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_warnings, reader->Read<uint32_t>("warning count"));
+  if (num_warnings > kMaxWarnings) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(num_warnings, " warnings, the limit is ", kMaxWarnings));
+  }
+  for (uint32_t i = 0; i < num_warnings; ++i) {
+    PLEAT_ASSIGN_OR_RETURN(std::string warning, reader->ReadString(kMaxNameBytes, "warning"));
+    record.warnings.push_back(std::move(warning));
+  }
+  return record;
+}
+
+}  // namespace pleat

@@ -1,0 +1,105 @@
+// A small character model made by hand: every part of the file is there and none is trained.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "pleat/base/random.h"
+#include "pleat/character/character_model.h"
+#include "pleat/mesh/shapes.h"
+
+namespace pleat {
+
+// Three joints, a box, one training row per stage. `sgplvm`: two stages, a control mesh of four
+// vertices and an upsampler; else one stage at full resolution.
+class SmallModelBuilder {
+ public:
+  explicit SmallModelBuilder(bool sgplvm) : sgplvm_(sgplvm), random_(7) {}
+
+  CharacterModel::Parts Parts() {
+    const MeshShape box = MakeBox({0.4, 1.6, 0.2});
+    CharacterModel::Parts parts;
+    parts.name = "small";
+    parts.frame_rate = {25, 1};
+    parts.topology = box.topology;
+    parts.appearance.material_library = "a.mtl";
+    parts.appearance.material_names = {"cloth"};
+    parts.appearance.face_materials = {0, -1, 0, 0, 0, 0};
+    parts.rig.rest_positions = box.positions;
+    parts.rig.skeleton = *Skeleton::Create(
+        {{"hips", -1, {0, 0, 0}}, {"chest", 0, {0, 0.4, 0}}, {"head", 1, {0, 0.8, 0}}});
+    std::vector<VertexInfluences> influences(8);
+    for (size_t v = 0; v < 8; ++v) influences[v] = {{1, 2, 0, 0}, {0.75f, 0.25f, 0, 0}};
+    parts.rig.weights = *SkinWeights::Create(3, influences);
+    parts.options.learner = sgplvm_ ? "sgplvm" : "gp";
+    parts.options.resolution_percent = sgplvm_ ? 50 : 100;
+    parts.feature_reference = Vector(6);
+    AddControl(&parts);
+    parts.detail_model = std::make_shared<const DetailModel>(
+        *DetailModel::FromParameters(Detail(static_cast<int>(parts.control_vertices.size()))));
+    parts.record.learner = parts.options.learner;
+    parts.record.num_frames = 3;
+    parts.record.yaw_degrees = 90;
+    parts.record.diagonal_m = 1.66;
+    parts.record.fit.mean_percent = 1.25;
+    parts.record.reconstruction.mean_mm = 0.5;
+    parts.record.warnings = {"the rig is made by hand"};
+    return parts;
+  }
+  std::shared_ptr<const CharacterModel> Build() { return *CharacterModel::Create(Parts()); }
+
+ private:
+  Eigen::MatrixXd Matrix(int rows, int columns) {
+    Eigen::MatrixXd matrix(rows, columns);
+    for (double& entry : matrix.reshaped()) entry = random_.Uniform(-1, 1);
+    return matrix;
+  }
+  Eigen::VectorXd Vector(int size) { return Matrix(size, 1).col(0); }
+
+  void AddControl(CharacterModel::Parts* parts) {
+    if (!sgplvm_) {
+      parts->control_vertices = {0, 1, 2, 3, 4, 5, 6, 7};
+      return;
+    }
+    parts->control_vertices = {1, 3, 4, 6};
+    RbfUpsampler::Matrix matrix(8, 4);
+    for (int v = 0; v < 8; ++v) {
+      matrix.insert(v, v / 2) = 0.75f;
+      if (v < 6) matrix.insert(v, v / 2 + 1) = 0.25f;
+    }
+    matrix.makeCompressed();
+    parts->upsampler = *RbfUpsampler::FromMatrix(matrix);
+  }
+
+  GpRegressionParameters Stage(int num_inputs, int num_outputs) {
+    constexpr int kRows = 3;
+    GpRegressionParameters stage;
+    stage.kernel_options.linear = true;
+    stage.input_mean = Vector(num_inputs);
+    stage.input_scale = 2;
+    stage.inputs = Matrix(kRows, num_inputs);
+    stage.output_mean = Vector(num_outputs);
+    stage.output_scale = 0.01;
+    stage.alpha = Matrix(kRows, num_outputs);
+    stage.whitener =
+        Matrix(kRows, kRows).triangularView<Eigen::Lower>().toDenseMatrix().cast<float>();
+    return stage;
+  }
+
+  DetailModelParameters Detail(int num_control) {
+    constexpr int kComponents = 2, kLatent = 2, kFeatures = 12;
+    DetailModelParameters detail;
+    detail.learner = sgplvm_ ? Learner::kSgplvm : Learner::kGp;
+    if (sgplvm_) detail.stages.push_back(Stage(kFeatures, kLatent));
+    detail.stages.push_back(Stage(sgplvm_ ? kLatent : kFeatures, kComponents));
+    detail.mean = Vector(3 * num_control).cast<float>() * 0.01f;
+    detail.basis = Matrix(3 * num_control, kComponents).cast<float>();
+    return detail;
+  }
+
+  bool sgplvm_;
+  Random random_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,138 @@
+#include "pleat/formats/model_file.h"
+
+#include <cstring>
+
+#include "model_builder.h"
+#include "pleat/base/file.h"
+#include "support/hostile_bytes.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+namespace {
+
+using testing::HasSubstr;
+
+class ModelFileTest : public testing::TestWithParam<bool> {
+ protected:
+  const std::shared_ptr<const CharacterModel> model_ = SmallModelBuilder(GetParam()).Build();
+  const std::string bytes_ = EncodeModel(*model_);
+};
+
+INSTANTIATE_TEST_SUITE_P(Learners, ModelFileTest, testing::Bool(),
+                         [](const auto& info) { return info.param ? "Sgplvm" : "Gp"; });
+
+TEST_P(ModelFileTest, EverythingRoundTrips) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(bytes_));
+  EXPECT_EQ(EncodeModel(*read), bytes_);
+  EXPECT_EQ(read->name(), "small");
+  EXPECT_EQ(read->frame_rate(), (FrameRate{25, 1}));
+  EXPECT_TRUE(read->topology() == model_->topology());
+  EXPECT_EQ(read->parts().appearance.face_materials, model_->parts().appearance.face_materials);
+  EXPECT_EQ(read->skeleton().joint(2).name, "head");
+  EXPECT_EQ(read->rig().rest_positions, model_->rig().rest_positions);
+  EXPECT_EQ(read->rig().weights.vertex(3).weights, model_->rig().weights.vertex(3).weights);
+  EXPECT_EQ(read->options(), model_->options());
+  EXPECT_EQ(read->parts().feature_reference, model_->parts().feature_reference);
+  EXPECT_EQ(read->parts().control_vertices, model_->parts().control_vertices);
+  EXPECT_EQ(read->full_basis(), model_->full_basis());
+  EXPECT_EQ(read->full_mean(), model_->full_mean());
+  EXPECT_EQ(read->record().warnings, model_->record().warnings);
+  EXPECT_EQ(read->record().fit.mean_percent, 1.25);
+  EXPECT_EQ(read->record().yaw_degrees, 90);
+}
+
+TEST_P(ModelFileTest, ReadModelPredictsTheSameBits) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(bytes_));
+  Eigen::VectorXd features = Eigen::VectorXd::LinSpaced(12, -1, 1);
+  DetailModel::Workspace a, b;
+  Eigen::VectorXf detail_a(model_->detail_model().num_details()), detail_b = detail_a;
+  const double confidence_a = model_->detail_model().Predict(features, &a, detail_a);
+  const double confidence_b = read->detail_model().Predict(features, &b, detail_b);
+  EXPECT_EQ(detail_a, detail_b);
+  EXPECT_EQ(confidence_a, confidence_b);
+}
+
+TEST_P(ModelFileTest, SectionTableIsTheDocumentedOne) {
+  EXPECT_EQ(bytes_.substr(0, 8), "PLEATMDL");
+  uint64_t expected_offset = 16 + 10 * 24;
+  for (uint32_t i = 0; i < 10; ++i) {
+    uint32_t type;
+    uint64_t offset, size;
+    std::memcpy(&type, bytes_.data() + 16 + 24 * i, 4);
+    std::memcpy(&offset, bytes_.data() + 24 + 24 * i, 8);
+    std::memcpy(&size, bytes_.data() + 32 + 24 * i, 8);
+    EXPECT_EQ(type, i + 1);
+    EXPECT_EQ(offset, expected_offset);
+    expected_offset += size;
+  }
+  EXPECT_EQ(expected_offset + 32, bytes_.size());
+  EXPECT_NE(bytes_.find("resolution_percent="), std::string::npos);
+}
+
+TEST_P(ModelFileTest, EveryTruncationFailsAlsoWithAValidChecksum) {
+  ForEachTruncation(bytes_, [](const std::string& damaged) {
+    EXPECT_FALSE(DecodeModel(damaged).ok());
+    EXPECT_FALSE(DecodeModel(Reseal(damaged)).ok()) << damaged.size();
+  });
+}
+
+TEST_P(ModelFileTest, EveryCorruptionFailsOrIsAValidModel) {
+  int num_valid = 0;
+  ForEachCorruption(bytes_, [&](const std::string& damaged) {
+    const std::string resealed = Reseal(damaged);
+    const auto model = DecodeModel(resealed);
+    if (!model.ok()) return;
+    ++num_valid;
+    // Options have several spellings ("1" and "01"); all else has one form.
+    EXPECT_EQ(EncodeModel(**DecodeModel(EncodeModel(**model))), EncodeModel(**model));
+  });
+  EXPECT_GT(num_valid, 1000);
+  std::string damaged = bytes_;
+  damaged[500] ^= 1;
+  EXPECT_THAT(DecodeModel(damaged), HasStatus(absl::StatusCode::kDataLoss, HasSubstr("checksum")));
+}
+
+TEST_P(ModelFileTest, ForeignFilesAndVersionsAreTold) {
+  EXPECT_THAT(DecodeModel(""), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("empty")));
+  EXPECT_THAT(DecodeModel("PLEATSEQ and so on"),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("not a Pleat model file")));
+  std::string other = bytes_;
+  other[8] = 9;
+  EXPECT_THAT(DecodeModel(Reseal(other)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("version 9")));
+}
+
+TEST_P(ModelFileTest, LimitsHold) {
+  ModelFileLimits limits;
+  limits.mesh.max_vertices = 7;
+  EXPECT_THAT(DecodeModel(bytes_, limits),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("section 'topology'")));
+  limits = {};
+  limits.max_unfolded_bytes = 16;
+  EXPECT_THAT(DecodeModel(bytes_, limits),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit of 16 bytes")));
+}
+
+TEST_P(ModelFileTest, FilesRoundTripAndErrorsNameThem) {
+  const TemporaryFolder folder;
+  ASSERT_THAT(WriteModelFile(folder.File("a.pleat"), *model_), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, ReadModelFile(folder.File("a.pleat")));
+  EXPECT_EQ(EncodeModel(*read), bytes_);
+  EXPECT_EQ(ModelId(bytes_).size(), 64u);
+  EXPECT_THAT(ReadModelFile(folder.File("b.pleat")),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("b.pleat")));
+}
+
+TEST_P(ModelFileTest, GoldenFileOfVersion1StaysReadable) {
+  const std::string path = std::string(PLEAT_SOURCE_DIR "/tests/golden/model_v1_") +
+                           (GetParam() ? "sgplvm" : "gp") + ".pleat";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string golden, ReadFile(path));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(golden));
+  EXPECT_EQ(read->name(), "small");
+  EXPECT_EQ(read->record().learner, GetParam() ? "sgplvm" : "gp");
+  EXPECT_EQ(read->rig().rest_positions, model_->rig().rest_positions);
+}
+
+}  // namespace
+}  // namespace pleat
