@@ -23,7 +23,8 @@ struct SkirtSample {
 class SkirtDynamics {
  public:
   static constexpr int kNumStrands = 72, kNumRings = 15;
-  static constexpr double kMaxDisplacement = .15;  // of any particle, body heights
+  // At the hem, body heights; only a leg pushes farther.
+  static constexpr double kMaxDisplacement = .15;
 
   explicit SkirtDynamics(const CharacterShape& shape);
 
