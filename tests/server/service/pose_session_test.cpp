@@ -1,0 +1,105 @@
+#include "pleat/service/pose_session.h"
+
+#include <gtest/gtest.h>
+
+#include "pleat/codec/frame_decoder.h"
+#include "server/fake_training.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+class PoseSessionTest : public testing::Test {
+ protected:
+  std::shared_ptr<const CharacterModel> model_ = MakeFakeModel(MakeSwayingTube(5), TrainOptions());
+  const PoseTrack track_ = MakeMotion(model_->skeleton(), 12);
+
+  // Largest coordinate error of `decoded` against `truth`, in steps of the grid.
+  static double Steps(const Eigen::Matrix3Xf& decoded, const Eigen::Matrix3Xf& truth,
+                      const QuantizationBox& box) {
+    return (decoded - truth).cwiseAbs().maxCoeff() / box.step_m();
+  }
+};
+
+TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
+  for (const FrameEncoding encoding :
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
+    for (const double fps : {25.0, 60.0}) {
+      PoseTrack track = track_;
+      track.fps = fps;
+      track.clip_starts = {0, 5};
+      std::vector<EvaluatedFrame> truth;
+      PoseEvaluator evaluator(model_);
+      ASSERT_THAT(evaluator.EvaluateClip(track, {},
+                                         [&](int, const EvaluatedFrame& frame) {
+                                           truth.push_back(frame);
+                                           return absl::OkStatus();
+                                         }),
+                  IsOk());
+      PLEAT_ASSERT_OK_AND_ASSIGN(
+          const auto clip,
+          ClipSession::Open(model_, track, {.bone_scales = {}, .encoder = {.encoding = encoding}}));
+      PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(clip->header()));
+      for (int t = 0; t < track.num_frames(); ++t) {
+        ASSERT_FALSE(clip->done());
+        EXPECT_EQ(clip->next_frame(), t);
+        PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame frame, clip->Next());
+        Eigen::Matrix3Xf positions;
+        ASSERT_THAT(decoder.Decode(frame.draco, &positions), IsOk());
+        EXPECT_LE(Steps(positions, truth[t].positions, clip->header().box), .505);
+        EXPECT_EQ(frame.confidence, truth[t].confidence);
+      }
+      EXPECT_TRUE(clip->done());
+    }
+  }
+}
+
+TEST_F(PoseSessionTest, LivePosesAreTheirOwnHistory) {
+  const PoseSessionOptions options{.bone_scales = {}, .encoder = {.position_bits = 20}};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto live, PoseSession::Open(model_, options));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto single, PoseSession::Open(model_, options));
+  ASSERT_THAT(live->ShowNext(track_.poses[0], false), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame next, live->ShowNext(track_.poses[6], false));
+  EXPECT_EQ(next.draco, single->Show({&track_.poses[6], &track_.poses[0]})->draco);
+  EXPECT_NE(next.draco, single->Show({&track_.poses[6]})->draco);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame cut, live->ShowNext(track_.poses[6], true));
+  EXPECT_EQ(cut.draco, single->Show({&track_.poses[6]})->draco);
+}
+
+TEST_F(PoseSessionTest, SkinnedOnlyLeavesTheDetailOut) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const auto session,
+      PoseSession::Open(
+          model_, {.bone_scales = {}, .skinned_only = true, .encoder = {.position_bits = 20}}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(session->header()));
+  EvaluatedFrame truth;
+  ASSERT_THAT(PoseEvaluator(model_).EvaluateSkinned(track_.poses[3], {}, &truth), IsOk());
+  Eigen::Matrix3Xf positions;
+  ASSERT_THAT(decoder.Decode(session->Show({&track_.poses[3]})->draco, &positions), IsOk());
+  EXPECT_LE((positions - truth.positions).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST_F(PoseSessionTest, RefusesWhatDoesNotFit) {
+  EXPECT_THAT(PoseSession::Open(model_, {.bone_scales = {1, 1}, .encoder = {}}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("bone scales")));
+  EXPECT_THAT(PoseSession::Open(model_, {.bone_scales = {1, 1, 1000}, .encoder = {}}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("1000")));
+  PoseTrack wrong = track_;
+  wrong.poses[4].rotations.pop_back();
+  EXPECT_THAT(ClipSession::Open(model_, wrong, {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 4")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, PoseSession::Open(model_, {}));
+  EXPECT_FALSE(session->Show({}).ok());
+  EXPECT_FALSE(session->ShowNext(wrong.poses[4], false).ok());
+  PoseTrack far = track_;
+  far.poses[2].root_position.x() = 1e6;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto clip, ClipSession::Open(model_, far, {}));
+  ASSERT_THAT(clip->Next(), IsOk());
+  ASSERT_THAT(clip->Next(), IsOk());
+  EXPECT_THAT(clip->Next(), HasStatus(absl::StatusCode::kOutOfRange, HasSubstr("frame 2")));
+}
+
+}  // namespace
+}  // namespace pleat
