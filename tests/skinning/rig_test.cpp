@@ -1,0 +1,104 @@
+#include "pleat/skinning/rig.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "pleat/math/rotations.h"
+#include "support/skinned_figure.h"
+
+namespace pleat {
+namespace {
+
+class RigTest : public ::testing::Test {
+ protected:
+  RigTest() : figure_(MakeSkinnedFigure()), all_(figure_.topology.num_vertices()) {
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+  Eigen::Matrix3Xd Skin(const Pose& pose, BoneTransforms* transforms) const {
+    ComputeBoneTransforms(figure_.rig.skeleton, pose, {}, transforms);
+    Eigen::Matrix3Xd positions;
+    SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, *transforms, &positions);
+    return positions;
+  }
+  SkinnedFigure figure_;
+  std::vector<int> all_;
+  BoneTransforms transforms_;
+};
+
+TEST_F(RigTest, RestPoseIsTheRestMesh) {
+  const Eigen::Matrix3Xd skinned = Skin(Pose::Rest(figure_.rig.skeleton), &transforms_);
+  EXPECT_LT((skinned - figure_.rig.rest_positions).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_F(RigTest, AgreesWithTheDenseFormula) {
+  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5];
+  const Eigen::Matrix3Xd skinned = Skin(pose, &transforms_);
+  const Eigen::MatrixXd weights = figure_.rig.weights.ToDense();
+  Eigen::Matrix3Xd expected = Eigen::Matrix3Xd::Zero(3, skinned.cols());
+  for (int b = 1; b < 18; ++b) {
+    const Eigen::Matrix3Xd moved =
+        (transforms_.linear[b] * figure_.rig.rest_positions).colwise() + transforms_.translation[b];
+    expected += moved * weights.col(b).asDiagonal();
+  }
+  EXPECT_LT((skinned - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_F(RigTest, RigidMotionOfTheBodyMovesTheMeshRigidly) {
+  Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5];
+  BoneTransforms before_transforms;
+  const Eigen::Matrix3Xd before = Skin(pose, &before_transforms);
+  const Eigen::Quaterniond turn = QuaternionFromExponentialMap({1, -0.5, 2});
+  const Eigen::Vector3d shift(1, 2, 3);
+  pose.root_position = turn * pose.root_position + shift;
+  pose.rotations[0] = turn * pose.rotations[0];
+  const Eigen::Matrix3Xd after = Skin(pose, &transforms_);
+  const Eigen::Matrix3Xd expected = (turn.toRotationMatrix() * before).colwise() + shift;
+  EXPECT_LT((after - expected).cwiseAbs().maxCoeff(), 1e-5);  // float weights sum to 1 +- 1e-7
+
+  std::vector<Eigen::Quaterniond> a, b;
+  BlendRotations(figure_.rig.weights, all_, before_transforms, &a);
+  BlendRotations(figure_.rig.weights, all_, transforms_, &b);
+  for (size_t v = 0; v < all_.size(); ++v) EXPECT_LT((turn * a[v]).angularDistance(b[v]), 1e-6);
+}
+
+TEST_F(RigTest, BlendRotationOfOneBoneIsItsRotation) {
+  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).poses[5];
+  Skin(pose, &transforms_);
+  std::vector<VertexInfluences> influences(2);
+  influences[0] = {{kLeftHand}, {1}};
+  influences[1] = {{kChest, kHead}, {.5f, .5f}};
+  const SkinWeights weights = *SkinWeights::Create(18, influences);
+  std::vector<Eigen::Quaterniond> rotations;
+  BlendRotations(weights, {1, 0}, transforms_, &rotations);
+  ASSERT_EQ(rotations.size(), 2u);
+  EXPECT_LT(
+      (rotations[1].toRotationMatrix() - transforms_.rotation[kLeftHand]).cwiseAbs().maxCoeff(),
+      1e-9);
+  const Eigen::Quaterniond half = MeanRotation(Eigen::Quaterniond(transforms_.rotation[kChest]),
+                                               Eigen::Quaterniond(transforms_.rotation[kHead]));
+  EXPECT_LT(rotations[0].angularDistance(half), 1e-6);
+}
+
+TEST_F(RigTest, BlendRotationsDoNotDependOnQuaternionSigns) {
+  // Two bones turned by 170 and 190 degrees: their quaternions come out with opposite signs.
+  BoneTransforms transforms;
+  transforms.rotation.assign(3, Eigen::Matrix3d::Identity());
+  transforms.rotation[1] = RotationFromExponentialMap({0, M_PI * 170 / 180, 0});
+  transforms.rotation[2] = RotationFromExponentialMap({0, M_PI * 190 / 180, 0});
+  const SkinWeights weights = *SkinWeights::Create(3, {{{1, 2}, {.5f, .5f}}});
+  std::vector<Eigen::Quaterniond> rotations;
+  BlendRotations(weights, {0}, transforms, &rotations);
+  EXPECT_LT(rotations[0].angularDistance(QuaternionFromExponentialMap({0, M_PI, 0})), 1e-6);
+}
+
+TEST_F(RigTest, NoAllocationOnceWarm) {
+  const Pose pose = Pose::Rest(figure_.rig.skeleton);
+  Eigen::Matrix3Xd positions = Skin(pose, &transforms_);
+  const double* memory = positions.data();
+  SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms_, &positions);
+  EXPECT_EQ(positions.data(), memory);
+}
+
+}  // namespace
+}  // namespace pleat
