@@ -9,9 +9,8 @@ absl::Status GetStreamHeader(HandlerContext& context, const v1::GetStreamHeaderR
                              v1::GetStreamHeaderResponse* response) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(request.model_id(), "model_id"));
   PLEAT_ASSIGN_OR_RETURN(const FrameEncoderOptions encoder, FromProto(request.options()));
-  PLEAT_ASSIGN_OR_RETURN(
-      const std::unique_ptr<PoseSession> session,
-      context.service->OpenSession(request.model_id(), {.bone_scales = {}, .encoder = encoder}));
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<PoseSession> session,
+                         context.service->OpenSession(request.model_id(), {.encoder = encoder}));
   *response->mutable_header() = ToProto(session->header());
   return absl::OkStatus();
 }

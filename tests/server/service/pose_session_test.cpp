@@ -39,8 +39,7 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
                                          }),
                   IsOk());
       PLEAT_ASSERT_OK_AND_ASSIGN(
-          const auto clip,
-          ClipSession::Open(model_, track, {.bone_scales = {}, .encoder = {.encoding = encoding}}));
+          const auto clip, ClipSession::Open(model_, track, {.encoder = {.encoding = encoding}}));
       PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(clip->header()));
       for (int t = 0; t < track.num_frames(); ++t) {
         ASSERT_FALSE(clip->done());
@@ -57,7 +56,7 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
 }
 
 TEST_F(PoseSessionTest, LivePosesAreTheirOwnHistory) {
-  const PoseSessionOptions options{.bone_scales = {}, .encoder = {.position_bits = 20}};
+  const PoseSessionOptions options{.encoder = {.position_bits = 20}};
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto live, PoseSession::Open(model_, options));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto single, PoseSession::Open(model_, options));
   ASSERT_THAT(live->ShowNext(track_.poses[0], false), IsOk());
@@ -71,8 +70,7 @@ TEST_F(PoseSessionTest, LivePosesAreTheirOwnHistory) {
 TEST_F(PoseSessionTest, SkinnedOnlyLeavesTheDetailOut) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const auto session,
-      PoseSession::Open(
-          model_, {.bone_scales = {}, .skinned_only = true, .encoder = {.position_bits = 20}}));
+      PoseSession::Open(model_, {.skinned_only = true, .encoder = {.position_bits = 20}}));
   PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(session->header()));
   EvaluatedFrame truth;
   ASSERT_THAT(PoseEvaluator(model_).EvaluateSkinned(track_.poses[3], {}, &truth), IsOk());

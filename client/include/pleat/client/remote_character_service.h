@@ -26,8 +26,8 @@ struct RemoteOptions {
   // Of EvaluateClip; 16 bits are about .02 mm on a person. Live sessions choose their own.
   FrameEncoderOptions stream{.position_bits = 16};
   bool tls = false;
-  std::string tls_root_certificates;                   // PEM; empty = those of the system
-  std::string tls_client_certificate, tls_client_key;  // PEM; for servers that ask for them
+  std::string tls_root_certificates{};                     // PEM; empty = those of the system
+  std::string tls_client_certificate{}, tls_client_key{};  // PEM; for servers that ask for them
 };
 
 // What a stream of one clip gives, in this order; an error from either ends the stream.

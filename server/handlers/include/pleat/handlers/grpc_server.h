@@ -16,7 +16,7 @@ namespace pleat {
 struct GrpcServerOptions {
   std::string listen = "127.0.0.1:0";  // HOST:PORT, unix:PATH; port 0 = any free one
   // PEM texts; both or none. With client_ca, clients must show a certificate that it signed.
-  std::string tls_certificate, tls_key, tls_client_ca;
+  std::string tls_certificate{}, tls_key{}, tls_client_ca{};
   int num_pose_threads = 0;         // 0 = one per core
   int num_storage_threads = 4;      // disk, catalogue, checking uploads
   int max_receive_bytes = 4 << 20;  // of one message

@@ -29,12 +29,12 @@ struct ServiceLimits {
 };
 
 struct LocalServiceOptions {
-  std::string data_dir;
+  std::string data_dir{};
   uint64_t reserve_bytes = uint64_t{256} << 20;  // kept free on the disk
   int num_workers = 1;                           // training jobs at the same time
   int num_threads_per_job = 0;                   // 0 = one per core
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
-  ServiceLimits limits;
+  ServiceLimits limits{};
   TrainFunction train = TrainCharacter;
 };
 

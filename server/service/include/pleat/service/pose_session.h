@@ -13,9 +13,9 @@
 namespace pleat {
 
 struct PoseSessionOptions {
-  std::vector<double> bone_scales;  // J or empty
+  std::vector<double> bone_scales{};  // J or empty
   bool skinned_only = false;
-  FrameEncoderOptions encoder;
+  FrameEncoderOptions encoder{};
 };
 
 struct EncodedFrame {

@@ -13,7 +13,7 @@
 namespace pleat {
 
 struct StoreOptions {
-  std::string data_dir;
+  std::string data_dir{};
   uint64_t reserve_bytes = uint64_t{256} << 20;  // kept free on the disk
 };
 

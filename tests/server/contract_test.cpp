@@ -1,0 +1,236 @@
+// What every CharacterService promises, wherever it runs.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "pleat/base/sha256.h"
+#include "pleat/formats/model_file.h"
+#include "pleat/formats/sequence_file.h"
+#include "server/running_service.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ContractTest : public testing::TestWithParam<Reach> {
+ protected:
+  JobInfo WatchToEnd(const std::string& id) {
+    JobInfo last;
+    EXPECT_THAT(service_.WatchJob(id,
+                                  [&](const JobInfo& info) {
+                                    EXPECT_GE(info.fraction, last.fraction);
+                                    last = info;
+                                    return true;
+                                  }),
+                IsOk());
+    return last;
+  }
+
+  RunningService running_{GetParam()};
+  CharacterService& service_ = running_.service();
+  const std::string unknown_ = std::string(64, '0');
+};
+
+TEST_P(ContractTest, SequencesAreStoredOnceUnderTheirContent) {
+  const MeshSequence tube = MakeSwayingTube(5);
+  double fraction = 0;
+  const Progress progress([&](const ProgressUpdate& update) { fraction = update.fraction; }, {});
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, service_.UploadSequence(tube, progress));
+  EXPECT_EQ(fraction, 1);
+  EXPECT_EQ(info.id, SequenceId(EncodeSequence(tube)));
+  EXPECT_EQ(info.name, "tube");
+  EXPECT_EQ(info.num_frames, 5);
+  EXPECT_EQ(info.num_vertices, 96);
+  EXPECT_EQ(info.num_faces, 88);
+  EXPECT_EQ(info.frame_rate, (FrameRate{25, 1}));
+  EXPECT_EQ(info.size_bytes, EncodeSequence(tube).size());
+  EXPECT_EQ(service_.UploadSequence(tube, {})->id, info.id);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto list, service_.ListSequences());
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].id, info.id);
+  EXPECT_EQ(service_.GetSequence(info.id)->num_frames, 5);
+  EXPECT_THAT(service_.DeleteSequence(info.id), IsOk());
+  EXPECT_THAT(service_.GetSequence(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.DeleteSequence(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+}
+
+TEST_P(ContractTest, ASequenceOfManyChunksArrivesWhole) {
+  const MeshSequence large = MakeSwayingTube(60, "large", 100, 30);  // 2 MB
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, service_.UploadSequence(large, {}));
+  EXPECT_GT(info.size_bytes, 2'000'000u);
+  EXPECT_EQ(running_.local().GetSequence(info.id)->num_vertices, 3000);
+}
+
+TEST_P(ContractTest, AnUploadCanBeCancelled) {
+  const Progress cancelled({}, [] { return true; });
+  EXPECT_THAT(service_.UploadSequence(MakeSwayingTube(60, "large", 100, 30), cancelled),
+              HasStatus(absl::StatusCode::kCancelled, testing::_));
+  EXPECT_TRUE(service_.ListSequences()->empty());
+}
+
+TEST_P(ContractTest, AJobRunsToItsModel) {
+  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  running_.trainer().step_ms = 2;
+  TrainOptions options;
+  options.seed = 7;
+  options.history = 3;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo created,
+                             service_.CreateTrainingJob({id}, options, "swaying"));
+  EXPECT_EQ(created.state, JobState::kQueued);
+  EXPECT_EQ(created.options, options);
+  const JobInfo job = WatchToEnd(created.id);
+  ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
+  EXPECT_EQ(job.fraction, 1);
+  EXPECT_EQ(job.model_name, "swaying");
+  EXPECT_EQ(job.warnings, std::vector<std::string>{"made by a test"});
+  EXPECT_EQ(job.sequence_ids, std::vector<std::string>{id});
+  EXPECT_EQ(service_.GetJob(created.id)->model_id, job.model_id);
+  EXPECT_EQ(service_.ListJobs()->size(), 1u);
+
+  PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo model, service_.GetModel(job.model_id));
+  EXPECT_EQ(model.name, "swaying");
+  EXPECT_EQ(model.options.seed, 7u);
+  EXPECT_EQ(model.skeleton.joint(1).name, "chest");
+  EXPECT_EQ(model.num_vertices, 96);
+  EXPECT_EQ(service_.ListModels()->at(0).id, model.id);
+
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, service_.DownloadModel(model.id, {}));
+  EXPECT_EQ(bytes.size(), model.size_bytes);
+  EXPECT_EQ(ModelId(bytes), model.id);
+  EXPECT_THAT(DecodeModel(bytes), IsOk());
+
+  EXPECT_THAT(service_.DeleteModel(model.id), IsOk());
+  EXPECT_THAT(service_.GetModel(model.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.DownloadModel(model.id, {}),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+}
+
+TEST_P(ContractTest, AWatchShowsStagesAndEndsWhenTheCallerHasSeenEnough) {
+  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  running_.trainer().step_ms = 10;
+  const std::string job = service_.CreateTrainingJob({id}, {}, "")->id;
+  std::set<std::string> stages;
+  int num_calls = 0;
+  EXPECT_THAT(service_.WatchJob(job,
+                                [&](const JobInfo& info) {
+                                  stages.insert(info.stage);
+                                  ++num_calls;
+                                  return info.fraction < .5;
+                                }),
+              IsOk());
+  EXPECT_TRUE(stages.contains("learn"));
+  EXPECT_GE(num_calls, 3);
+  EXPECT_FALSE(IsFinal(service_.GetJob(job)->state));
+}
+
+TEST_P(ContractTest, CancellationActsWithinASecond) {
+  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  running_.trainer().step_ms = 100;
+  const std::string running = service_.CreateTrainingJob({id}, {}, "")->id;
+  const std::string waiting = service_.CreateTrainingJob({id}, {}, "")->id;
+  EXPECT_THAT(service_.CancelJob(waiting), IsOk());
+  EXPECT_EQ(service_.GetJob(waiting)->state, JobState::kCancelled);
+  while (service_.GetJob(running)->state == JobState::kQueued) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(service_.CancelJob(running), IsOk());
+  EXPECT_EQ(WatchToEnd(running).state, JobState::kCancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_THAT(service_.CancelJob(running),
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("cancelled")));
+}
+
+TEST_P(ContractTest, AJobFailsWithTheReasonOfItsTraining) {
+  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  TrainOptions fails;
+  fails.iterations = 13;
+  const JobInfo job = WatchToEnd(service_.CreateTrainingJob({id}, fails, "")->id);
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_THAT(job.error, HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("rig")));
+}
+
+TEST_P(ContractTest, BadRequestsAreRefusedAlike) {
+  EXPECT_THAT(service_.GetSequence(unknown_), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.GetJob("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.CancelJob("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.WatchJob("job-none", [](const JobInfo&) { return true; }),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.CreateTrainingJob({unknown_}, {}, ""),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.CreateTrainingJob({}, {}, ""),
+              HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
+  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  TrainOptions bad;
+  bad.history = 99;
+  EXPECT_THAT(service_.CreateTrainingJob({id}, bad, ""),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("history")));
+  ClipQuery query{.model_id = unknown_,
+                  .track = MakeMotion(MakeFakeModel(MakeSwayingTube(2), {})->skeleton(), 2),
+                  .bone_scales = {}};
+  const auto ignore = [](int, const EvaluatedFrame&) { return absl::OkStatus(); };
+  EXPECT_THAT(service_.EvaluateClip(query, ignore),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  query.model_id = running_.TrainModel();
+  query.track.poses[1].rotations.pop_back();
+  EXPECT_THAT(service_.EvaluateClip(query, ignore),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 1")));
+}
+
+TEST_P(ContractTest, AClipGivesEveryFrameInOrder) {
+  const std::string model_id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(model_id).value();
+  for (const bool skinned_only : {false, true}) {
+    ClipQuery query{.model_id = model_id,
+                    .track = MakeMotion(model->skeleton(), 30, 40),
+                    .bone_scales = {1, 1.2, .9},
+                    .skinned_only = skinned_only};
+    query.track.clip_starts = {0, 11};
+    std::vector<EvaluatedFrame> truth;
+    ASSERT_THAT(running_.local().EvaluateClip(query,
+                                              [&](int, const EvaluatedFrame& frame) {
+                                                truth.push_back(frame);
+                                                return absl::OkStatus();
+                                              }),
+                IsOk());
+    int next = 0;
+    ASSERT_THAT(service_.EvaluateClip(
+                    query,
+                    [&](int t, const EvaluatedFrame& frame) {
+                      EXPECT_EQ(t, next++);
+                      // 16 bits on a box of about 2 m: half a step is 16 um.
+                      EXPECT_LE((frame.positions - truth[t].positions).cwiseAbs().maxCoeff(), 2e-5);
+                      EXPECT_EQ(frame.confidence, truth[t].confidence);
+                      return absl::OkStatus();
+                    }),
+                IsOk());
+    EXPECT_EQ(next, 30);
+  }
+}
+
+TEST_P(ContractTest, TheConsumerMayStopAClip) {
+  const std::string model_id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(model_id).value();
+  const ClipQuery query{
+      .model_id = model_id, .track = MakeMotion(model->skeleton(), 100), .bone_scales = {}};
+  int num_frames = 0;
+  EXPECT_THAT(service_.EvaluateClip(query,
+                                    [&](int t, const EvaluatedFrame&) {
+                                      ++num_frames;
+                                      return t == 3 ? absl::AbortedError("seen enough")
+                                                    : absl::OkStatus();
+                                    }),
+              HasStatus(absl::StatusCode::kAborted, HasSubstr("seen enough")));
+  EXPECT_EQ(num_frames, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reach, ContractTest,
+                         testing::Values(Reach::kLocal, Reach::kInProcess, Reach::kSocket),
+                         [](const auto& info) { return ReachName(info.param); });
+
+}  // namespace
+}  // namespace pleat

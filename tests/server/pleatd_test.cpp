@@ -1,0 +1,190 @@
+// The program itself: start, serve, end by a signal, start again on the same folder.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pleat/client/remote_character_service.h"
+#include "server/fake_training.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+// pleatd as a child process.
+class Daemon {
+ public:
+  explicit Daemon(const std::vector<std::string>& flags) {
+    int out[2];
+    if (pipe(out) != 0) abort();
+    child_ = fork();
+    if (child_ == 0) {
+      dup2(out[1], STDOUT_FILENO);
+      dup2(out[1], STDERR_FILENO);
+      close(out[0]);
+      std::vector<std::string> words{PLEATD_PATH};
+      words.insert(words.end(), flags.begin(), flags.end());
+      std::vector<char*> argv;
+      for (std::string& word : words) argv.push_back(word.data());
+      argv.push_back(nullptr);
+      execv(PLEATD_PATH, argv.data());
+      _exit(127);
+    }
+    close(out[1]);
+    output_fd_ = out[0];
+  }
+  ~Daemon() {
+    if (child_ > 0) {
+      kill(child_, SIGKILL);
+      waitpid(child_, nullptr, 0);
+    }
+    close(output_fd_);
+  }
+
+  // The address that it says it listens on; empty when it ended before.
+  std::string WaitForAddress() {
+    const std::string mark = "listening on ";
+    while (ReadMore()) {
+      const size_t start = output_.find(mark);
+      if (start == std::string::npos) continue;
+      const size_t end = output_.find('\n', start);
+      if (end != std::string::npos) {
+        return output_.substr(start + mark.size(), end - start - mark.size());
+      }
+    }
+    return "";
+  }
+  void Signal(int number) { kill(child_, number); }
+  // Waits for the end; exit code, or -signal.
+  int Wait() {
+    while (ReadMore()) {
+    }
+    int status = 0;
+    waitpid(child_, &status, 0);
+    child_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+  const std::string& output() const { return output_; }
+
+ private:
+  bool ReadMore() {
+    char buffer[4096];
+    const ssize_t count = read(output_fd_, buffer, sizeof buffer);
+    if (count > 0) output_.append(buffer, static_cast<size_t>(count));
+    return count > 0;
+  }
+
+  pid_t child_ = -1;
+  int output_fd_ = -1;
+  std::string output_;
+};
+
+std::vector<std::string> Flags(const TemporaryFolder& folder) {
+  return {"--data-dir", folder.path(), "--listen", "127.0.0.1:0", "--reserve-bytes", "1MB"};
+}
+
+TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
+  TemporaryFolder folder;
+  std::string sequence_id, job_id;
+  {
+    Daemon daemon(Flags(folder));
+    const std::string address = daemon.WaitForAddress();
+    ASSERT_THAT(address, HasSubstr("127.0.0.1:"));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
+    sequence_id = client->UploadSequence(MakeSwayingTube(40), {})->id;
+    // A tube is no human: the job fails with a reason, whichever side of the restart it runs on.
+    job_id = client->CreateTrainingJob({sequence_id}, {}, "tube")->id;
+    daemon.Signal(SIGTERM);
+    EXPECT_EQ(daemon.Wait(), 0) << daemon.output();
+    EXPECT_THAT(daemon.output(), HasSubstr("pleatd has ended"));
+  }
+  Daemon daemon(Flags(folder));
+  const std::string address = daemon.WaitForAddress();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
+  EXPECT_EQ(client->GetSequence(sequence_id)->name, "tube");
+  JobInfo job;
+  EXPECT_THAT(client->WatchJob(job_id,
+                               [&](const JobInfo& info) {
+                                 job = info;
+                                 return true;
+                               }),
+              IsOk());
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_FALSE(job.error.message().empty());
+}
+
+TEST(PleatdTest, AKillLosesNothing) {
+  TemporaryFolder folder;
+  std::string sequence_id, job_id;
+  {
+    Daemon daemon(Flags(folder));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                               RemoteCharacterService::Connect(daemon.WaitForAddress()));
+    sequence_id = client->UploadSequence(MakeSwayingTube(40), {})->id;
+    job_id = client->CreateTrainingJob({sequence_id}, {}, "tube")->id;
+    daemon.Signal(SIGKILL);
+    EXPECT_EQ(daemon.Wait(), -SIGKILL);
+  }
+  Daemon daemon(Flags(folder));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                             RemoteCharacterService::Connect(daemon.WaitForAddress()));
+  EXPECT_THAT(client->GetSequence(sequence_id), IsOk());
+  EXPECT_THAT(client->GetJob(job_id), IsOk());
+}
+
+TEST(PleatdTest, RefusesAFolderAndAPortInUse) {
+  TemporaryFolder folder, other;
+  Daemon first(Flags(folder));
+  const std::string address = first.WaitForAddress();
+  Daemon same_folder(Flags(folder));
+  EXPECT_EQ(same_folder.Wait(), 1);
+  EXPECT_THAT(same_folder.output(), HasSubstr("in use by another process"));
+  Daemon same_port({"--data-dir", other.path(), "--listen", address, "--reserve-bytes", "1MB"});
+  EXPECT_EQ(same_port.Wait(), 1);
+  EXPECT_THAT(same_port.output(), HasSubstr("cannot listen on"));
+}
+
+TEST(PleatdTest, ExplainsItself) {
+  Daemon help({"--help"});
+  EXPECT_EQ(help.Wait(), 0);
+  EXPECT_THAT(help.output(), HasSubstr("--data-dir"));
+  Daemon version({"--version"});
+  EXPECT_EQ(version.Wait(), 0);
+  Daemon nothing({});
+  EXPECT_EQ(nothing.Wait(), 2);
+  EXPECT_THAT(nothing.output(), HasSubstr("--data-dir is required"));
+  TemporaryFolder folder;
+  std::vector<std::string> flags = Flags(folder);
+  flags.insert(flags.end(), {"--log-level", "chatty"});
+  Daemon level(flags);
+  EXPECT_EQ(level.Wait(), 2);
+  EXPECT_THAT(level.output(), HasSubstr("unknown log level"));
+  flags = Flags(folder);
+  flags.insert(flags.end(), {"--tls-cert", "/no/such/file"});
+  Daemon tls(flags);
+  EXPECT_EQ(tls.Wait(), 2);
+  EXPECT_THAT(tls.output(), HasSubstr("/no/such/file"));
+}
+
+TEST(PleatdTest, LogsJson) {
+  TemporaryFolder folder;
+  std::vector<std::string> flags = Flags(folder);
+  flags.push_back("--log-json");
+  Daemon daemon(flags);
+  daemon.WaitForAddress();
+  daemon.Signal(SIGINT);
+  EXPECT_EQ(daemon.Wait(), 0);
+  EXPECT_THAT(daemon.output(), HasSubstr(R"("level":"info","thread":)"));
+}
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,66 @@
+// One CharacterService, however it is reached: in this process, over an in-process channel, over a
+// socket.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "pleat/client/remote_character_service.h"
+#include "pleat/handlers/grpc_server.h"
+#include "pleat/service/local_character_service.h"
+#include "server/fake_training.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+
+enum class Reach { kLocal, kInProcess, kSocket };
+
+inline std::string ReachName(Reach reach) {
+  return reach == Reach::kLocal ? "Local" : reach == Reach::kInProcess ? "InProcess" : "Socket";
+}
+
+class RunningService {
+ public:
+  explicit RunningService(Reach reach, ServiceLimits limits = {},
+                          GrpcServerOptions grpc = {.num_pose_threads = 2}) {
+    local_ = LocalCharacterService::Open(
+                 {.data_dir = folder_.path(), .limits = limits, .train = trainer_.function()})
+                 .value();
+    if (reach == Reach::kLocal) return;
+    server_ = GrpcServer::Start(local_.get(), grpc).value();
+    remote_ = reach == Reach::kInProcess
+                  ? RemoteCharacterService::OverChannel(server_->InProcessChannel())
+                  : RemoteCharacterService::Connect(address()).value();
+  }
+
+  CharacterService& service() {
+    return remote_ ? static_cast<CharacterService&>(*remote_) : *local_;
+  }
+  RemoteCharacterService& remote() { return *remote_; }
+  LocalCharacterService& local() { return *local_; }
+  GrpcServer& server() { return *server_; }
+  FakeTrainer& trainer() { return trainer_; }
+  std::string address() const { return "127.0.0.1:" + std::to_string(server_->port()); }
+
+  // A model of MakeSwayingTube(5).
+  std::string TrainModel() {
+    const std::string sequence_id = service().UploadSequence(MakeSwayingTube(5), {})->id;
+    const std::string job_id = service().CreateTrainingJob({sequence_id}, {}, "")->id;
+    std::string model_id;
+    const absl::Status status = service().WatchJob(job_id, [&](const JobInfo& info) {
+      model_id = info.model_id;
+      return true;
+    });
+    return status.ok() ? model_id : status.ToString();
+  }
+
+ private:
+  TemporaryFolder folder_;
+  FakeTrainer trainer_;
+  std::unique_ptr<LocalCharacterService> local_;
+  std::unique_ptr<GrpcServer> server_;
+  std::unique_ptr<RemoteCharacterService> remote_;
+};
+
+}  // namespace pleat

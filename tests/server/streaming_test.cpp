@@ -1,0 +1,250 @@
+// Streams over a real socket: live sessions, slow readers, broken uploads, limits, shutdown.
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "pleat/codec/frame_decoder.h"
+#include "pleat/formats/sequence_file.h"
+#include "pleat/v1/job_service.grpc.pb.h"
+#include "pleat/v1/pose_service.grpc.pb.h"
+#include "pleat/v1/sequence_service.grpc.pb.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "server/running_service.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+
+class StreamingTest : public testing::Test {
+ protected:
+  std::shared_ptr<grpc::Channel> channel() {
+    return grpc::CreateChannel(running_.address(), grpc::InsecureChannelCredentials());
+  }
+  // Waits until `condition` holds, at most five seconds.
+  template <typename Condition>
+  static bool Eventually(Condition condition) {
+    for (int i = 0; i < 500; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+    return false;
+  }
+
+  RunningService running_{Reach::kSocket, {}, {.num_pose_threads = 2, .max_open_streams = 8}};
+};
+
+TEST_F(StreamingTest, ALiveSessionShowsEveryPose) {
+  const std::string id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(id).value();
+  const PoseTrack track = MakeMotion(model->skeleton(), 50);
+  for (const FrameEncoding encoding :
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const auto session,
+        running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}},
+                                          {.encoding = encoding}));
+    EXPECT_EQ(session->decoder().header().num_vertices, 96);
+    PoseEvaluator evaluator(model);
+    for (int t = 0; t < track.num_frames(); ++t) {
+      ASSERT_THAT(session->Send(1000 + t, track.poses[t]), IsOk());
+      LiveFrame frame;
+      ASSERT_THAT(session->Receive(&frame), IsOk());
+      EXPECT_EQ(frame.number, 1000u + t);
+      EvaluatedFrame truth;
+      ASSERT_THAT(
+          evaluator.Evaluate({&track.poses[t], &track.poses[std::max(0, t - 1)]}, {}, &truth),
+          IsOk());
+      EXPECT_LE((frame.positions - truth.positions).cwiseAbs().maxCoeff(),
+                .505 * session->decoder().header().box.step_m());
+      EXPECT_EQ(frame.confidence, truth.confidence);
+    }
+    session->SendDone();
+    LiveFrame frame;
+    EXPECT_THAT(session->Receive(&frame), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
+  }
+}
+
+TEST_F(StreamingTest, ABadPoseEndsTheSessionWithAReason) {
+  const std::string id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(id).value();
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const auto session,
+      running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}));
+  Pose pose = Pose::Rest(model->skeleton());
+  pose.rotations.pop_back();
+  ASSERT_THAT(session->Send(1, pose), IsOk());
+  LiveFrame frame;
+  EXPECT_THAT(session->Receive(&frame),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("2 rotations")));
+  EXPECT_THAT(running_.remote().OpenLiveSession(
+                  {.model_id = std::string(64, '0'), .track = {}, .bone_scales = {}}),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+}
+
+TEST_F(StreamingTest, OnePoseGivesOneFrame) {
+  const std::string id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(id).value();
+  const PoseTrack track = MakeMotion(model->skeleton(), 3);
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const EvaluatedFrame frame,
+      running_.remote().EvaluatePose({.model_id = id, .track = {}, .bone_scales = {}},
+                                     {track.poses[2], track.poses[1]}));
+  EvaluatedFrame truth;
+  ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.poses[2], &track.poses[1]}, {}, &truth),
+              IsOk());
+  EXPECT_LE((frame.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-5);
+}
+
+TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
+  const std::string id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(id).value();
+  const auto stub = v1::PoseService::NewStub(channel());
+  v1::EvaluateClipRequest request;
+  request.mutable_character()->set_model_id(id);
+  *request.mutable_track() = ToProto(MakeMotion(model->skeleton(), 5000));
+  {
+    grpc::ClientContext context;
+    const auto reader = stub->EvaluateClip(&context, request);
+    v1::EvaluateClipResponse response;
+    ASSERT_TRUE(reader->Read(&response));
+    EXPECT_TRUE(response.has_header());
+    std::this_thread::sleep_for(milliseconds(100));
+    EXPECT_EQ(running_.local().cache_stats().num_pinned, 1);
+    context.TryCancel();
+    reader->Finish();
+  }
+  // The stalled stream has let go of the model, but this test still holds it.
+  EXPECT_TRUE(Eventually([&] { return model.use_count() == 2; }));
+}
+
+TEST_F(StreamingTest, AWatcherThatDoesNotReadGetsTheNewestStateLater) {
+  const std::string sequence_id = running_.service().UploadSequence(MakeSwayingTube(5), {})->id;
+  running_.trainer().step_ms = 5;
+  const std::string job_id = running_.service().CreateTrainingJob({sequence_id}, {}, "")->id;
+  const auto stub = v1::JobService::NewStub(channel());
+  grpc::ClientContext context;
+  v1::WatchJobRequest request;
+  request.set_id(job_id);
+  const auto reader = stub->WatchJob(&context, request);
+  std::this_thread::sleep_for(milliseconds(300));  // the job is over now
+  v1::WatchJobResponse response;
+  v1::JobState last = v1::JOB_STATE_UNSPECIFIED;
+  while (reader->Read(&response)) last = response.job().state();
+  EXPECT_EQ(last, v1::JOB_STATE_SUCCEEDED);
+  EXPECT_TRUE(reader->Finish().ok());
+}
+
+TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
+  const MeshSequence large = MakeSwayingTube(60, "large", 100, 30);
+  const std::string bytes = EncodeSequence(large);
+  const std::string id = SequenceId(bytes);
+  const auto stub = v1::SequenceService::NewStub(channel());
+  v1::UploadSequenceRequest header;
+  header.mutable_header()->set_id(id);
+  header.mutable_header()->set_size_bytes(bytes.size());
+  grpc::ClientContext context;
+  v1::UploadSequenceResponse response;
+  auto writer = stub->UploadSequence(&context, &response);
+  ASSERT_TRUE(writer->Write(header));
+  v1::UploadSequenceRequest data;
+  data.set_data(bytes.substr(0, 1'000'000));
+  ASSERT_TRUE(writer->Write(data));
+  ASSERT_TRUE(
+      Eventually([&] { return running_.local().QueryUpload(id)->received_bytes == 1'000'000; }));
+  {
+    grpc::ClientContext second_context;
+    v1::UploadSequenceResponse second_response;
+    const auto second = stub->UploadSequence(&second_context, &second_response);
+    second->Write(header);
+    second->WritesDone();
+    EXPECT_EQ(second->Finish().error_code(), grpc::StatusCode::ABORTED);
+  }
+  context.TryCancel();  // the connection breaks
+  writer->Finish();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, running_.service().UploadSequence(large, {}));
+  EXPECT_EQ(info.id, id);
+}
+
+TEST_F(StreamingTest, TooManyStreamsAreRefused) {
+  const std::string id = running_.TrainModel();
+  std::vector<std::unique_ptr<LiveSession>> sessions;
+  for (int i = 0; i < 8; ++i) {
+    sessions.push_back(running_.remote()
+                           .OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
+                           .value());
+  }
+  EXPECT_THAT(running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-open-streams")));
+  sessions.pop_back();
+  EXPECT_TRUE(Eventually([&] {
+    return running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}).ok();
+  }));
+}
+
+TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
+  const std::string id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(id).value();
+  const ClipQuery query{
+      .model_id = id, .track = MakeMotion(model->skeleton(), 60'000), .bone_scales = {}};
+  EXPECT_THAT(running_.service().EvaluateClip(
+                  query, [](int, const EvaluatedFrame&) { return absl::OkStatus(); }),
+              HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
+}
+
+TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
+  const std::string id = running_.TrainModel();
+  const auto model = running_.local().AcquireModel(id).value();
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const auto live,
+      running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}));
+  const std::string sequence_id = running_.service().ListSequences()->at(0).id;
+  running_.trainer().step_ms = 200;
+  const std::string job_id = running_.service().CreateTrainingJob({sequence_id}, {}, "")->id;
+  std::atomic<bool> watching = false;
+  const auto stub = v1::JobService::NewStub(channel());
+  grpc::Status watched;
+  std::thread watcher([&] {
+    grpc::ClientContext context;
+    v1::WatchJobRequest request;
+    request.set_id(job_id);
+    const auto reader = stub->WatchJob(&context, request);
+    v1::WatchJobResponse response;
+    while (reader->Read(&response)) watching = true;
+    watched = reader->Finish();
+  });
+  int num_frames = 0;
+  std::thread clip([&] {
+    const ClipQuery query{
+        .model_id = id, .track = MakeMotion(model->skeleton(), 400), .bone_scales = {}};
+    EXPECT_THAT(running_.service().EvaluateClip(query,
+                                                [&](int, const EvaluatedFrame&) {
+                                                  std::this_thread::sleep_for(milliseconds(1));
+                                                  ++num_frames;
+                                                  return absl::OkStatus();
+                                                }),
+                IsOk());
+  });
+  EXPECT_TRUE(Eventually([&] { return watching && num_frames > 10; }));
+  std::thread stopper([&] {
+    running_.local().Shutdown();
+    running_.server().Shutdown(10);
+  });
+  watcher.join();
+  EXPECT_EQ(watched.error_code(), grpc::StatusCode::UNAVAILABLE);
+  clip.join();
+  EXPECT_EQ(num_frames, 400);
+  // The live session is told at its next pose.
+  EXPECT_THAT(live->Send(1, Pose::Rest(model->skeleton())), IsOk());
+  LiveFrame frame;
+  EXPECT_THAT(live->Receive(&frame), HasStatus(absl::StatusCode::kUnavailable, testing::_));
+  stopper.join();
+}
+
+}  // namespace
+}  // namespace pleat
