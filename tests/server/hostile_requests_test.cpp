@@ -2,8 +2,9 @@
 // bytes that are no message, and the server still answers afterwards.
 #include <google/protobuf/stubs/logging.h>
 #include <grpcpp/channel.h>
+#include <grpcpp/create_channel.h>
 #include <grpcpp/generic/generic_stub.h>
-#include <grpcpp/support/proto_buffer_writer.h>
+#include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -100,7 +101,9 @@ void Fill(google::protobuf::Message* message, const std::vector<std::string>& id
 
 class HostileRequestsTest : public testing::Test {
  protected:
-  HostileRequestsTest() : stub_(running_.server().InProcessChannel()) {
+  HostileRequestsTest()
+      : channel_(grpc::CreateChannel(running_.address(), grpc::InsecureChannelCredentials())),
+        stub_(channel_) {
     model_id_ = running_.TrainModel();
     ids_ = {model_id_,
             running_.service().ListSequences()->at(0).id,
@@ -158,7 +161,8 @@ class HostileRequestsTest : public testing::Test {
     EXPECT_EQ(running_.TrainModel(), model_id_);
   }
 
-  RunningService running_{Reach::kInProcess};
+  RunningService running_{Reach::kSocket};
+  std::shared_ptr<grpc::Channel> channel_;
   grpc::GenericStub stub_;
   std::string model_id_;
   std::vector<std::string> ids_;
@@ -219,7 +223,7 @@ TEST_F(HostileRequestsTest, MessagesOfRandomFields) {
 
 // The right shape with numbers that no skeleton, box or codec can take.
 TEST_F(HostileRequestsTest, PosesFarOutsideEverything) {
-  const auto stub = v1::PoseService::NewStub(running_.server().InProcessChannel());
+  const auto stub = v1::PoseService::NewStub(channel_);
   for (const double x : {1e6, 1e12, 1e30, 1e300, 1.0 / 0.0, 0.0 / 0.0}) {
     grpc::ClientContext context;
     v1::EvaluatePoseRequest request;

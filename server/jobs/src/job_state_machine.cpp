@@ -114,7 +114,7 @@ absl::Status JobStateMachine::RequestCancel() {
     JobInfo& info = state_.info;
     if (IsFinal(info.state)) {
       return absl::FailedPreconditionError(
-          absl::StrCat("job '", info.id, "' has already ", JobStateName(info.state)));
+          absl::StrCat("job '", info.id, "' is already over: ", JobStateName(info.state)));
     }
     cancel_requested_.store(true, std::memory_order_relaxed);
     if (info.state != JobState::kQueued) return absl::OkStatus();
