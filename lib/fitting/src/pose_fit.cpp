@@ -41,12 +41,12 @@ class PoseFitter {
       if (!walk) Improve(t, frames_[t].pose, energy_);
     }));
     if (walk) return WalkThroughTime(progress.Stage("fit", 0.8, 1));
+    std::vector<char> changed(frames_.size(), 1);  // poses that their neighbours have not tried
     for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
       const double begin = 0.5 + 0.3 * pass / options_.neighbour_passes;
       const double end = 0.5 + 0.3 * (pass + 1) / options_.neighbour_passes;
-      bool changed = false;
       PLEAT_RETURN_IF_ERROR(TryNeighbours(progress.Stage("fit", begin, end), &changed));
-      if (!changed) break;
+      if (std::find(changed.begin(), changed.end(), 1) == changed.end()) break;
     }
     if (options_.smoothness > 0) return Smooth(progress.Stage("fit", 0.8, 1));
     return progress.Stage("fit", 0.8, 1).Report(1);
@@ -143,9 +143,10 @@ class PoseFitter {
     return s >= 0 && s < sequence_.num_frames() && clip_of_[s] == clip_of_[t];
   }
 
-  // Every frame tries its neighbours' poses of the pass before (so the order does not matter).
-  absl::Status TryNeighbours(const Progress& progress, bool* changed) {
-    constexpr int kTrial = 12;  // iterations that show whether a start leads to another valley
+  // Every frame tries its neighbours' poses of the pass before (so the order does not matter),
+  // those that `changed` there; fills `changed` anew.
+  absl::Status TryNeighbours(const Progress& progress, std::vector<char>* changed) {
+    constexpr int kTrial = 5;  // iterations that show whether a start leads to a deeper valley
     std::vector<ChainPose> before;
     for (const Frame& frame : frames_) before.push_back(frame.pose);
     std::vector<char> improved(frames_.size(), 0);
@@ -154,18 +155,16 @@ class PoseFitter {
       PoseEnergy energy = energy_;
       energy.SetFrame(frame.cross, frame.sum_squares);
       for (const int s : {t - 1, t + 1}) {
-        if (!SameClip(s, t)) continue;
+        if (!SameClip(s, t) || !(*changed)[s]) continue;
         auto [pose, solved] = Solve(energy, before[s], std::min(kTrial, options_.max_iterations));
         frame.num_iterations += solved.num_iterations;
-        if (solved.energy < frame.energy * (1 - 1e-3)) {  // another valley, not rounding
-          frame.pose = std::move(pose);
-          frame.energy = solved.energy;
-          frame.rescued = true;
-          improved[t] = 1;
-        }
+        if (!(solved.energy < frame.energy * (1 - 1e-3))) continue;  // the same valley or a worse
+        frame.rescued = true;
+        improved[t] = 1;
+        Improve(t, pose, energy_);
       }
     }));
-    *changed = std::find(improved.begin(), improved.end(), 1) != improved.end();
+    *changed = std::move(improved);
     return absl::OkStatus();
   }
 
