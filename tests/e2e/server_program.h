@@ -1,0 +1,39 @@
+// pleatd on a free port of the loopback interface, over a data folder.
+#pragma once
+
+#include <signal.h>
+
+#include <memory>
+#include <string>
+
+#include "e2e/process.h"
+
+namespace pleat {
+
+class ServerProgram {
+ public:
+  // output_stem: where its log goes.
+  ServerProgram(const std::string& data_folder, const std::string& output_stem)
+      : process_({ProgramPath("pleatd"), "--listen", "127.0.0.1:0", "--data-dir", data_folder},
+                 output_stem) {}
+
+  // The address it listens on, empty when it did not come up.
+  std::string WaitForAddress() {
+    const std::string sign = "listening on ";
+    if (!process_.WaitForText(sign)) return "";
+    const std::string log = process_.out() + process_.err();
+    const size_t begin = log.find(sign) + sign.size();
+    return log.substr(begin, log.find_first_of(" \n\"", begin) - begin);
+  }
+  std::string log() const { return process_.out() + process_.err(); }
+
+  ProcessResult Stop() {
+    process_.Signal(SIGTERM);
+    return process_.Wait(20);
+  }
+
+ private:
+  Process process_;
+};
+
+}  // namespace pleat
