@@ -111,8 +111,8 @@ Eigen::MatrixXf UpsampleColumns(const RbfUpsampler& upsampler, const Eigen::Matr
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> CharacterModel::Create(Parts parts) {
   PLEAT_RETURN_IF_ERROR(CheckParts(parts));
-  PoseFeatures features({RepresentationOf(parts.options), parts.options.history},
-                        parts.rig.skeleton.num_joints(), parts.feature_reference);
+  PoseFeatures features(FeatureOptionsOf(parts.options), parts.rig.skeleton.num_joints(),
+                        parts.feature_reference);
   return std::shared_ptr<const CharacterModel>(
       new CharacterModel(std::move(parts), std::move(features)));
 }

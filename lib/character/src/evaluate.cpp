@@ -24,7 +24,7 @@ absl::StatusOr<TrainingFrames> TrainingSide(const MeshSequence& sequence,
     if (i == 0 || frames[i] != frames[i - 1] + 1) clip_starts.push_back(static_cast<int>(i));
   }
   const int count = static_cast<int>(frames.size());
-  return TrainingFrames{sequence.Subset(frames), std::move(clip_starts), count};
+  return TrainingFrames{sequence.Subset(frames), std::move(clip_starts), count, frames};
 }
 
 // Everything the comparison needs for one test frame at a time.

@@ -19,4 +19,10 @@ inline RotationRepresentation RepresentationOf(const TrainOptions& options) {
   return RotationRepresentation::kExponentialMap;
 }
 
+inline PoseFeatureOptions FeatureOptionsOf(const TrainOptions& options) {
+  return {.representation = RepresentationOf(options),
+          .history = options.history,
+          .differences = options.history_form == "differences"};
+}
+
 }  // namespace pleat

@@ -68,7 +68,11 @@ TrainOptions TrainOptions::Paper() {
   paper.learner = "sgplvm";
   paper.fit = "walk";
   paper.detail_axes = "world";
+  paper.history_form = "poses";
   paper.resolution_percent = 5;
+  paper.upsampling = "rbf";
+  paper.bend_stiffness = 1e-6;
+  paper.latent_dimensions = 4;
   return paper;
 }
 
@@ -77,8 +81,12 @@ absl::Status ValidateTrainOptions(const TrainOptions& options) {
   PLEAT_RETURN_IF_ERROR(CheckChoice("fit", options.fit, {"all-joints", "walk"}));
   PLEAT_RETURN_IF_ERROR(
       CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
+  PLEAT_RETURN_IF_ERROR(CheckChoice("upsampling", options.upsampling, {"refined", "rbf"}));
+  PLEAT_RETURN_IF_ERROR(CheckRange("bend_stiffness", options.bend_stiffness, 0.0, 1.0));
   PLEAT_RETURN_IF_ERROR(
       CheckChoice("rotations", options.rotations, {"expmap", "euler", "quaternion"}));
+  PLEAT_RETURN_IF_ERROR(
+      CheckChoice("history_form", options.history_form, {"differences", "poses"}));
   PLEAT_RETURN_IF_ERROR(CheckRange("history", options.history, 1, 8));
   PLEAT_RETURN_IF_ERROR(CheckRange("resolution_percent", options.resolution_percent, 1.0, 100.0));
   PLEAT_RETURN_IF_ERROR(

@@ -9,9 +9,12 @@
 #include "pleat/base/status.h"
 #include "pleat/fitting/pose_fit.h"
 #include "pleat/geometry/control_mesh.h"
+#include "pleat/skeleton/pose_history.h"
 
 namespace pleat {
 namespace {
+
+constexpr int kMaxBridgedFrames = 2;
 
 // Says how topology `b` of clip `name` differs from `a`.
 absl::Status ConnectivityDiffers(const std::string& name, const Topology& a, const Topology& b) {
@@ -28,13 +31,46 @@ absl::Status ConnectivityDiffers(const std::string& name, const Topology& a, con
                    "; all clips of a character share one connectivity"));
 }
 
+// From the control vertices to all. "refined" starts from the radial basis functions and learns
+// the weights from the details of all vertices in the training frames.
+absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged, const PoseTrack& track,
+                                           const std::vector<int>& control_vertices,
+                                           const TrainOptions& options,
+                                           const TrainResources& resources,
+                                           const Progress& progress) {
+  const MeshSequence& sequence = rigged.frames.sequence;
+  RbfUpsamplingOptions rbf;
+  rbf.features = rigged.rig.weights.ToDense().transpose();
+  rbf.num_threads = resources.num_threads;
+  PLEAT_ASSIGN_OR_RETURN(RbfUpsampler upsampler,
+                         RbfUpsampler::Build(sequence.topology(), rigged.rig.rest_positions,
+                                             control_vertices, rbf, progress));
+  if (options.upsampling == "rbf") return upsampler;
+  std::vector<int> all_vertices(sequence.num_vertices());
+  std::iota(all_vertices.begin(), all_vertices.end(), 0);
+  ComputeDetailsOptions detail_options{.axes = DetailAxesOf(options),
+                                       .num_threads = resources.num_threads};
+  PLEAT_ASSIGN_OR_RETURN(
+      const Eigen::MatrixXd details,
+      ComputeDetails(sequence, rigged.rig, track, all_vertices, detail_options, progress));
+  UpsamplingRefinementOptions refinement;
+  refinement.num_threads = resources.num_threads;
+  return upsampler.Refine(details, control_vertices, refinement, progress);
+}
+
 }  // namespace
 
 absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips) {
   if (clips.empty()) return absl::InvalidArgumentError("training needs at least one clip");
-  if (clips.size() == 1) return TrainingFrames{clips[0], {0}, clips[0].num_frames()};
+  std::vector<int> clip_starts, frame_numbers;
+  for (const MeshSequence& clip : clips) {
+    clip_starts.push_back(static_cast<int>(frame_numbers.size()));
+    for (int t = 0; t < clip.num_frames(); ++t) frame_numbers.push_back(t);
+  }
+  if (clips.size() == 1) {
+    return TrainingFrames{clips[0], clip_starts, clips[0].num_frames(), frame_numbers};
+  }
   std::vector<Eigen::Matrix3Xf> frames;
-  std::vector<int> clip_starts;
   for (const MeshSequence& clip : clips) {
     if (!(clip.topology() == clips[0].topology())) {
       return ConnectivityDiffers(clip.name(), clips[0].topology(), clip.topology());
@@ -45,7 +81,6 @@ absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips)
                        " frames per second, the first ", clips[0].frame_rate().fps(),
                        "; give all clips one rate"));
     }
-    clip_starts.push_back(static_cast<int>(frames.size()));
     for (int t = 0; t < clip.num_frames(); ++t) frames.push_back(clip.frame(t));
   }
   PLEAT_ASSIGN_OR_RETURN(MeshSequence joined,
@@ -54,7 +89,8 @@ absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips)
                                                .frame_rate = clips[0].frame_rate(),
                                                .appearance = clips[0].appearance(),
                                                .frame_names = {}}));
-  return TrainingFrames{std::move(joined), std::move(clip_starts), clips[0].num_frames()};
+  return TrainingFrames{std::move(joined), std::move(clip_starts), clips[0].num_frames(),
+                        std::move(frame_numbers)};
 }
 
 absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const TrainOptions& options,
@@ -83,6 +119,7 @@ absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
   PoseFitOptions fit;
   fit.method = options.fit == "walk" ? PoseFitMethod::kWalk : PoseFitMethod::kAllJoints;
   fit.clip_starts = clip_starts;
+  fit.bend_stiffness = options.bend_stiffness;
   fit.num_threads = resources.num_threads;
   return FitPoses(sequence, rig, fit, nullptr, progress);
 }
@@ -97,22 +134,23 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   PLEAT_ASSIGN_OR_RETURN(data.control_vertices,
                          SelectControlVertices(sequence.topology(), rigged.rig.rest_positions,
                                                options.resolution_percent / 100));
-  if (static_cast<int>(data.control_vertices.size()) < sequence.num_vertices()) {
-    PLEAT_ASSIGN_OR_RETURN(
-        data.upsampler,
-        RbfUpsampler::Build(sequence.topology(), rigged.rig.rest_positions, data.control_vertices));
-  }
   ComputeDetailsOptions detail_options;
   detail_options.axes = DetailAxesOf(options);
   detail_options.num_threads = resources.num_threads;
   PLEAT_ASSIGN_OR_RETURN(
       data.details,
       ComputeDetails(sequence, rigged.rig, track, data.control_vertices, detail_options, progress));
-  const PoseFeatureOptions feature_options{RepresentationOf(options), options.history};
+  if (static_cast<int>(data.control_vertices.size()) < sequence.num_vertices()) {
+    PLEAT_ASSIGN_OR_RETURN(data.upsampler, MakeUpsampler(rigged, track, data.control_vertices,
+                                                         options, resources, progress));
+  }
+  const PoseFeatureOptions feature_options = FeatureOptionsOf(options);
+  // A single held-out frame is bridged from its neighbours, so that the frame after it has a speed.
+  const FilledTrack filled = FillGaps(track, rigged.frames.frame_numbers, kMaxBridgedFrames);
   data.feature_reference = PoseFeatures::Reference(feature_options, track);
   data.features =
       PoseFeatures(feature_options, rigged.rig.skeleton.num_joints(), data.feature_reference)
-          .ComputeTrack(track);
+          .ComputeTrack(filled.track)(filled.rows, Eigen::all);
   return data;
 }
 

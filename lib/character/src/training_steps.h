@@ -23,6 +23,8 @@ struct TrainingFrames {
   MeshSequence sequence;
   std::vector<int> clip_starts;  // ascending, first is 0; no history or dynamics across a start
   int num_rig_frames;            // the rest frame is one of the first so many (the first clip)
+  std::vector<int>
+      frame_numbers;  // of every frame in its recording; gaps where frames are held out
 };
 
 // Joins clips of the same connectivity. kInvalidArgument names the clip that does not fit.

@@ -75,12 +75,26 @@ Pose FromChainPose(const Skeleton& skeleton, const ChainPose& chain_pose,
   return pose;
 }
 
+namespace {
+
+// The two bones from the root to the hips are one bone of the body, the pelvis. Under a skirt their
+// vertices hardly tell them apart, and each would turn on its own; so much stiffer than a joint.
+constexpr double kPelvisStiffness = 100;
+
+bool IsPelvisBone(const Skeleton& skeleton, int bone) {
+  const std::string& name = skeleton.joint(bone).name;
+  return skeleton.parent(bone) == 0 && (name == "leftUpperLeg" || name == "rightUpperLeg");
+}
+
+}  // namespace
+
 PoseEnergy::PoseEnergy(const ChainMoments& chain, const Skeleton& skeleton, double bend_stiffness)
     : chain_(chain), gram_(chain.gram) {
   assert(skeleton.num_joints() == chain.num_joints);
   // |R_b - R_p|^2 = tr of a Gram with blocks +I, +I, -I, -I: a point that both bones share.
-  const Matrix3d stiffness = bend_stiffness * Matrix3d::Identity();
   for (int b = 1; b < chain.num_joints; ++b) {
+    const double factor = IsPelvisBone(skeleton, b) ? kPelvisStiffness : 1;
+    const Matrix3d stiffness = factor * bend_stiffness * Matrix3d::Identity();
     const int p = skeleton.parent(b);
     gram_.block<3, 3>(3 * b, 3 * b) += stiffness;
     gram_.block<3, 3>(3 * p, 3 * p) += stiffness;

@@ -91,6 +91,11 @@ void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
                     reference_.segment(j * k, k), row.segment(h * block + j * k, k));
     }
   }
+  if (!options_.differences) return;
+  for (int h = options_.history - 1; h > 0; --h) {  // oldest first: each still needs its successor
+    row.segment(h * block, block) =
+        row.segment((h - 1) * block, block) - row.segment(h * block, block);
+  }
 }
 
 Eigen::MatrixXd PoseFeatures::ComputeTrack(const PoseTrack& track) const {

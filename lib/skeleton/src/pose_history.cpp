@@ -28,6 +28,28 @@ Pose SamplePose(const PoseTrack& track, int clip_begin, int clip_end, double pos
   return Interpolate(track.poses[before], track.poses[before + 1], clamped - before);
 }
 
+FilledTrack FillGaps(const PoseTrack& track, const std::vector<int>& frame_numbers,
+                     int max_missing) {
+  assert(static_cast<int>(frame_numbers.size()) == track.num_frames());
+  FilledTrack filled;
+  filled.track.fps = track.fps;
+  filled.track.clip_starts.clear();
+  for (int i = 0; i < track.num_frames(); ++i) {
+    const int step = i == 0 ? 0 : frame_numbers[i] - frame_numbers[i - 1];
+    if (step > 1 && step <= max_missing + 1) {
+      for (int k = 1; k < step; ++k) {
+        filled.track.poses.push_back(
+            Interpolate(track.poses[i - 1], track.poses[i], static_cast<double>(k) / step));
+      }
+    } else if (std::binary_search(track.clip_starts.begin(), track.clip_starts.end(), i)) {
+      filled.track.clip_starts.push_back(filled.track.num_frames());
+    }
+    filled.rows.push_back(filled.track.num_frames());
+    filled.track.poses.push_back(track.poses[i]);
+  }
+  return filled;
+}
+
 PoseHistory::PoseHistory(const PoseTrack& track, double interval_fps, int depth)
     : track_(track), frames_per_interval_(track.fps / interval_fps), sampled_(depth) {
   assert(depth >= 1 && interval_fps > 0);

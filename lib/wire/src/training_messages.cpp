@@ -24,6 +24,7 @@ v1::TrainOptions ToProto(const TrainOptions& options) {
   message.set_detail_energy(options.detail_energy);
   message.set_max_components(options.max_components);
   message.set_seed(options.seed);
+  message.set_history_form(options.history_form);
   message.set_upsampling(options.upsampling);
   message.set_bend_stiffness(options.bend_stiffness);
   return message;
@@ -45,6 +46,7 @@ absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
   if (message.has_detail_energy()) options.detail_energy = message.detail_energy();
   if (message.has_max_components()) options.max_components = message.max_components();
   if (message.has_seed()) options.seed = message.seed();
+  if (message.has_history_form()) options.history_form = message.history_form();
   if (message.has_upsampling()) options.upsampling = message.upsampling();
   if (message.has_bend_stiffness()) options.bend_stiffness = message.bend_stiffness();
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));

@@ -16,15 +16,18 @@ struct TrainOptions {
   std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
   std::string rotations = "expmap";   // pose features: "expmap" (paper), "euler", "quaternion"
   int history = 2;                    // poses per feature row, 1..8 (paper: 2)
-  double resolution_percent = 100;    // share of the vertices that learn, 1..100 (paper: 5)
-  int rest_frame = -1;                // frame to rig, -1 = found automatically
-  double yaw_degrees = -1;            // facing of the character about +y from +z, -1 = automatic
-  int latent_dimensions = 4;          // q of the SGPLVM, 1..32 (its value in the paper is lost)
-  int iterations = 100;               // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
-  double dynamics_weight = 1;         // lambda on the GPDM term, 0..1e6 (paper: 1)
-  double detail_energy = 0.99999;     // share of the details' energy that the PCA basis keeps, 0..1
-  int max_components = 96;            // upper bound of the PCA basis, 1..1024
-  uint64_t seed = 1;                  // of everything random
+  std::string history_form = "differences";  // of those poses, or "poses" (paper)
+  double resolution_percent = 100;           // share of the vertices that learn, 1..100 (paper: 5)
+  std::string upsampling = "refined";  // control -> all: "rbf" (paper), "refined" on the input
+  int rest_frame = -1;                 // frame to rig, -1 = found automatically
+  double yaw_degrees = -1;             // facing of the character about +y from +z, -1 = automatic
+  double bend_stiffness = 0.003;       // pose fit: pull of a bone to its parent, 0..1
+  int latent_dimensions = 12;          // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
+  int iterations = 100;                // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
+  double dynamics_weight = 1;          // lambda on the GPDM term, 0..1e6 (paper: 1)
+  double detail_energy = 0.99999;  // share of the details' energy that the PCA basis keeps, 0..1
+  int max_components = 96;         // upper bound of the PCA basis, 1..1024
+  uint64_t seed = 1;               // of everything random
 
   // The published settings: sgplvm on a 5 % control mesh, walk, world axes (paper, section IV).
   static TrainOptions Paper();
@@ -50,9 +53,12 @@ void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("detail_axes", options.detail_axes);
   visit("rotations", options.rotations);
   visit("history", options.history);
+  visit("history_form", options.history_form);
   visit("resolution_percent", options.resolution_percent);
+  visit("upsampling", options.upsampling);
   visit("rest_frame", options.rest_frame);
   visit("yaw_degrees", options.yaw_degrees);
+  visit("bend_stiffness", options.bend_stiffness);
   visit("latent_dimensions", options.latent_dimensions);
   visit("iterations", options.iterations);
   visit("dynamics_weight", options.dynamics_weight);

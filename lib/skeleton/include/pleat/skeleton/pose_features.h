@@ -13,6 +13,9 @@ struct PoseFeatureOptions {
   // The paper's choice; Euler angles and quaternions were worse there, kept for the comparison.
   RotationRepresentation representation = RotationRepresentation::kExponentialMap;
   int history = 2;  // frames per row: the pose and its predecessors (paper: 2)
+  // Predecessors as differences to the pose after them: a distance between rows then weighs speed
+  // by itself. false = the poses as they are (paper). The same information either way.
+  bool differences = true;
 };
 
 // Turns poses into feature rows without the root (independent of place and facing). Rotations
@@ -31,7 +34,8 @@ class PoseFeatures {
   const Eigen::VectorXd& reference() const { return reference_; }
 
   // Writes one row: poses[0] is the current pose, poses[h] the pose h frames before.
-  // `row` has num_features() entries: current pose first, then its predecessors. No allocation.
+  // `row` has num_features() entries: current pose first, then its predecessors (or differences).
+  // No allocation.
   void ComputeRow(const std::vector<const Pose*>& poses, Eigen::Ref<Eigen::VectorXd> row) const;
 
   // T x num_features. Before a clip's first frame its first motion continues backwards

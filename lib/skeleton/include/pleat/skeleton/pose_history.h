@@ -30,4 +30,16 @@ class PoseHistory {
   std::vector<Pose> sampled_;  // depth
 };
 
+// A track whose short gaps are filled by interpolation, and where its own frames went.
+struct FilledTrack {
+  PoseTrack track;
+  std::vector<int> rows;  // rows[i]: frame of `track` that is frame i of the input
+};
+
+// frame_numbers: one per frame of `track`, ascending within a clip: its place in the recording.
+// Where at most `max_missing` numbers are missing between two frames, the poses between them are
+// interpolated and no clip starts after them; wider gaps stay the clip starts they are.
+FilledTrack FillGaps(const PoseTrack& track, const std::vector<int>& frame_numbers,
+                     int max_missing);
+
 }  // namespace pleat
