@@ -18,7 +18,9 @@ constexpr ptrdiff_t kBlockRows = 192;  // multiple of every kRows
 constexpr ptrdiff_t kBlockCols = 480;  // multiple of every kCols
 
 // Eight lanes on every instruction set, so that sums over lanes have one order.
-typedef double Lanes __attribute__((vector_size(64), aligned(8), may_alias));
+typedef double Lanes __attribute__((vector_size(64)));
+// Lanes in an array. Only for casts: a reference to it would lose the attributes under clang.
+typedef double UnalignedLanes __attribute__((vector_size(64), aligned(8), may_alias));
 typedef long long LaneBits __attribute__((vector_size(64)));
 constexpr ptrdiff_t kLanes = 8;
 
@@ -195,9 +197,9 @@ void Kernel(const double* r, const double* t, ptrdiff_t n, double g, double a, d
     double* sum = k + j * n;
     ptrdiff_t i = j;
     for (; i + kLanes <= n; i += kLanes) {
-      Lanes x = *reinterpret_cast<const Lanes*>(distance + i) * (-.5 * g);
+      Lanes x = *reinterpret_cast<const UnalignedLanes*>(distance + i) * (-.5 * g);
       Exp(x);
-      *reinterpret_cast<Lanes*>(rbf + i) = a * x;
+      *reinterpret_cast<UnalignedLanes*>(rbf + i) = a * x;
     }
     if (i < n) {
       Lanes x;
@@ -232,10 +234,10 @@ GramSums GramGradient(double* q, double* s, const double* k0, const double* r, c
       const ptrdiff_t part = Smaller(kLanes, n - i), at = i + j * n;
       Lanes inverse, product, rbf, squared;
       if (part == kLanes) {
-        inverse = *reinterpret_cast<const Lanes*>(q + at);
-        product = *reinterpret_cast<const Lanes*>(s + at);
-        rbf = *reinterpret_cast<const Lanes*>(k0 + at);
-        squared = *reinterpret_cast<const Lanes*>(r + at);
+        inverse = *reinterpret_cast<const UnalignedLanes*>(q + at);
+        product = *reinterpret_cast<const UnalignedLanes*>(s + at);
+        rbf = *reinterpret_cast<const UnalignedLanes*>(k0 + at);
+        squared = *reinterpret_cast<const UnalignedLanes*>(r + at);
       } else {
         LoadPart(inverse, q + at, part);
         LoadPart(product, s + at, part);
@@ -253,8 +255,8 @@ GramSums GramGradient(double* q, double* s, const double* k0, const double* r, c
         linear += gradient * inner;
       }
       if (part == kLanes) {
-        *reinterpret_cast<Lanes*>(q + at) = gradient;
-        *reinterpret_cast<Lanes*>(s + at) = weighted;
+        *reinterpret_cast<UnalignedLanes*>(q + at) = gradient;
+        *reinterpret_cast<UnalignedLanes*>(s + at) = weighted;
       } else {
         StorePart(q + at, gradient, part);
         StorePart(s + at, weighted, part);
@@ -280,9 +282,9 @@ void SymmetricMultiply(const double* m, const double* x, ptrdiff_t n, ptrdiff_t 
       double tail = column[j] * own;
       ptrdiff_t i = j + 1;
       for (; i + kLanes <= n; i += kLanes) {
-        const Lanes entries = *reinterpret_cast<const Lanes*>(column + i);
-        dot += entries * *reinterpret_cast<const Lanes*>(in + i);
-        Lanes* target = reinterpret_cast<Lanes*>(out + i);
+        const Lanes entries = *reinterpret_cast<const UnalignedLanes*>(column + i);
+        dot += entries * *reinterpret_cast<const UnalignedLanes*>(in + i);
+        UnalignedLanes* target = reinterpret_cast<UnalignedLanes*>(out + i);
         *target = *target + entries * own;
       }
       for (; i < n; ++i) {
