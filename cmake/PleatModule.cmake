@@ -7,7 +7,6 @@
 # call fails when one of them has not been declared before it, so the declaration order in
 # lib/CMakeLists.txt is the only include order and cycles cannot exist.
 # PRIVATE_PACKAGES stay out of the include path of dependants (Draco, protobuf, ...).
-set(PLEAT_BOOTSTRAP ON)
 set_property(GLOBAL PROPERTY PLEAT_MODULES "")
 
 function(pleat_add_module name)
@@ -18,9 +17,6 @@ function(pleat_add_module name)
   get_property(declared GLOBAL PROPERTY PLEAT_MODULES)
   foreach(dependency IN LISTS ARG_DEPENDS)
     if(NOT dependency IN_LIST declared)
-      if(PLEAT_BOOTSTRAP)
-        return()
-      endif()
       message(FATAL_ERROR "module ${name} depends on ${dependency}, which is not declared before "
                           "it: see the include order in ARCHITECTURE.md")
     endif()
@@ -29,9 +25,6 @@ function(pleat_add_module name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/pleat/*/*.h)
   set(target pleat_${name})
-  if(PLEAT_BOOTSTRAP AND (NOT sources OR NOT headers))
-    return()
-  endif()
   if(NOT sources OR NOT headers)
     message(FATAL_ERROR "module ${name} has no sources or no public headers")
   endif()
@@ -45,13 +38,18 @@ function(pleat_add_module name)
   set_property(GLOBAL APPEND PROPERTY PLEAT_MODULES ${name})
 endfunction()
 
-# pleat_add_tests(gp) builds tests/gp/*_test.cpp into gp_test and registers every case with CTest.
-# LIBRARIES adds what the tests use beyond the module itself and tests/support.
+# pleat_add_tests(gp) builds the *_test.cpp of this folder (of its subfolder gp, where there is one)
+# into gp_test and registers every case with CTest. LIBRARIES adds what the tests use beyond the
+# module itself and tests/support.
 function(pleat_add_tests name)
   cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*_test.cpp)
+  set(folder ${CMAKE_CURRENT_SOURCE_DIR})
+  if(IS_DIRECTORY ${folder}/${name})
+    string(APPEND folder /${name})
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp)
   if(NOT sources)
-    message(FATAL_ERROR "tests/${name} has no *_test.cpp")
+    message(FATAL_ERROR "${folder} has no *_test.cpp")
   endif()
   add_executable(${name}_test ${sources})
   set(module "")

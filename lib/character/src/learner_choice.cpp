@@ -71,10 +71,6 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
   detail_options.sgplvm.latent_dimension = options.latent_dimensions;
   detail_options.sgplvm.max_iterations = options.iterations;
   detail_options.sgplvm.dynamics_weight = options.dynamics_weight;
-  // Both this and the default q were chosen on blocks held out inside the training frames of two
-  // captures: docs/performance.md, "Choices".
-  detail_options.gp.prior_precision = 0.003;
-  detail_options.gp.prior_width_factor = 1;
   detail_options.pca_energy = options.detail_energy;
   detail_options.max_components = options.max_components;
   PLEAT_ASSIGN_OR_RETURN(DetailModel model,

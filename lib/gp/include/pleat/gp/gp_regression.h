@@ -20,10 +20,10 @@ struct GpRegressionOptions {
   int max_iterations = 60;  // of L-BFGS on the marginal likelihood
   // Precision, per row and output, of a Gaussian prior on log g around
   // log(1 / (prior_width_factor^2 * median squared distance)); 0: none. Frames of one clip are so
-  // alike that the likelihood alone prefers widths that generalise badly: on blocks and endings
-  // held out of captured clips this prior lowers the error by 8 % (lib/gp/README.md).
-  double prior_precision = .01;
-  double prior_width_factor = 2;
+  // alike that the likelihood alone prefers widths that generalise badly. Chosen on blocks held
+  // out inside the training frames of captured clips (docs/performance.md, "Choices").
+  double prior_precision = .003;
+  double prior_width_factor = 1;
   // Hyperparameters are learnt on at most this many rows and predictions made from at most
   // `max_rows`, both spread evenly: cost and memory grow with the cube and the square.
   int max_hyperparameter_rows = 800;
