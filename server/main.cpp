@@ -57,6 +57,7 @@ int Run(const ServerOptions& options) {
   // A second signal ends the process the hard way.
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   (*service)->Shutdown();  // jobs are queued again, their watchers end
+  spdlog::info("jobs have stopped");
   (*server)->Shutdown(options.drain_seconds);
   spdlog::info("pleatd has ended");
   return 0;

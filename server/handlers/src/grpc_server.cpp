@@ -11,6 +11,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,9 @@
 namespace pleat {
 namespace {
 
-constexpr int kKeepaliveMs = 60'000;         // how often an idle connection is asked
+constexpr int kKeepaliveMs = 60'000;  // how often an idle connection is asked
+constexpr auto kDrainPoll = std::chrono::milliseconds(10);
+constexpr auto kCloseTime = std::chrono::milliseconds(100);
 constexpr int kKeepaliveTimeoutMs = 20'000;  // how long it may take to answer
 
 absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
@@ -100,8 +103,13 @@ class GrpcServerImpl final : public GrpcServer {
     if (server_ == nullptr) return;
     context_.draining = true;
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
-    server_->Shutdown(std::chrono::system_clock::now() +
-                      std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6)));
+    const auto deadline = std::chrono::steady_clock::now() +
+                          std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
+    while (context_.num_calls > 0 && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(kDrainPoll);
+    }
+    // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
+    server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);
     server_->Wait();
     server_.reset();
   }

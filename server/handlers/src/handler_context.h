@@ -14,14 +14,29 @@ struct HandlerContext {
   Executor* storage_executor = nullptr;  // disk, catalogue, checking uploads
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;
-  std::atomic<bool> draining = false;  // the server shuts down
+  std::atomic<int> num_calls = 0;      // under way, streams included
+  std::atomic<bool> draining = false;  // the server shuts down: new calls are refused
 };
 
-// Counts one open stream as long as it lives.
+// Counts one call as long as it lives.
+class CallCounter {
+ public:
+  explicit CallCounter(HandlerContext* context) : context_(context) { ++context_->num_calls; }
+  ~CallCounter() { --context_->num_calls; }
+  CallCounter(const CallCounter&) = delete;
+  CallCounter& operator=(const CallCounter&) = delete;
+
+ private:
+  HandlerContext* context_;
+};
+
+// Counts one open stream, which is a call, as long as it lives.
 class StreamSlot {
  public:
   explicit StreamSlot(HandlerContext* context)
-      : context_(context), granted_(++context->num_open_streams <= context->max_open_streams) {}
+      : counter_(context),
+        context_(context),
+        granted_(++context->num_open_streams <= context->max_open_streams) {}
   ~StreamSlot() { --context_->num_open_streams; }
   StreamSlot(const StreamSlot&) = delete;
   StreamSlot& operator=(const StreamSlot&) = delete;
@@ -29,6 +44,7 @@ class StreamSlot {
   absl::Status status() const;
 
  private:
+  CallCounter counter_;
   HandlerContext* context_;
   bool granted_;
 };

@@ -12,6 +12,18 @@
 #include "grpc_status.h"
 
 namespace pleat {
+namespace {
+
+class UnaryReactor final : public grpc::ServerUnaryReactor {
+ public:
+  explicit UnaryReactor(HandlerContext* context) : counter_(context) {}
+  void OnDone() override { delete this; }
+
+ private:
+  CallCounter counter_;
+};
+
+}  // namespace
 
 absl::Status CallGuarded(const std::function<absl::Status()>& handler) {
   try {
@@ -32,12 +44,19 @@ void LogFailure(const char* rpc, const absl::Status& status) {
               status.ToString());
 }
 
-grpc::ServerUnaryReactor* RunUnary(grpc::CallbackServerContext* context, Executor* executor,
-                                   const char* rpc, std::function<absl::Status()> handler) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  executor->Post([context, reactor, rpc, handler = std::move(handler)] {
-    const absl::Status status =
-        context->IsCancelled() ? absl::CancelledError("the client gave up") : CallGuarded(handler);
+grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServerContext* call,
+                                   Executor* executor, const char* rpc,
+                                   std::function<absl::Status()> handler) {
+  auto* reactor = new UnaryReactor(context);
+  executor->Post([context, call, reactor, rpc, handler = std::move(handler)] {
+    absl::Status status;
+    if (context->draining) {
+      status = absl::UnavailableError("the server is shutting down");
+    } else if (call->IsCancelled()) {
+      status = absl::CancelledError("the client gave up");
+    } else {
+      status = CallGuarded(handler);
+    }
     LogFailure(rpc, status);
     reactor->Finish(ToGrpcStatus(status));
   });

@@ -6,14 +6,16 @@
 #include <functional>
 
 #include "absl/status/status.h"
-#include "pleat/jobs/executor.h"
+#include "handler_context.h"
 
 namespace pleat {
 
 // `handler` runs on `executor`, not on the network thread; request and response live until then.
-// A call that was cancelled while it waited is not run. Exceptions become a status.
-grpc::ServerUnaryReactor* RunUnary(grpc::CallbackServerContext* context, Executor* executor,
-                                   const char* rpc, std::function<absl::Status()> handler);
+// A call that was cancelled while it waited is not run, nor one that comes while the server shuts
+// down. Exceptions become a status.
+grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServerContext* call,
+                                   Executor* executor, const char* rpc,
+                                   std::function<absl::Status()> handler);
 
 // handler(), with exceptions (no memory) as a status.
 absl::Status CallGuarded(const std::function<absl::Status()>& handler);

@@ -13,7 +13,7 @@
   grpc::ServerUnaryReactor* rpc(grpc::CallbackServerContext* call,                         \
                                 const v1::rpc##Request* request, v1::rpc##Response* reply) \
       override {                                                                           \
-    return RunUnary(call, context_->executor, #rpc,                                        \
+    return RunUnary(context_, call, context_->executor, #rpc,                              \
                     [=, this] { return pleat::rpc(*context_, *request, reply); });         \
   }
 

@@ -35,8 +35,8 @@ class GrpcServer {
   virtual int port() const = 0;  // 0 for addresses without port
   // A channel without network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
-  // Takes no new calls, lets running ones go on for `drain_seconds`, then cancels them. Calls that
-  // never end by themselves (watch, live) are ended at once with kUnavailable when they next act.
+  // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then
+  // cancels what is left. A live session is refused at its next pose.
   virtual void Shutdown(double drain_seconds) = 0;
 };
 
