@@ -119,6 +119,19 @@ TEST_F(PoseEnergyTest, StiffnessTermsAreWhatTheySay) {
   EXPECT_NEAR(MakeEnergy(1, 0.5, 0.7).DataValue(pose), data, 1e-9);
 }
 
+TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
+  const ChainPose rest = ToChainPose(figure_.rig.skeleton, Pose::Rest(figure_.rig.skeleton), {});
+  auto cost_of_turning = [&](int bone) {
+    ChainPose pose = rest;
+    pose.rotation(bone) = RotationFromExponentialMap({0, 0.2, 0});
+    const PoseEnergy energy = MakeEnergy(1, 0.5, 0);
+    return energy.Value(pose) - energy.DataValue(pose);
+  };
+  // The head and the toes are leaves: one joint bends. A hip bone meets the root and the thigh.
+  EXPECT_NEAR(cost_of_turning(kLeftToes), cost_of_turning(kHead), 1e-9);
+  EXPECT_NEAR(cost_of_turning(kLeftUpperLeg), 101 * cost_of_turning(kHead), 1e-6);
+}
+
 TEST_F(PoseEnergyTest, ChainPoseRoundTrip) {
   const Skeleton& skeleton = figure_.rig.skeleton;
   const Eigen::Vector3d centre(1, 2, 3);
