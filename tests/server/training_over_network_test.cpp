@@ -1,0 +1,87 @@
+// The real training through the real server: the same model bytes as in this process, and frames
+// that decode to the evaluator's positions.
+#include <gtest/gtest.h>
+
+#include "pleat/character/train_character.h"
+#include "pleat/client/remote_character_service.h"
+#include "pleat/formats/model_file.h"
+#include "pleat/formats/sequence_file.h"
+#include "pleat/handlers/grpc_server.h"
+#include "pleat/performer/performer.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
+
+namespace pleat {
+namespace {
+
+TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Performer performer,
+      GeneratePerformer({.num_frames = 40, .num_vertices = 1200, .frame_rate = {30, 1}}));
+  // The server trains what it read from the file, so that is the input here too.
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence,
+                             DecodeSequence(EncodeSequence(performer.sequence)));
+  TrainOptions options;
+  options.learner = "gp";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
+                             TrainCharacter({sequence}, options, {.num_threads = 1}));
+
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto service,
+                             LocalCharacterService::Open({.data_dir = folder.path()}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto server, GrpcServer::Start(service.get(), {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(
+                                                    "127.0.0.1:" + std::to_string(server->port())));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo uploaded,
+                             client->UploadSequence(performer.sequence, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo created,
+                             client->CreateTrainingJob({uploaded.id}, options, ""));
+  JobInfo job;
+  ASSERT_THAT(client->WatchJob(created.id,
+                               [&](const JobInfo& info) {
+                                 job = info;
+                                 return true;
+                               }),
+              IsOk());
+  ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, client->DownloadModel(job.model_id, {}));
+  EXPECT_TRUE(bytes == EncodeModel(*model)) << "the model bytes differ";
+
+  ClipQuery query{.model_id = job.model_id, .track = performer.truth.track, .bone_scales = {}};
+  query.track.poses.resize(10);
+  std::vector<EvaluatedFrame> truth;
+  ASSERT_THAT(PoseEvaluator(model).EvaluateClip(query.track, {},
+                                                [&](int, const EvaluatedFrame& frame) {
+                                                  truth.push_back(frame);
+                                                  return absl::OkStatus();
+                                                }),
+              IsOk());
+  for (const FrameEncoding encoding :
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
+    std::optional<FrameDecoder> decoder;
+    double worst_steps = 0;
+    ASSERT_THAT(client->StreamClip(
+                    query, {.encoding = encoding},
+                    {.on_header =
+                         [&](const StreamHeader& header) {
+                           decoder.emplace(FrameDecoder::Create(header).value());
+                           return absl::OkStatus();
+                         },
+                     .on_frame =
+                         [&](int t, std::string_view draco, double) {
+                           Eigen::Matrix3Xf positions;
+                           const absl::Status status = decoder->Decode(draco, &positions);
+                           if (!status.ok()) return status;
+                           worst_steps = std::max<double>(
+                               worst_steps, (positions - truth[t].positions).cwiseAbs().maxCoeff() /
+                                                decoder->header().box.step_m());
+                           return absl::OkStatus();
+                         }}),
+                IsOk());
+    EXPECT_LE(worst_steps, .505);
+    EXPECT_GE(worst_steps, .4);  // the grid is really what the header says
+  }
+}
+
+}  // namespace
+}  // namespace pleat
