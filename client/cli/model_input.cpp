@@ -3,11 +3,10 @@
 #include <filesystem>
 
 #include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
 #include "cli/progress_display.h"
 #include "cli/service.h"
 #include "pleat/base/status.h"
-#include "pleat/fitting/pose_fit.h"
+#include "pleat/character/fit_motion.h"
 #include "pleat/formats/model_file.h"
 
 namespace pleat {
@@ -29,20 +28,11 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> LoadModel(const Session& s
   return DecodeModel(bytes);
 }
 
-absl::StatusOr<PoseTrack> FitMotion(const CharacterModel& model, const MeshSequence& sequence,
-                                    const Session& session) {
-  if (!(sequence.topology() == model.topology())) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("'", sequence.name(), "' has ", sequence.num_vertices(), " vertices and ",
-                     sequence.topology().num_faces(), " faces, the model ", model.num_vertices(),
-                     " and ", model.topology().num_faces(),
-                     ": poses are found only in a mesh with the model's own connectivity"));
-  }
-  PoseFitOptions options;
-  options.method = model.options().fit == "walk" ? PoseFitMethod::kWalk : PoseFitMethod::kAllJoints;
+absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
+                                                const MeshSequence& sequence,
+                                                const Session& session) {
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  return FitPoses(sequence, model.rig(), options, nullptr,
-                  InterruptibleProgress(&display).Stage("fit", 0, 1));
+  return FitMotion(model, sequence, {}, InterruptibleProgress(&display));
 }
 
 std::vector<std::string> JointNames(const Skeleton& skeleton) {

@@ -21,10 +21,10 @@ bool IsModelFile(const std::string& model);
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LoadModel(const Session& session,
                                                                 const std::string& model);
 
-// The poses of the character in every frame of `sequence`: rig fixed, fitted as the model's own
-// training did. kInvalidArgument when the connectivity is not the model's.
-absl::StatusOr<PoseTrack> FitMotion(const CharacterModel& model, const MeshSequence& sequence,
-                                    const Session& session);
+// FitMotion with progress; Ctrl-C stops it.
+absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
+                                                const MeshSequence& sequence,
+                                                const Session& session);
 
 // The names of all joints, in order.
 std::vector<std::string> JointNames(const Skeleton& skeleton);

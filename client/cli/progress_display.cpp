@@ -16,7 +16,8 @@ constexpr int kStageColumns = 10;
 constexpr int kTerminalColumns = 79;
 constexpr double kRedrawSeconds = 0.1;
 constexpr double kLineSeconds = 5;
-constexpr double kQuietSeconds = 0.5;  // what is over by then is not worth a word
+constexpr double kNewStageSeconds = 1;  // stages of a moment would only fill a log
+constexpr double kQuietSeconds = 0.5;   // what is over by then is not worth a word
 
 std::string TimeText(double fraction, double elapsed_seconds, std::optional<double> eta_seconds) {
   // An extrapolation from the first moments would only jump about.
@@ -72,6 +73,13 @@ ProgressDisplay::ProgressDisplay(std::ostream& out, ProgressStyle style,
       stage_start_seconds_(start_seconds_),
       last_drawn_seconds_(-1e9) {}
 
+bool ProgressDisplay::Due(const ProgressUpdate& update, double now) const {
+  if (style_ == ProgressStyle::kSilent || now - start_seconds_ < kQuietSeconds) return false;
+  const double waited = now - last_drawn_seconds_;
+  if (style_ == ProgressStyle::kBar) return waited >= kRedrawSeconds || update.fraction >= 1;
+  return waited >= (stage_ == drawn_stage_ ? kLineSeconds : kNewStageSeconds);
+}
+
 void ProgressDisplay::Update(const ProgressUpdate& update, std::optional<double> eta_seconds) {
   std::lock_guard lock(mutex_);
   const double now = clock_seconds_();
@@ -81,10 +89,9 @@ void ProgressDisplay::Update(const ProgressUpdate& update, std::optional<double>
     stage_ = update.stage;
     stage_start_seconds_ = now;
   }
-  const double interval = style_ == ProgressStyle::kBar ? kRedrawSeconds : kLineSeconds;
-  const bool due = new_stage || update.fraction >= 1 || now - last_drawn_seconds_ >= interval;
-  if (style_ == ProgressStyle::kSilent || !due || now - start_seconds_ < kQuietSeconds) return;
+  if (!Due(update, now)) return;
   last_drawn_seconds_ = now;
+  drawn_stage_ = stage_;
   if (style_ == ProgressStyle::kBar) {
     out_ << '\r' << FormatProgressBar(update, now - start_seconds_, eta_seconds, kTerminalColumns)
          << "\x1b[K" << std::flush;

@@ -40,6 +40,8 @@ class ProgressDisplay {
   std::map<std::string, double> stage_seconds() const;
 
  private:
+  bool Due(const ProgressUpdate& update, double now) const;  // needs mutex_
+
   std::ostream& out_;
   const ProgressStyle style_;
   const std::function<double()> clock_seconds_;
@@ -48,7 +50,7 @@ class ProgressDisplay {
   const double start_seconds_;
   double stage_start_seconds_;
   double last_drawn_seconds_;
-  std::string stage_;
+  std::string stage_, drawn_stage_;
   std::map<std::string, double> stage_seconds_;
   bool line_open_ = false;
 };

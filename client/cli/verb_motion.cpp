@@ -27,8 +27,7 @@ absl::StatusOr<Motion> LoadMotion(const MotionVerbOptions& options, const Charac
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
                          ReadInput(session, options.source, options.fps));
   Motion motion;
-  PLEAT_ASSIGN_OR_RETURN(motion.track, FitMotion(model, sequence, session));
-  motion.track.fps = sequence.frame_rate().fps();
+  PLEAT_ASSIGN_OR_RETURN(motion.track, FitMotionWithProgress(model, sequence, session));
   return motion;
 }
 

@@ -28,7 +28,7 @@ struct RenderVerbOptions {
 // what rig and learnt detail make of them.
 absl::Status AddModelRows(std::shared_ptr<const CharacterModel> model, const MeshSequence& input,
                           const Session& session, std::vector<SheetRow>* rows) {
-  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitMotion(*model, input, session));
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitMotionWithProgress(*model, input, session));
   std::vector<Eigen::Matrix3Xf> skinned, hybrid;
   PoseEvaluator evaluator(std::move(model));
   EvaluatedFrame frame;

@@ -40,8 +40,9 @@ TEST(Local, TrainsPosesAndMeasures) {
   const std::string motion = pleat.File("motion.json"), copy = pleat.File("copy.pc2");
   result = pleat.Run({"motion", model, input, "-o", motion});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  result = pleat.Run({"pose", model, "--motion", motion, "-o", copy});
+  result = pleat.Run({"pose", model, "--motion", motion, "-o", copy, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_GT(ParseJson(result.out)["confidence"]["mean"], 0.95) << result.out;
   result = pleat.Run({"compare", copy, input, "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_LT(ParseJson(result.out)["error"]["mean_percent"], report["fit"]["mean_percent"]);

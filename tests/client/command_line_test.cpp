@@ -1,0 +1,63 @@
+#include "cli/command_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+struct Outcome {
+  ExitCode code;
+  std::string out, err;
+};
+
+Outcome RunPleat(const std::vector<std::string>& arguments) {
+  std::ostringstream out, err;
+  Session session;
+  session.out = &out;
+  session.err = &err;
+  const ExitCode code = RunCommandLine(arguments, session);
+  return {code, out.str(), err.str()};
+}
+
+TEST(CommandLine, NothingAndNonsenseAreUsageErrors) {
+  EXPECT_EQ(RunPleat({}).code, ExitCode::kUsage);
+  EXPECT_EQ(RunPleat({"dance"}).code, ExitCode::kUsage);
+  const Outcome flag = RunPleat({"inspect", "x", "--wrong"});
+  EXPECT_EQ(flag.code, ExitCode::kUsage);
+  EXPECT_THAT(flag.err, StartsWith("pleat inspect: "));
+  EXPECT_THAT(flag.err, HasSubstr("Try 'pleat inspect --help'."));
+  EXPECT_EQ(RunPleat({"inspect"}).code, ExitCode::kUsage);
+  EXPECT_THAT(flag.out, IsEmpty());
+}
+
+TEST(CommandLine, HelpGoesToTheOutputAndListsExitCodes) {
+  const Outcome help = RunPleat({"--help"});
+  EXPECT_EQ(help.code, ExitCode::kOk);
+  EXPECT_THAT(help.out, HasSubstr("Exit codes:"));
+  EXPECT_THAT(help.out, HasSubstr("inspect"));
+  const Outcome verb = RunPleat({"inspect", "--help"});
+  EXPECT_EQ(verb.code, ExitCode::kOk);
+  EXPECT_THAT(verb.out, HasSubstr("--json"));
+}
+
+TEST(CommandLine, VersionInBothForms) {
+  EXPECT_THAT(RunPleat({"version"}).out, StartsWith("pleat "));
+  EXPECT_THAT(RunPleat({"version", "--json"}).out, StartsWith("{\"version\":\""));
+}
+
+TEST(CommandLine, MissingInputIsNotFoundAndNamed) {
+  const Outcome outcome = RunPleat({"inspect", "/nowhere/at/all.obj"});
+  EXPECT_EQ(outcome.code, ExitCode::kNotFound);
+  EXPECT_THAT(outcome.err, StartsWith("pleat inspect: "));
+  EXPECT_THAT(outcome.err, HasSubstr("/nowhere/at/all.obj"));
+}
+
+}  // namespace
+}  // namespace pleat
