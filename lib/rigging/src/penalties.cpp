@@ -8,6 +8,7 @@
 namespace pleat {
 namespace {
 
+constexpr double kOppositeCosine = -0.7;  // neighbours that far apart make a limb, not its end
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double Square(double x) { return x * x; }
@@ -76,13 +77,16 @@ PenaltyModel::PenaltyModel(const SphereGraph& graph, const SearchTree& tree, dou
 
 // The shape goes on behind a sphere with neighbours on opposite sides of it.
 bool PenaltyModel::IsExtremity(int sphere) const {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> directions;
   for (int i : graph_.neighbours(sphere)) {
-    mean += (graph_.sphere(i).centre - graph_.sphere(sphere).centre).normalized();
+    const Eigen::Vector3d direction =
+        (graph_.sphere(i).centre - graph_.sphere(sphere).centre).normalized();
+    for (const Eigen::Vector3d& other : directions) {
+      if (direction.dot(other) < kOppositeCosine) return false;
+    }
+    directions.push_back(direction);
   }
-  return std::all_of(
-      graph_.neighbours(sphere).begin(), graph_.neighbours(sphere).end(),
-      [&](int i) { return mean.dot(graph_.sphere(i).centre - graph_.sphere(sphere).centre) > 0; });
+  return true;
 }
 
 double PenaltyModel::LocalDirection(const SearchJoint& joint, const std::vector<int>& path) const {

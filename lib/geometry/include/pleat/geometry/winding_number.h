@@ -15,7 +15,7 @@ namespace pleat {
 class WindingNumber {
  public:
   // `tree` must outlive this object. A cluster is approximated when the point is farther from its
-  // centre than `accuracy` times its radius; 2 keeps the error below about 0.02.
+  // centre than `accuracy` times its radius; 2 keeps the error below about 0.05.
   explicit WindingNumber(const TriangleTree& tree, double accuracy = 2);
 
   double operator()(const Eigen::Vector3d& point) const;

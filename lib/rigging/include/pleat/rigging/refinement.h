@@ -16,7 +16,7 @@ struct RefinementOptions {
   // The same for the bones across the trunk, from hips and chest to the limbs: the surface says
   // nothing about their length, under a skirt least of all.
   double trunk_length = 30;
-  double angle = 2;     // 1 - cosine to the template's direction
+  double angle = 5;     // 1 - cosine to the template's direction; 2 leaves hips in skirts worse
   double symmetry = 1;  // relative difference of mirrored lengths
   int samples_per_bone = 10;
   int max_iterations = 60;

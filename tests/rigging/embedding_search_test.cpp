@@ -1,0 +1,109 @@
+#include "pleat/rigging/embedding_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "pleat/base/random.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::_;
+
+// A scattered cloud of spheres, joined when near.
+SphereGraph RandomGraph(uint64_t seed, int num_spheres) {
+  Random random(seed);
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < num_spheres; ++i) {
+    spheres.push_back({{random.Uniform(-.3, .3), random.Uniform(0, 1), random.Uniform(-.2, .2)},
+                       random.Uniform(.02, .1)});
+  }
+  std::vector<std::pair<int, int>> edges;
+  for (int i = 0; i < num_spheres; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if ((spheres[i].centre - spheres[j].centre).norm() < .55) edges.push_back({i, j});
+    }
+  }
+  return SphereGraph(spheres, edges);
+}
+
+double BruteForce(const PenaltyModel& model, std::vector<int>* spheres, double cost) {
+  const int j = static_cast<int>(spheres->size());
+  if (j == static_cast<int>(model.tree().size())) return cost;
+  double best = std::numeric_limits<double>::infinity();
+  const PlacementContext context = model.MakeContext(j, *spheres);
+  for (int sphere : model.candidates(j)) {
+    double step = 0;
+    if (j > 0) step = model.PairPenalty(j, sphere, (*spheres)[model.tree()[j].parent]);
+    if (std::isfinite(step)) step += model.ContextPenalty(context, sphere);
+    if (!std::isfinite(step)) continue;
+    spheres->push_back(sphere);
+    best = std::min(best, BruteForce(model, spheres, cost + step));
+    spheres->pop_back();
+  }
+  return best;
+}
+
+TEST(EmbeddingSearchTest, FindsTheCheapestPlacementOfAll) {
+  int num_found = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    const SphereGraph graph = RandomGraph(seed, 8);
+    const SearchTree tree = MakeHumanSearchTree(1, 0);
+    PenaltyOptions penalties;
+    penalties.max_deep_candidates = 4;
+    penalties.template_scale = .3;
+    const PenaltyModel model(graph, tree, 0, 1, penalties);
+    std::vector<int> spheres;
+    const double truth = BruteForce(model, &spheres, 0);
+    SearchOptions options;
+    options.max_bound = 10.24;
+    const absl::StatusOr<SearchResult> found = SearchEmbedding(model, options);
+    if (!std::isfinite(truth) || truth > options.max_bound) {
+      EXPECT_THAT(found, HasStatus(absl::StatusCode::kNotFound, _));
+      continue;
+    }
+    ++num_found;
+    ASSERT_THAT(found, IsOk());
+    EXPECT_NEAR(found->penalty, truth, 1e-12) << "seed " << seed;
+  }
+  EXPECT_GE(num_found, 4);
+}
+
+TEST(EmbeddingSearchTest, BoundsDecideWhatIsFound) {
+  const SphereGraph graph = RandomGraph(2, 10);
+  const SearchTree tree = MakeHumanSearchTree(1, 0);
+  PenaltyOptions penalties;
+  penalties.template_scale = .3;
+  const PenaltyModel model(graph, tree, 0, 1, penalties);
+  SearchOptions options;
+  options.max_bound = 10.24;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SearchResult best, SearchEmbedding(model, options));
+  const EmbeddingSearch search(model);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SearchResult again, search.Run(best.penalty * 1.001));
+  EXPECT_EQ(again.spheres, best.spheres);
+  EXPECT_THAT(search.Run(best.penalty * .999), HasStatus(absl::StatusCode::kNotFound, _));
+  options.max_states = 3;
+  EXPECT_THAT(EmbeddingSearch(model, options).Run(10),
+              HasStatus(absl::StatusCode::kResourceExhausted, _));
+}
+
+TEST(EmbeddingSearchTest, CanBeCancelled) {
+  const SphereGraph graph = RandomGraph(2, 10);
+  const SearchTree tree = MakeHumanSearchTree(1, 0);
+  const PenaltyModel model(graph, tree, 0, 1);
+  const Progress cancelled({}, [] { return true; });
+  EXPECT_TRUE(absl::IsCancelled(EmbeddingSearch(model).Run(10, cancelled).status()));
+}
+
+TEST(EmbeddingSearchTest, NoSphereMeansNotFound) {
+  const SphereGraph graph({}, std::vector<std::pair<int, int>>{});
+  const SearchTree tree = MakeHumanSearchTree(1, 0);
+  EXPECT_THAT(SearchEmbedding(PenaltyModel(graph, tree, 0, 1)),
+              HasStatus(absl::StatusCode::kNotFound, _));
+}
+
+}  // namespace
+}  // namespace pleat

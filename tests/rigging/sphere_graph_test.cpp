@@ -1,0 +1,54 @@
+#include "pleat/rigging/sphere_graph.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pleat/geometry/triangle_tree.h"
+#include "pleat/geometry/winding_number.h"
+#include "support/status_matchers.h"
+#include "support/triangle_shapes.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(SphereGraphTest, FindsShortestPaths) {
+  // A square with a short cut over node 4 and node 5 on its own.
+  std::vector<Sphere> spheres = {{{0, 0, 0}, .1}, {{3, 0, 0}, .1},     {{3, 3, 0}, .1},
+                                 {{0, 3, 0}, .1}, {{1.5, 1.5, 0}, .1}, {{9, 9, 9}, .1}};
+  const SphereGraph graph(spheres, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {4, 2}});
+  EXPECT_DOUBLE_EQ(graph.PathLength(0, 2), 2 * std::sqrt(4.5));
+  EXPECT_THAT(graph.Path(0, 2), ElementsAre(0, 4, 2));
+  EXPECT_THAT(graph.Path(2, 0), ElementsAre(2, 4, 0));
+  EXPECT_DOUBLE_EQ(graph.PathLength(1, 3), 6);
+  EXPECT_THAT(graph.Path(3, 3), ElementsAre(3));
+  EXPECT_TRUE(std::isinf(graph.PathLength(0, 5)));
+  EXPECT_THAT(graph.Path(0, 5), IsEmpty());
+}
+
+TEST(SphereGraphTest, JoinsOverlapsAndClearSightOnly) {
+  const TriangleMesh mesh = MakeBox({0, 0, 0}, {4, 1, 1});
+  const TriangleTree tree(mesh.positions, mesh.triangles);
+  const WindingNumber winding_number(tree);
+  DistanceFieldOptions options;
+  options.resolution = 64;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DistanceField field,
+                             DistanceField::Compute(tree, winding_number, options));
+  const std::vector<Sphere> spheres = {{{.5, .5, .5}, .5},
+                                       {{1.2, .5, .5}, .5},     // overlaps the first
+                                       {{2.5, .5, .5}, .3},     // sees the second
+                                       {{3.9, .95, .95}, .04},  // in a corner, sees the third
+                                       {{2, 3, .5}, .5}};       // outside
+  const SphereGraph graph(spheres, field);
+  EXPECT_THAT(graph.neighbours(0), ElementsAre(1));  // the second hides the third: not Gabriel
+  EXPECT_THAT(graph.neighbours(1), ElementsAre(0, 2));
+  EXPECT_THAT(graph.neighbours(2), ElementsAre(1, 3));
+  EXPECT_THAT(graph.neighbours(4), IsEmpty());
+}
+
+}  // namespace
+}  // namespace pleat
