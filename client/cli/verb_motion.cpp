@@ -71,9 +71,10 @@ void AddMotionVerb(CLI::App& app, Session& session) {
   verb->add_option("-o,--output", options->output, "motion file (.json)")->required();
   verb->add_option("--fps", options->fps, "frames per second, where a sequence does not say");
   verb->add_option("--scale-rotation", options->edits.scale_rotation,
-                   "JOINT=FACTOR: more or less of a joint's motion; JOINT 'all' is every joint");
+                   "JOINT=FACTOR: more or less of the motion of the bone that ends in JOINT "
+                   "(leftLowerArm is the upper arm); JOINT 'all' is every bone");
   verb->add_option("--offset-rotation", options->edits.offset_rotation,
-                   "JOINT=X,Y,Z: turns a joint further, degrees");
+                   "JOINT=X,Y,Z: turns that bone further, degrees");
   verb->add_option("--offset-root", options->edits.offset_root, "X,Y,Z: moves it, metres");
   verb->add_option("--time-scale", options->edits.time_scale, "duration times this")
       ->capture_default_str();

@@ -59,7 +59,7 @@ TEST(Local, EditedFramesDecodeToTheEvaluatorsPositions) {
   const std::string model = pleat.File("m.pleat"), motion = pleat.File("edited.json");
   ASSERT_EQ(pleat.Run({"train", input, "--local", "-o", model, "--learner", "gp"}).exit_code, 0);
   ProcessResult result = pleat.Run({"motion", model, input, "-o", motion, "--scale-rotation",
-                                    "leftUpperArm=1.3", "--offset-rotation", "head=0,30,0",
+                                    "leftLowerArm=1.3", "--offset-rotation", "head=0,30,0",
                                     "--bone-scale", "leftLowerArm=1.2", "--time-scale", "1.5"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const char* out : {"exact.pseq", "clouds", "meshes", "objs"}) {
