@@ -44,8 +44,8 @@ model=$(sed -n 's/.*"model_id": "\([0-9a-f]*\)".*/\1/p' "$out/train.json")
 
 say "a motion that is not in the input: its own, with livelier arms and a turned head"
 pleat motion "$out/character.pleat" "$input" -o "$out/edited.json" \
-  --scale-rotation leftLowerArm=1.3 --scale-rotation rightLowerArm=1.3 \
-  --offset-rotation head=0,25,0
+  --scale-rotation leftLowerArm=1.5 --scale-rotation rightLowerArm=1.5 \
+  --offset-rotation head=0,35,0
 
 say "edited frames, streamed by the server as Draco, and as .pc2"
 pleat pose "$model" --motion "$out/edited.json" -o "$out/edited_drc"
