@@ -28,7 +28,7 @@ struct Stream {
   std::string frame;
 };
 
-Stream MakeStream(FrameEncoding encoding, const TestMesh& mesh, int speed = 7) {
+Stream MakeStream(FrameEncoding encoding, const TestMesh& mesh, int speed = 5) {
   FrameEncoder encoder =
       FrameEncoder::Create(mesh.topology, mesh.positions, {.encoding = encoding, .speed = speed})
           .value();
@@ -84,7 +84,7 @@ TEST(FrameDecoderTest, CorruptedBytesStayWithinMemoryAndTime) {
   const TestMesh torus = MakeTorus(16, 12, 2);
   for (const FrameEncoding encoding :
        {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
-    for (const int speed : {0, 7, 10}) {
+    for (const int speed : {0, 5, 10}) {
       const Stream stream = MakeStream(encoding, torus, speed);
       EXPECT_TRUE(EndsWithinLimits(100, 20,
                                    [&] {

@@ -261,7 +261,7 @@ TEST(MessagesTest, StreamsComeBack) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const FrameEncoderOptions defaults, FromProto(v1::StreamOptions()));
   EXPECT_EQ(defaults.encoding, FrameEncoding::kDracoPointCloud);
   EXPECT_EQ(defaults.position_bits, 12);
-  EXPECT_EQ(defaults.speed, 7);
+  EXPECT_EQ(defaults.speed, 5);
   v1::StreamOptions bad;
   bad.set_position_bits(40);
   EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("8 to 20")));

@@ -15,7 +15,7 @@ int AddAttribute(draco::GeometryAttribute::Type type, draco::DataType data_type,
                  int num_values, draco::PointCloud* cloud) {
   draco::GeometryAttribute attribute;
   attribute.Init(type, nullptr, static_cast<uint8_t>(num_components), data_type, false,
-                 draco::DataTypeLength(data_type) * num_components, 0);
+                 int64_t{draco::DataTypeLength(data_type)} * num_components, 0);
   return cloud->AddAttribute(attribute, /*identity_mapping=*/true, num_values);
 }
 

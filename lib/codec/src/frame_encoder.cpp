@@ -103,7 +103,7 @@ absl::Status CheckOptions(const FrameEncoderOptions& options) {
 struct FrameEncoder::State {
   StreamHeader header;
   MeshMethod method = MeshMethod::kEdgebreaker;
-  int speed = 7;
+  int speed = 5;
   std::unique_ptr<draco::Mesh> mesh;         // for kDracoMesh
   std::unique_ptr<draco::PointCloud> cloud;  // for kDracoPointCloud
 
