@@ -36,7 +36,10 @@ class StreamingTest : public testing::Test {
     return false;
   }
 
-  RunningService running_{Reach::kSocket, {}, {.num_pose_threads = 2, .max_open_streams = 8}};
+  RunningService running_{
+      Reach::kSocket,
+      {},
+      {.num_pose_threads = 2, .max_receive_bytes = 4 << 20, .max_open_streams = 8}};
 };
 
 TEST_F(StreamingTest, ALiveSessionShowsEveryPose) {
@@ -190,11 +193,14 @@ TEST_F(StreamingTest, TooManyStreamsAreRefused) {
 TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
   const std::string id = running_.TrainModel();
   const auto model = running_.local().AcquireModel(id).value();
-  const ClipQuery query{
-      .model_id = id, .track = MakeMotion(model->skeleton(), 60'000), .bone_scales = {}};
-  EXPECT_THAT(running_.service().EvaluateClip(
-                  query, [](int, const EvaluatedFrame&) { return absl::OkStatus(); }),
-              HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
+  for (const auto& [num_frames, limit] :
+       {std::pair(60'000, "larger than max"), std::pair(20'001, "max-frames")}) {
+    const ClipQuery query{
+        .model_id = id, .track = MakeMotion(model->skeleton(), num_frames), .bone_scales = {}};
+    EXPECT_THAT(running_.service().EvaluateClip(
+                    query, [](int, const EvaluatedFrame&) { return absl::OkStatus(); }),
+                HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr(limit)));
+  }
 }
 
 TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {

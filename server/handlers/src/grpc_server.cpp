@@ -4,6 +4,7 @@
 #include <grpcpp/channel.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
@@ -23,6 +24,7 @@ namespace pleat {
 namespace {
 
 constexpr int kKeepaliveMs = 60'000;  // how often an idle connection is asked
+constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
 constexpr auto kDrainPoll = std::chrono::milliseconds(10);
 constexpr auto kCloseTime = std::chrono::milliseconds(100);
 constexpr int kKeepaliveTimeoutMs = 20'000;  // how long it may take to answer
@@ -76,6 +78,8 @@ class GrpcServerImpl final : public GrpcServer {
                            MakeCredentials(options));
     grpc::ServerBuilder builder;
     builder.AddListeningPort(options.listen, credentials, &port_);
+    grpc::ResourceQuota quota("pleatd");
+    builder.SetResourceQuota(quota.Resize(kMessageMemoryBytes));
     builder.SetMaxReceiveMessageSize(options.max_receive_bytes);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);

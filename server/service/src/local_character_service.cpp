@@ -250,9 +250,8 @@ absl::Status LocalCharacterService::WatchJob(const std::string& id,
     const JobSnapshot next = job->WaitForChange(snapshot.revision, kWatchWakeSeconds);
     if (next.revision == snapshot.revision) {
       if (shutting_down()) return absl::UnavailableError("the service is shutting down");
-      continue;
     }
-    snapshot = next;
+    snapshot = next;  // also without news, so that a caller who wants to stop is heard
     if (!observe(snapshot.info)) return absl::OkStatus();
   }
   return absl::OkStatus();

@@ -17,9 +17,10 @@ struct GrpcServerOptions {
   std::string listen = "127.0.0.1:0";  // HOST:PORT, unix:PATH; port 0 = any free one
   // PEM texts; both or none. With client_ca, clients must show a certificate that it signed.
   std::string tls_certificate{}, tls_key{}, tls_client_ca{};
-  int num_pose_threads = 0;         // 0 = one per core
-  int num_storage_threads = 4;      // disk, catalogue, checking uploads
-  int max_receive_bytes = 4 << 20;  // of one message
+  int num_pose_threads = 0;     // 0 = one per core
+  int num_storage_threads = 4;  // disk, catalogue, checking uploads
+  // Of one message; 20,000 poses of 18 joints are 14 MB. All that are under way share 1 GiB.
+  int max_receive_bytes = 16 << 20;
   int max_streams_per_connection = 128;
   int max_open_streams = 256;  // uploads, watches, clips, live sessions, downloads
 };
