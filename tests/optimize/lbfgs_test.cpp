@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "pleat/optimize/scg.h"
-#include "test_objectives.h"
 #include "support/status_matchers.h"
+#include "test_objectives.h"
 
 namespace pleat {
 namespace {

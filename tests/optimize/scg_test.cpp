@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "test_objectives.h"
 #include "support/status_matchers.h"
+#include "test_objectives.h"
 
 namespace pleat {
 namespace {

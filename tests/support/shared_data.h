@@ -1,12 +1,12 @@
 // The optional folder of real captured sequences. Tests that use it skip where it is absent.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
-
-#include <gtest/gtest.h>
 
 namespace pleat {
 
@@ -23,8 +23,9 @@ inline std::optional<std::string> FindSharedData(const std::string& relative) {
 }  // namespace pleat
 
 // Declares `variable` as the path of a captured file or skips the test with a clear word.
-#define PLEAT_SHARED_DATA_OR_SKIP(variable, relative)                                       \
-  const std::optional<std::string> variable##_found = ::pleat::FindSharedData(relative);    \
-  if (!variable##_found) GTEST_SKIP() << "captured sequence " << (relative)                 \
-                                      << " is not on this machine (PLEAT_SHARED_DATA)";     \
+#define PLEAT_SHARED_DATA_OR_SKIP(variable, relative)                                    \
+  const std::optional<std::string> variable##_found = ::pleat::FindSharedData(relative); \
+  if (!variable##_found)                                                                 \
+    GTEST_SKIP() << "captured sequence " << (relative)                                   \
+                 << " is not on this machine (PLEAT_SHARED_DATA)";                       \
   const std::string variable = *variable##_found

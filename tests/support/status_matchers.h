@@ -1,10 +1,10 @@
 // Matchers for absl::Status and absl::StatusOr.
 #pragma once
 
-#include <string>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -36,8 +36,8 @@ MATCHER(IsOk, "is OK") {
 #define PLEAT_TEST_CONCAT_INNER(a, b) a##b
 #define PLEAT_TEST_CONCAT(a, b) PLEAT_TEST_CONCAT_INNER(a, b)
 // PLEAT_ASSERT_OK_AND_ASSIGN(auto mesh, ReadMesh(path));
-#define PLEAT_ASSERT_OK_AND_ASSIGN(declaration, expression)                       \
-  auto PLEAT_TEST_CONCAT(result_, __LINE__) = (expression);                       \
-  ASSERT_TRUE(PLEAT_TEST_CONCAT(result_, __LINE__).ok())                          \
-      << PLEAT_TEST_CONCAT(result_, __LINE__).status();                           \
+#define PLEAT_ASSERT_OK_AND_ASSIGN(declaration, expression) \
+  auto PLEAT_TEST_CONCAT(result_, __LINE__) = (expression); \
+  ASSERT_TRUE(PLEAT_TEST_CONCAT(result_, __LINE__).ok())    \
+      << PLEAT_TEST_CONCAT(result_, __LINE__).status();     \
   declaration = std::move(PLEAT_TEST_CONCAT(result_, __LINE__)).value()

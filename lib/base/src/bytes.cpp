@@ -5,7 +5,8 @@
 
 namespace pleat {
 
-absl::Status ByteReader::Require(uint64_t count, uint64_t item_bytes, absl::string_view what) const {
+absl::Status ByteReader::Require(uint64_t count, uint64_t item_bytes,
+                                 absl::string_view what) const {
   if (item_bytes == 0 || count <= remaining() / item_bytes) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat(
       "truncated at byte ", offset_, ": ", what, " needs ", count, " items of ", item_bytes,

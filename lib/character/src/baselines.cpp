@@ -12,8 +12,8 @@ absl::StatusOr<std::map<std::string, DetailPredictor>> TrainBaselines(const Lear
   baselines["zero"] = [num_outputs = data.details.cols()](const Eigen::VectorXd&) {
     return Eigen::VectorXd(Eigen::VectorXd::Zero(num_outputs));
   };
-  const Eigen::VectorXd mean = data.details.colwise().mean().transpose();
-  baselines["mean"] = [mean](const Eigen::VectorXd&) { return mean; };
+  baselines["mean"] = [mean = Eigen::VectorXd(data.details.colwise().mean().transpose())](
+                          const Eigen::VectorXd&) { return Eigen::VectorXd(mean); };
   baselines["nearest"] = [&data](const Eigen::VectorXd& features) {
     const int row = NearestRows(data.features, features.transpose()).front();
     return Eigen::VectorXd(data.details.row(row).transpose());

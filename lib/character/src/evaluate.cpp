@@ -50,7 +50,7 @@ absl::StatusOr<ErrorSummary> MeasureFrames(
   return errors.Summarize();
 }
 
-absl::StatusOr<ErrorSummary> MeasureModel(std::shared_ptr<const CharacterModel> model,
+absl::StatusOr<ErrorSummary> MeasureModel(const std::shared_ptr<const CharacterModel>& model,
                                           const TestSide& test, double diagonal_m,
                                           bool skinned_only, const Progress& progress) {
   PoseEvaluator evaluator(model);
@@ -140,6 +140,42 @@ absl::Status CheckTestSequence(const MeshSequence& sequence,
   return absl::OkStatus();
 }
 
+using ModelsByLearner = std::map<std::string, std::shared_ptr<const CharacterModel>>;
+
+absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const LearningData& data,
+                                            const std::vector<std::string>& learners,
+                                            const TrainOptions& options, const Progress& progress) {
+  ModelsByLearner models;
+  for (size_t i = 0; i < learners.size(); ++i) {
+    const double begin = static_cast<double>(i) / static_cast<double>(learners.size());
+    const double end = static_cast<double>(i + 1) / static_cast<double>(learners.size());
+    PLEAT_ASSIGN_OR_RETURN(
+        const std::shared_ptr<const DetailModel> detail_model,
+        LearnDetails(data, learners[i], options, progress.Stage("learn", begin, end)));
+    PLEAT_ASSIGN_OR_RETURN(models[learners[i]],
+                           AssembleModel(rigged, data, options, learners[i], detail_model, {}));
+  }
+  return models;
+}
+
+// Fills the report's skinned, learners and baselines.
+absl::Status MeasureAll(const ModelsByLearner& models,
+                        const std::map<std::string, DetailPredictor>& baselines,
+                        const TestSide& test, const Progress& progress, EvaluateReport* report) {
+  const std::shared_ptr<const CharacterModel>& any_model = models.begin()->second;
+  PLEAT_ASSIGN_OR_RETURN(report->skinned,
+                         MeasureModel(any_model, test, report->diagonal_m, true, progress));
+  for (const auto& [name, model] : models) {
+    PLEAT_ASSIGN_OR_RETURN(report->learners[name],
+                           MeasureModel(model, test, report->diagonal_m, false, progress));
+  }
+  for (const auto& [name, predictor] : baselines) {
+    PLEAT_ASSIGN_OR_RETURN(report->baselines[name], MeasureBaseline(predictor, *any_model, test,
+                                                                    report->diagonal_m, progress));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
@@ -178,33 +214,13 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
   PLEAT_ASSIGN_OR_RETURN(report.learner,
                          ChooseLearner(data, options.train, report.diagonal_m, nullptr,
                                        progress.Stage("validate", .4, .5)));
-  std::map<std::string, std::shared_ptr<const CharacterModel>> models;
-  const Progress learning = progress.Stage("learn", .5, .7);
-  const std::vector<std::string> learners = LearnersToMeasure(options, report.learner);
-  for (size_t i = 0; i < learners.size(); ++i) {
-    const double begin = static_cast<double>(i) / learners.size();
-    PLEAT_ASSIGN_OR_RETURN(
-        const std::shared_ptr<const DetailModel> detail_model,
-        LearnDetails(data, learners[i], options.train,
-                     learning.Stage("learn", begin, begin + 1.0 / learners.size())));
-    PLEAT_ASSIGN_OR_RETURN(models[learners[i]], AssembleModel(rigged, data, options.train,
-                                                              learners[i], detail_model, {}));
-  }
+  PLEAT_ASSIGN_OR_RETURN(const ModelsByLearner models,
+                         LearnModels(rigged, data, LearnersToMeasure(options, report.learner),
+                                     options.train, progress.Stage("learn", .5, .7)));
   PLEAT_ASSIGN_OR_RETURN(const auto baselines, TrainBaselines(data));
   report.seconds["learn"] = timer.Lap();
-
-  const Progress predicting = progress.Stage("predict", .7, 1);
-  const CharacterModel& any_model = *models.begin()->second;
-  PLEAT_ASSIGN_OR_RETURN(report.skinned, MeasureModel(models.begin()->second, test,
-                                                      report.diagonal_m, true, predicting));
-  for (const auto& [name, model] : models) {
-    PLEAT_ASSIGN_OR_RETURN(report.learners[name],
-                           MeasureModel(model, test, report.diagonal_m, false, predicting));
-  }
-  for (const auto& [name, predictor] : baselines) {
-    PLEAT_ASSIGN_OR_RETURN(report.baselines[name], MeasureBaseline(predictor, any_model, test,
-                                                                   report.diagonal_m, predicting));
-  }
+  PLEAT_RETURN_IF_ERROR(
+      MeasureAll(models, baselines, test, progress.Stage("predict", .7, 1), &report));
   report.hybrid = report.learners[report.learner];
   report.seconds["predict"] = timer.Lap();
   report.num_train_frames = frames.sequence.num_frames();

@@ -18,7 +18,7 @@ inline Register FusedMultiplyAdd(Register a, Register b, Register c) {
 }  // namespace pleat
 
 #define PLEAT_DENSE_NAMESPACE dense_avx512
-#include "dense_body.h"
+#include "dense_body.inc"
 
 namespace pleat {
 const DenseOps* Avx512DenseOps() { return &dense_avx512::kOps; }

@@ -13,7 +13,7 @@ inline Register FusedMultiplyAdd(Register a, Register b, Register c) { return a 
 }  // namespace pleat
 
 #define PLEAT_DENSE_NAMESPACE dense_baseline
-#include "dense_body.h"
+#include "dense_body.inc"
 
 namespace pleat {
 const DenseOps* BaselineDenseOps() { return &dense_baseline::kOps; }

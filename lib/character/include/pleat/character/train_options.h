@@ -21,7 +21,7 @@ struct TrainOptions {
   std::string upsampling = "refined";  // control -> all: "rbf" (paper), "refined" on the input
   int rest_frame = -1;                 // frame to rig, -1 = found automatically
   double yaw_degrees = -1;             // facing of the character about +y from +z, -1 = automatic
-  double bend_stiffness = 0.003;       // pose fit: pull of a bone to its parent, 0..1
+  double bend_stiffness = 0.0001;      // pose fit: pull of a bone to its parent, 0..1
   int latent_dimensions = 12;          // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
   int iterations = 100;                // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
   double dynamics_weight = 1;          // lambda on the GPDM term, 0..1e6 (paper: 1)

@@ -24,7 +24,7 @@ struct PerformerOptions {
   PerformerStyle style = PerformerStyle::kDance;
   int num_frames = 200;     // 1 .. 100000
   int num_vertices = 6000;  // wanted, 500 .. 100000; the mesh comes within about 5 % of it
-  FrameRate frame_rate;     // 5 .. 240 frames per second
+  FrameRate frame_rate{};   // 5 .. 240 frames per second
   double height_m = 1.7;    // 0.1 .. 10
   double yaw_degrees = 0;   // facing in frame 0: 0 = +z, 90 = +x
 };

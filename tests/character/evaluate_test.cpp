@@ -1,0 +1,94 @@
+#include "pleat/character/evaluate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/status_matchers.h"
+#include "trained_performer.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Key;
+using ::testing::UnorderedElementsAre;
+
+EvaluateOptions Options(EvaluationProtocol protocol) {
+  EvaluateOptions options;
+  options.protocol = protocol;
+  options.train = FastTrainOptions();
+  return options;
+}
+
+TEST(EvaluateTest, HeldOutFramesAreBetterThanSkinningAndTheMean) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
+                             EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
+                                               Options(EvaluationProtocol::kEvery5th)));
+  EXPECT_EQ(report.num_test_frames, 12);
+  EXPECT_EQ(report.num_train_frames, 48);
+  EXPECT_LT(report.hybrid.mean_percent, 0.5 * report.skinned.mean_percent);
+  EXPECT_LT(report.hybrid.mean_percent, report.baselines.at("mean").mean_percent);
+  EXPECT_THAT(report.baselines,
+              UnorderedElementsAre(Key("zero"), Key("mean"), Key("nearest"), Key("ridge")));
+  EXPECT_THAT(report.learners, UnorderedElementsAre(Key("gp"), Key("sgplvm")));
+  EXPECT_EQ(report.hybrid.mean_percent, report.learners.at("gp").mean_percent);
+  EXPECT_NEAR(report.baselines.at("zero").mean_percent, report.skinned.mean_percent, 1e-4);
+  EXPECT_EQ(report.hybrid.frame_mean_percent.size(), 12u);
+}
+
+TEST(EvaluateTest, ReconstructionIsNearZeroForEveryLearner) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
+                             EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
+                                               Options(EvaluationProtocol::kReconstruct)));
+  for (const auto& [name, errors] : report.learners) {
+    EXPECT_LT(errors.mean_percent, 0.15 * report.skinned.mean_percent) << name;
+  }
+  EXPECT_LT(report.baselines.at("nearest").mean_percent, 1e-3);
+}
+
+TEST(EvaluateTest, NothingThatIsLearntSeesTheTestFrames) {
+  // Shifting the test meshes as a whole moves their poses, not the details: were anything learnt
+  // from test frames, rig or mean detail or learner would change with them.
+  const MeshSequence& sequence = SmallPerformer().sequence;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const FrameSplit split,
+                             SplitFrames(EvaluationProtocol::kLast30, sequence.num_frames()));
+  std::vector<Eigen::Matrix3Xf> frames;
+  for (int t = 0; t < sequence.num_frames(); ++t) frames.push_back(sequence.frame(t));
+  for (const int t : split.test) frames[t].colwise() += Eigen::Vector3f(0.5f, 0, 0.25f);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence shifted,
+                             MeshSequence::Create(sequence.topology(), std::move(frames)));
+  const EvaluateOptions options = Options(EvaluationProtocol::kLast30);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport plain,
+                             EvaluateCharacter(sequence, std::nullopt, options));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport moved,
+                             EvaluateCharacter(shifted, std::nullopt, options));
+  EXPECT_NEAR(moved.skinned.mean_percent, plain.skinned.mean_percent, 1e-3);
+  EXPECT_NEAR(moved.hybrid.mean_percent, plain.hybrid.mean_percent, 1e-2);
+  EXPECT_NEAR(moved.baselines.at("mean").mean_percent, plain.baselines.at("mean").mean_percent,
+              1e-3);
+}
+
+TEST(EvaluateTest, CrossNeedsASecondClipOfTheSameMesh) {
+  EXPECT_THAT(EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
+                                Options(EvaluationProtocol::kCross)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("second clip")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Performer other,
+      GeneratePerformer({.character_seed = 2, .num_frames = 5, .num_vertices = 900}));
+  EXPECT_THAT(EvaluateCharacter(SmallPerformer().sequence, other.sequence,
+                                Options(EvaluationProtocol::kCross)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("connectivity")));
+}
+
+TEST(EvaluateTest, CrossTestsEveryFrameOfTheSecondClip) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Performer other,
+                             GeneratePerformer({.seed = 9, .num_frames = 25, .num_vertices = 900}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
+                             EvaluateCharacter(SmallPerformer().sequence, other.sequence,
+                                               Options(EvaluationProtocol::kCross)));
+  EXPECT_EQ(report.num_test_frames, 25);
+  EXPECT_LT(report.hybrid.mean_percent, report.skinned.mean_percent);
+}
+
+}  // namespace
+}  // namespace pleat

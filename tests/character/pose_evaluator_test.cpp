@@ -1,0 +1,200 @@
+#include "pleat/character/pose_evaluator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+#include "pleat/character/fit_motion.h"
+#include "pleat/skeleton/human_template.h"
+#include "support/status_matchers.h"
+#include "trained_performer.h"
+
+namespace {
+
+thread_local bool counting = false;
+thread_local int num_allocations = 0;
+
+void* Allocate(std::size_t size) {
+  if (counting) ++num_allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return Allocate(size); }
+void* operator new[](std::size_t size) { return Allocate(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+const PoseTrack& TrainingTrack() {
+  static const PoseTrack track = FitMotion(*SmallCharacter(), SmallPerformer().sequence).value();
+  return track;
+}
+
+double BoneLength(const CharacterModel& model, const Pose& pose, const std::vector<double>& scales,
+                  int joint) {
+  BoneTransforms transforms;
+  ComputeBoneTransforms(model.skeleton(), pose, scales, &transforms);
+  return (transforms.joint_positions.col(joint) -
+          transforms.joint_positions.col(model.skeleton().parent(joint)))
+      .norm();
+}
+
+TEST(PoseEvaluatorTest, TrainingPosesGiveTheTrainingFrames) {
+  PoseEvaluator evaluator(SmallCharacter());
+  double worst_mean_m = 0, lowest_confidence = 1;
+  ASSERT_THAT(evaluator.EvaluateClip(TrainingTrack(), {},
+                                     [&](int t, const EvaluatedFrame& frame) {
+                                       const Eigen::Matrix3Xf difference =
+                                           frame.positions - SmallPerformer().sequence.frame(t);
+                                       worst_mean_m = std::max<double>(
+                                           worst_mean_m, difference.colwise().norm().mean());
+                                       lowest_confidence =
+                                           std::min(lowest_confidence, frame.confidence);
+                                       return absl::OkStatus();
+                                     }),
+              IsOk());
+  EXPECT_LT(worst_mean_m, 0.003);
+  EXPECT_GT(lowest_confidence, 0.8);
+}
+
+TEST(PoseEvaluatorTest, ConfidenceFallsFarFromTraining) {
+  PoseEvaluator evaluator(SmallCharacter());
+  Pose strange = TrainingTrack().poses[10];
+  for (int j = 1; j < kNumHumanJoints; ++j) {
+    strange.rotations[j] = Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitX());
+  }
+  EvaluatedFrame seen, unseen;
+  ASSERT_THAT(
+      evaluator.Evaluate({&TrainingTrack().poses[10], &TrainingTrack().poses[9]}, {}, &seen),
+      IsOk());
+  ASSERT_THAT(evaluator.Evaluate({&strange}, {}, &unseen), IsOk());
+  EXPECT_GT(seen.confidence, 0.8);
+  EXPECT_LT(unseen.confidence, 0.3);
+  EXPECT_TRUE(unseen.positions.allFinite());
+}
+
+TEST(PoseEvaluatorTest, FollowsARigidMotionOfTheWholePose) {
+  PoseEvaluator evaluator(SmallCharacter());
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitY()));
+  const Eigen::Vector3d shift(3, 0, -2);
+  const auto moved = [&](Pose pose) {
+    pose.root_position = turn * pose.root_position + shift;
+    pose.rotations[0] = turn * pose.rotations[0];
+    return pose;
+  };
+  const Pose now = TrainingTrack().poses[20], before = TrainingTrack().poses[19];
+  const Pose now_moved = moved(now), before_moved = moved(before);
+  EvaluatedFrame frame, frame_moved;
+  ASSERT_THAT(evaluator.Evaluate({&now, &before}, {}, &frame), IsOk());
+  ASSERT_THAT(evaluator.Evaluate({&now_moved, &before_moved}, {}, &frame_moved), IsOk());
+  const Eigen::Matrix3Xf expected =
+      (turn.cast<float>().toRotationMatrix() * frame.positions).colwise() + shift.cast<float>();
+  EXPECT_LT((frame_moved.positions - expected).cwiseAbs().maxCoeff(), 1e-4f);
+}
+
+TEST(PoseEvaluatorTest, DoublingTheFrameRateKeepsTheFrames) {
+  // The same motion at twice the rate: history is taken at the model's own interval.
+  PoseTrack fast;
+  fast.fps = 2 * TrainingTrack().fps;
+  for (int t = 0; t + 1 < TrainingTrack().num_frames(); ++t) {
+    fast.poses.push_back(TrainingTrack().poses[t]);
+    Pose middle = TrainingTrack().poses[t];
+    const Pose& next = TrainingTrack().poses[t + 1];
+    middle.root_position = (middle.root_position + next.root_position) / 2;
+    for (int j = 0; j < kNumHumanJoints; ++j) {
+      middle.rotations[j] = middle.rotations[j].slerp(0.5, next.rotations[j]);
+    }
+    fast.poses.push_back(middle);
+  }
+  PoseEvaluator evaluator(SmallCharacter());
+  std::vector<Eigen::Matrix3Xf> slow_frames;
+  ASSERT_THAT(evaluator.EvaluateClip(TrainingTrack(), {},
+                                     [&](int, const EvaluatedFrame& frame) {
+                                       slow_frames.push_back(frame.positions);
+                                       return absl::OkStatus();
+                                     }),
+              IsOk());
+  float worst = 0;
+  ASSERT_THAT(evaluator.EvaluateClip(
+                  fast, {},
+                  [&](int t, const EvaluatedFrame& frame) {
+                    if (t >= 2 && t % 2 == 0) {
+                      worst = std::max(
+                          worst, (frame.positions - slow_frames[t / 2]).cwiseAbs().maxCoeff());
+                    }
+                    return absl::OkStatus();
+                  }),
+              IsOk());
+  EXPECT_LT(worst, 1e-4f);
+}
+
+TEST(PoseEvaluatorTest, BoneScalesGiveNewProportions) {
+  std::vector<double> scales(kNumHumanJoints, 1.0);
+  scales[kLeftLowerLeg] = 1.5;
+  const Pose& pose = TrainingTrack().poses[0];
+  EXPECT_NEAR(BoneLength(*SmallCharacter(), pose, scales, kLeftLowerLeg),
+              1.5 * BoneLength(*SmallCharacter(), pose, {}, kLeftLowerLeg), 1e-9);
+  PoseEvaluator evaluator(SmallCharacter());
+  EvaluatedFrame plain, scaled;
+  ASSERT_THAT(evaluator.Evaluate({&pose}, {}, &plain), IsOk());
+  ASSERT_THAT(evaluator.Evaluate({&pose}, scales, &scaled), IsOk());
+  // The left foot hangs lower by half a thigh, the head stays.
+  EXPECT_LT(scaled.positions.row(1).minCoeff(), plain.positions.row(1).minCoeff() - 0.1f);
+  EXPECT_NEAR(scaled.positions.row(1).maxCoeff(), plain.positions.row(1).maxCoeff(), 1e-5);
+}
+
+TEST(PoseEvaluatorTest, DoesNotAllocateAfterTheFirstFrame) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer replaces the allocator";
+#endif
+  PoseEvaluator evaluator(SmallCharacter());
+  EvaluatedFrame frame;
+  const std::vector<double> scales(kNumHumanJoints, 1.1);
+  const std::vector<const Pose*> poses = {&TrainingTrack().poses[5], &TrainingTrack().poses[4]};
+  ASSERT_THAT(evaluator.Evaluate(poses, scales, &frame), IsOk());
+  num_allocations = 0;
+  counting = true;
+  const absl::Status status = evaluator.Evaluate(poses, scales, &frame);
+  counting = false;
+  EXPECT_THAT(status, IsOk());
+  EXPECT_EQ(num_allocations, 0);
+}
+
+TEST(PoseEvaluatorTest, BadPosesAreRefusedWithWords) {
+  PoseEvaluator evaluator(SmallCharacter());
+  EvaluatedFrame frame;
+  Pose pose = TrainingTrack().poses[0];
+  const auto expect_refused = [&](const Pose& bad, const std::vector<double>& scales,
+                                  const char* word) {
+    EXPECT_THAT(evaluator.Evaluate({&bad}, scales, &frame),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(word)));
+  };
+  Pose few = pose;
+  few.rotations.pop_back();
+  expect_refused(few, {}, "17 rotations");
+  Pose not_finite = pose;
+  not_finite.root_position.x() = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(not_finite, {}, "root position");
+  Pose zero = pose;
+  zero.rotations[3].coeffs().setZero();
+  expect_refused(zero, {}, "joint 3");
+  expect_refused(pose, {1, 2}, "bone scales");
+  expect_refused(pose, std::vector<double>(kNumHumanJoints, 1e6), "bone scale");
+  EXPECT_THAT(evaluator.Evaluate({}, {}, &frame),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("at least one pose")));
+}
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,106 @@
+#include "pleat/character/train_character.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "pleat/formats/model_file.h"
+#include "pleat/skeleton/human_template.h"
+#include "support/status_matchers.h"
+#include "trained_performer.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(TrainCharacterTest, DetailTakesMostOfWhatSkinningLeaves) {
+  const TrainingRecord& record = SmallCharacter()->record();
+  EXPECT_GT(record.fit.mean_percent, 0.2);  // the skirt swings: skinning cannot follow
+  EXPECT_LT(record.reconstruction.mean_percent, 0.15 * record.fit.mean_percent);
+  EXPECT_LE(record.reconstruction.mean_percent, record.reconstruction.rms_percent);
+  EXPECT_LE(record.reconstruction.p95_percent, record.reconstruction.max_percent);
+  EXPECT_EQ(record.num_frames, 60);
+  EXPECT_EQ(record.learner, "gp");
+}
+
+TEST(TrainCharacterTest, FindsTheJointsOfTheTruth) {
+  const Skeleton& found = SmallCharacter()->skeleton();
+  const Skeleton& truth = SmallPerformer().truth.rig.skeleton;
+  double sum_m = 0;
+  for (int j = 0; j < kNumHumanJoints; ++j) {
+    EXPECT_EQ(found.joint(j).name, truth.joint(j).name);
+    sum_m += (found.rest_position(j) - truth.rest_position(j)).norm();
+  }
+  EXPECT_LT(sum_m / kNumHumanJoints, 0.05 * 1.7);  // of the body height
+  // The performer faces +z, so its left is +x.
+  EXPECT_GT(found.rest_position(kLeftHand).x(), found.rest_position(kRightHand).x());
+}
+
+TEST(TrainCharacterTest, SameBytesForAnyThreadCount) {
+  TrainOptions options = FastTrainOptions();
+  options.resolution_percent = 10;
+  options.learner = "auto";
+  std::string first;
+  for (const int num_threads : {1, 2, 7}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const auto model,
+        TrainCharacter({SmallPerformer().sequence}, options, {.num_threads = num_threads}));
+    const std::string bytes = EncodeModel(*model);
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << num_threads << " threads give another model";
+  }
+}
+
+TEST(TrainCharacterTest, PaperPresetTrainsOnTheControlMesh) {
+  TrainSummary summary;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, TrainCharacter({SmallPerformer().sequence},
+                                                              TrainOptions::Paper(), {}, &summary));
+  EXPECT_EQ(summary.num_control_vertices,
+            static_cast<int>(std::lround(0.05 * model->num_vertices())));
+  EXPECT_EQ(model->record().learner, "sgplvm");
+  EXPECT_LT(model->record().reconstruction.mean_percent, model->record().fit.mean_percent);
+}
+
+TEST(TrainCharacterTest, SeveralClipsShareOneCharacter) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Performer other,
+                             GeneratePerformer({.seed = 5, .num_frames = 30, .num_vertices = 900}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const auto model,
+      TrainCharacter({SmallPerformer().sequence, other.sequence}, FastTrainOptions()));
+  EXPECT_EQ(model->record().num_frames, 90);
+  EXPECT_LT(model->record().reconstruction.mean_percent, 0.3 * model->record().fit.mean_percent);
+}
+
+TEST(TrainCharacterTest, ClipsOfAnotherMeshAreNamed) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Performer other,
+      GeneratePerformer({.character_seed = 2, .num_frames = 5, .num_vertices = 900}));
+  EXPECT_THAT(TrainCharacter({SmallPerformer().sequence, other.sequence}, FastTrainOptions()),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("first clip")));
+}
+
+TEST(TrainCharacterTest, BadOptionsAreRefusedBeforeAnyWork) {
+  EXPECT_THAT(TrainCharacter({SmallPerformer().sequence}, {.learner = "oracle"}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("oracle")));
+  EXPECT_THAT(TrainCharacter({SmallPerformer().sequence}, {.rest_frame = 60}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rest_frame")));
+  EXPECT_THAT(TrainCharacter({}, {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("clip")));
+}
+
+TEST(TrainCharacterTest, CancelsInEveryStage) {
+  for (const double stop_at : {0.0, 0.3, 0.6, 0.9}) {
+    std::atomic<double> reached{0};
+    const Progress progress([&](const ProgressUpdate& update) { reached = update.fraction; },
+                            [&] { return reached >= stop_at; });
+    EXPECT_THAT(TrainCharacter({SmallPerformer().sequence}, {}, {}, nullptr, progress),
+                HasStatus(absl::StatusCode::kCancelled, HasSubstr("")))
+        << "stop at " << stop_at;
+  }
+}
+
+}  // namespace
+}  // namespace pleat
