@@ -81,7 +81,8 @@ class RbfUpsampler {
   const Matrix& matrix() const { return matrix_; }  // V x C, compressed
 
  private:
-  explicit RbfUpsampler(Matrix matrix) : matrix_(std::move(matrix)) {}
+  // Swapped in: Eigen 3.4 cannot move a sparse matrix.
+  explicit RbfUpsampler(Matrix matrix) { matrix_.swap(matrix); }
   Matrix matrix_;
 };
 

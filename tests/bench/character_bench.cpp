@@ -1,0 +1,73 @@
+// Training and one query of a generated performer: what docs/performance.md quotes.
+#include <benchmark/benchmark.h>
+
+#include "pleat/character/fit_motion.h"
+#include "pleat/character/pose_evaluator.h"
+#include "pleat/performer/performer.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kNumFrames = 175;  // as the captured sequences
+constexpr int kNumVertices = 10000;
+
+const Performer& BenchPerformer() {
+  static const Performer performer = [] {
+    PerformerOptions options;
+    options.num_frames = kNumFrames;
+    options.num_vertices = kNumVertices;
+    return GeneratePerformer(options).value();
+  }();
+  return performer;
+}
+
+TrainOptions Learner(const std::string& learner) {
+  TrainOptions options;
+  options.learner = learner;
+  return options;
+}
+
+std::shared_ptr<const CharacterModel> BenchCharacter(const std::string& learner) {
+  return TrainCharacter({BenchPerformer().sequence}, Learner(learner)).value();
+}
+
+void TrainPerformer(benchmark::State& state, const std::string& learner) {
+  BenchPerformer();
+  for (auto _ : state) benchmark::DoNotOptimize(BenchCharacter(learner));
+}
+BENCHMARK_CAPTURE(TrainPerformer, gp, "gp")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(TrainPerformer, sgplvm, "sgplvm")->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// Pose with one predecessor -> full mesh of 10,000 vertices.
+void EvaluatePose(benchmark::State& state, const std::string& learner) {
+  const std::shared_ptr<const CharacterModel> model = BenchCharacter(learner);
+  const PoseTrack track = FitMotion(*model, BenchPerformer().sequence).value();
+  PoseEvaluator evaluator(model);
+  EvaluatedFrame frame;
+  int t = 1;
+  for (auto _ : state) {
+    const absl::Status status =
+        evaluator.Evaluate({&track.poses[t], &track.poses[t - 1]}, {}, &frame);
+    if (!status.ok()) state.SkipWithError(status.ToString().c_str());
+    t = t + 1 < track.num_frames() ? t + 1 : 1;
+  }
+  state.counters["components"] = static_cast<double>(model->full_basis().cols());
+  state.counters["model_MB"] = static_cast<double>(model->memory_bytes()) / 1e6;
+}
+BENCHMARK_CAPTURE(EvaluatePose, gp, "gp")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(EvaluatePose, sgplvm, "sgplvm")->Unit(benchmark::kMicrosecond);
+
+void SkinPose(benchmark::State& state) {
+  const std::shared_ptr<const CharacterModel> model = BenchCharacter("gp");
+  PoseEvaluator evaluator(model);
+  EvaluatedFrame frame;
+  const Pose pose = Pose::Rest(model->skeleton());
+  for (auto _ : state) {
+    const absl::Status status = evaluator.EvaluateSkinned(pose, {}, &frame);
+    if (!status.ok()) state.SkipWithError(status.ToString().c_str());
+  }
+}
+BENCHMARK(SkinPose)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace pleat

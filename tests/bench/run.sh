@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# Every number of docs/performance.md: ./dev bench [FOLDER OF CAPTURED SEQUENCES]
+# The benchmarks run on generated data. The evaluations run on samba, crane and skirt where they are
+# (argument, PLEAT_SHARED_DATA, or ../shared/data), else on a generated performer.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+data=${1:-${PLEAT_SHARED_DATA:-../shared/data}}
+pleat=build/bin/pleat
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
+for bench in gp character codec server; do
+  echo "== ${bench}_bench"
+  "build/bin/${bench}_bench" --benchmark_min_time=0.2 2>/dev/null
+done
+
+inputs=()
+for name in samba crane; do
+  [ -f "$data/$name.pc2" ] && inputs+=("$data/$name.pc2")
+done
+if [ ${#inputs[@]} -eq 0 ]; then
+  echo "captured sequences are not on this machine: evaluating a generated performer"
+  "$pleat" generate performer -o "$out/performer" --frames 175 --vertices 10000 --quiet
+  inputs=("$out/performer/performer.pc2")
+fi
+
+for input in "${inputs[@]}"; do
+  echo "== train $input"
+  "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --report "$out/train.json"
+  python3 tests/bench/summarize.py "$out/train.json"
+  for protocol in reconstruct every5th blocks10 last30; do
+    for variant in "--resolution 100" "--resolution 5" "--resolution 5 --upsampling rbf" "--preset paper"; do
+      # shellcheck disable=SC2086  # a variant is several words
+      "$pleat" evaluate "$input" --protocol $protocol $variant --quiet --report "$out/e.json" >/dev/null
+      python3 tests/bench/summarize.py "$out/e.json" "$protocol $variant"
+    done
+  done
+done
+
+if [ -f "$data/skirt/walk_a.pc2" ]; then
+  "$pleat" evaluate "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2" \
+    --quiet --report "$out/e.json" >/dev/null
+  python3 tests/bench/summarize.py "$out/e.json" "skirt walk_a -> walk_b"
+fi
