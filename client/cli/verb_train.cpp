@@ -83,8 +83,8 @@ absl::StatusOr<TrainedModel> TrainOnService(CharacterService& service, const Job
 
 // The steps of training that a report names; a learner's own stages count as "learn".
 std::map<std::string, double> StepSeconds(const std::map<std::string, double>& stage_seconds) {
-  static const std::set<std::string> steps = {"queued", "read",    "rig",  "fit",
-                                              "detail", "measure", "store"};
+  static const std::set<std::string> steps = {"queued", "read",   "rig",     "fit",
+                                              "refine", "detail", "measure", "store"};
   std::map<std::string, double> seconds = {{"rig", 0}, {"fit", 0}, {"learn", 0}};
   for (const auto& [stage, value] : stage_seconds) {
     seconds[steps.count(stage) > 0 ? stage : "learn"] += value;

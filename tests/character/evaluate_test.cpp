@@ -83,9 +83,12 @@ TEST(EvaluateTest, CrossNeedsASecondClipOfTheSameMesh) {
 TEST(EvaluateTest, CrossTestsEveryFrameOfTheSecondClip) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Performer other,
                              GeneratePerformer({.seed = 9, .num_frames = 25, .num_vertices = 900}));
+  // With the first rig; so little is left by a refined one that 60 frames of another motion do not
+  // teach it.
+  EvaluateOptions options = Options(EvaluationProtocol::kCross);
+  options.train.refine = "none";
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
-                             EvaluateCharacter(SmallPerformer().sequence, other.sequence,
-                                               Options(EvaluationProtocol::kCross)));
+                             EvaluateCharacter(SmallPerformer().sequence, other.sequence, options));
   EXPECT_EQ(report.num_test_frames, 25);
   EXPECT_LT(report.hybrid.mean_percent, report.skinned.mean_percent);
 }

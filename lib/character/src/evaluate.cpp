@@ -192,14 +192,13 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
   LapTimer timer(options.clock_seconds);
 
   PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, TrainingSide(sequence, split.train));
-  PLEAT_ASSIGN_OR_RETURN(
-      const RiggedFrames rigged,
-      RigFrames(frames, options.train, options.resources, progress.Stage("rig", 0, .15)));
+  PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged, RigFrames(frames, options.train, options.resources,
+                                                        progress.Stage("rig", 0, .15)));
   report.seconds["rig"] = timer.Lap();
 
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack train_track,
-                         FitFrames(frames.sequence, frames.clip_starts, rigged.rig, options.train,
-                                   options.resources, progress.Stage("fit", .15, .25)));
+                         FitTrainingFrames(options.train, options.resources, &rigged,
+                                           progress.Stage("fit", .15, .25)));
   TestSide test{test_sequence ? *test_sequence : sequence, {}, std::move(split.test)};
   PLEAT_ASSIGN_OR_RETURN(test.track, FitFrames(test.sequence, {0}, rigged.rig, options.train,
                                                options.resources, progress.Stage("fit", .25, .35)));

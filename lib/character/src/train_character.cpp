@@ -50,11 +50,10 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
   TrainingRecord record;
   record.diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
 
-  PLEAT_ASSIGN_OR_RETURN(const RiggedFrames rigged,
+  PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged,
                          RigFrames(frames, options, resources, progress.Stage("rig", 0, .25)));
-  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track,
-                         FitFrames(frames.sequence, frames.clip_starts, rigged.rig, options,
-                                   resources, progress.Stage("fit", .25, .45)));
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitTrainingFrames(options, resources, &rigged,
+                                                                  progress.Stage("fit", .25, .45)));
   PLEAT_ASSIGN_OR_RETURN(
       const LearningData data,
       ComputeLearningData(rigged, track, options, resources, progress.Stage("detail", .45, .5)));

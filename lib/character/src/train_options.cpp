@@ -67,6 +67,7 @@ TrainOptions TrainOptions::Paper() {
   TrainOptions paper;
   paper.learner = "sgplvm";
   paper.fit = "walk";
+  paper.refine = "none";
   paper.detail_axes = "world";
   paper.history_form = "poses";
   paper.resolution_percent = 5;
@@ -79,6 +80,7 @@ TrainOptions TrainOptions::Paper() {
 absl::Status ValidateTrainOptions(const TrainOptions& options) {
   PLEAT_RETURN_IF_ERROR(CheckChoice("learner", options.learner, {"auto", "gp", "sgplvm"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("fit", options.fit, {"all-joints", "walk"}));
+  PLEAT_RETURN_IF_ERROR(CheckChoice("refine", options.refine, {"none", "joints", "full"}));
   PLEAT_RETURN_IF_ERROR(
       CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("upsampling", options.upsampling, {"refined", "rbf"}));

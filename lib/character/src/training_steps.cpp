@@ -8,6 +8,7 @@
 #include "option_values.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/pose_fit.h"
+#include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
 #include "pleat/skeleton/pose_history.h"
 
@@ -122,6 +123,30 @@ absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
   fit.bend_stiffness = options.bend_stiffness;
   fit.num_threads = resources.num_threads;
   return FitPoses(sequence, rig, fit, nullptr, progress);
+}
+
+absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
+                                            const TrainResources& resources, RiggedFrames* rigged,
+                                            const Progress& progress) {
+  const TrainingFrames& frames = rigged->frames;
+  if (options.refine == "none") {
+    return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources,
+                     progress.Stage("fit", 0, 1));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack first,
+                         FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options,
+                                   resources, progress.Stage("fit", 0, .2)));
+  RigRefinementOptions refinement;
+  if (options.refine == "joints") {
+    refinement.weights = refinement.rest = false;
+    refinement.joint_prior = 0.3;
+  }
+  refinement.bend_stiffness = options.bend_stiffness;
+  refinement.num_threads = resources.num_threads;
+  PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,
+                                                nullptr, progress.Stage("refine", .2, .8)));
+  return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources,
+                   progress.Stage("fit", .8, 1));
 }
 
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,

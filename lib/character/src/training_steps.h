@@ -43,6 +43,12 @@ absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
                                     const TrainOptions& options, const TrainResources& resources,
                                     const Progress& progress);
 
+// The poses of the training frames. With options.refine the rig is refined on those poses first
+// (RefineRig) and they are fitted again.
+absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
+                                            const TrainResources& resources, RiggedFrames* rigged,
+                                            const Progress& progress);
+
 // What every learner sees: plain matrices, and what turns its output into a full mesh.
 struct LearningData {
   Eigen::VectorXd feature_reference;

@@ -27,6 +27,7 @@ v1::TrainOptions ToProto(const TrainOptions& options) {
   message.set_history_form(options.history_form);
   message.set_upsampling(options.upsampling);
   message.set_bend_stiffness(options.bend_stiffness);
+  message.set_refine(options.refine);
   return message;
 }
 
@@ -49,6 +50,7 @@ absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
   if (message.has_history_form()) options.history_form = message.history_form();
   if (message.has_upsampling()) options.upsampling = message.upsampling();
   if (message.has_bend_stiffness()) options.bend_stiffness = message.bend_stiffness();
+  if (message.has_refine()) options.refine = message.refine();
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   return options;
 }

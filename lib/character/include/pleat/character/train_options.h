@@ -13,6 +13,7 @@ namespace pleat {
 struct TrainOptions {
   std::string learner = "auto";    // "auto" (validated on held-out training frames), "gp", "sgplvm"
   std::string fit = "all-joints";  // "all-joints" (Levenberg-Marquardt) or "walk" (the paper's)
+  std::string refine = "full";     // rig on the training frames: "none" (paper), "joints", "full"
   std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
   std::string rotations = "expmap";   // pose features: "expmap" (paper), "euler", "quaternion"
   int history = 2;                    // poses per feature row, 1..8 (paper: 2)
@@ -50,6 +51,7 @@ template <typename Options, typename Visitor>
 void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("learner", options.learner);
   visit("fit", options.fit);
+  visit("refine", options.refine);
   visit("detail_axes", options.detail_axes);
   visit("rotations", options.rotations);
   visit("history", options.history);

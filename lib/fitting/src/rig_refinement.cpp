@@ -1,0 +1,203 @@
+#include "pleat/fitting/rig_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "joint_step.h"
+#include "pleat/base/parallel.h"
+#include "pleat/base/status.h"
+#include "pleat/fitting/moments.h"
+#include "pleat/fitting/pose_energy.h"
+#include "pleat/fitting/pose_solvers.h"
+#include "pleat/mesh/adjacency.h"
+#include "vertex_step.h"
+
+namespace pleat {
+namespace {
+
+class RigRefiner {
+ public:
+  RigRefiner(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
+             const RigRefinementOptions& options)
+      : sequence_(sequence), first_(rig), options_(options), rig_(rig) {
+    const int num_frames = std::min(sequence.num_frames(), options.max_frames);
+    for (int f = 0; f < num_frames; ++f) {
+      const int t = static_cast<int>(static_cast<int64_t>(f) * sequence.num_frames() / num_frames);
+      const Eigen::Vector3d centre = sequence.frame(t).cast<double>().rowwise().mean();
+      frames_.push_back(t);
+      centres_.push_back(centre);
+      poses_.push_back(ToChainPose(rig.skeleton, track.poses[t], centre));
+    }
+    moments_.resize(frames_.size());
+    energies_.resize(frames_.size());
+  }
+
+  absl::StatusOr<Rig> Run(RigRefinementSummary* summary, const Progress& progress) {
+    const VertexAdjacency adjacency(sequence_.topology());
+    for (int round = 0; round < options_.num_rounds; ++round) {
+      const Progress part =
+          progress.Stage("refine", static_cast<double>(round) / (options_.num_rounds + 1),
+                         (round + 1.0) / (options_.num_rounds + 1));
+      PLEAT_RETURN_IF_ERROR(UpdateMoments(part.Stage("refine", 0, .2)));
+      PLEAT_RETURN_IF_ERROR(SolvePoses(part.Stage("refine", .2, .4)));
+      summary->round_rms_m.push_back(Rms());
+      if (options_.joints) {
+        PLEAT_RETURN_IF_ERROR(StepJoints(part.Stage("refine", .4, .5)));
+        PLEAT_RETURN_IF_ERROR(SolvePoses(part.Stage("refine", .5, .6)));
+      }
+      if (options_.weights || options_.rest) {
+        PLEAT_RETURN_IF_ERROR(StepVertices(adjacency, part.Stage("refine", .6, 1)));
+      }
+    }
+    const Progress part =
+        progress.Stage("refine", options_.num_rounds / (options_.num_rounds + 1.0), 1);
+    PLEAT_RETURN_IF_ERROR(UpdateMoments(part.Stage("refine", 0, .5)));
+    PLEAT_RETURN_IF_ERROR(SolvePoses(part.Stage("refine", .5, 1)));
+    Summarize(summary);
+    return rig_;
+  }
+
+ private:
+  absl::Status ForFrames(const Progress& progress, const std::function<void(int)>& body) {
+    ParallelFor(static_cast<int>(frames_.size()), options_.num_threads, [&](int f) {
+      if (!progress.cancelled()) body(f);
+    });
+    return progress.Report(1);
+  }
+
+  // After a change of weights or rest mesh.
+  absl::Status UpdateMoments(const Progress& progress) {
+    rig_moments_ = ComputeRigMoments(rig_);
+    return ForFrames(progress, [&](int f) {
+      moments_[f] = ComputeFrameMoments(rig_, rig_moments_, sequence_.frame(frames_[f]));
+    });
+  }
+
+  absl::Status SolvePoses(const Progress& progress) {
+    const ChainMoments chain = ComputeChainMoments(rig_moments_, rig_.skeleton);
+    const PoseEnergy shared_energy(
+        chain, rig_.skeleton,
+        options_.bend_stiffness * chain.gram.trace() / (3 * chain.num_joints));
+    return ForFrames(progress, [&](int f) {
+      PoseEnergy energy = shared_energy;
+      energy.SetFrame(ComputeChainCross(rig_moments_, moments_[f], rig_.skeleton),
+                      moments_[f].sum_squares);
+      MinimizePose(energy, {.max_iterations = options_.max_iterations}, &poses_[f]);
+      energies_[f] = std::max(0.0, energy.DataValue(poses_[f]));
+    });
+  }
+
+  double Rms() const {
+    double sum = 0;
+    for (const double energy : energies_) sum += energy;
+    return std::sqrt(sum / (rig_moments_.num_vertices * static_cast<double>(frames_.size())));
+  }
+
+  absl::Status StepJoints(const Progress& progress) {
+    const SubtreeMoments subtree = ComputeSubtreeMoments(rig_moments_, rig_.skeleton);
+    std::vector<JointSystem> systems(frames_.size());
+    PLEAT_RETURN_IF_ERROR(ForFrames(progress, [&](int f) {
+      systems[f] = ComputeJointSystem(rig_moments_, subtree, rig_.skeleton, moments_[f], poses_[f]);
+    }));
+    rig_.skeleton = rig_.skeleton.WithRestPositions(
+        SolveJoints(systems, rig_moments_, rig_.skeleton, first_.skeleton.RestPositions(),
+                    options_.joint_prior));
+    return absl::OkStatus();
+  }
+
+  absl::Status StepVertices(const VertexAdjacency& adjacency, const Progress& progress) {
+    PLEAT_ASSIGN_OR_RETURN(
+        const VertexMoments moments,
+        ComputeVertexMoments(sequence_, frames_, poses_, centres_, rig_, options_.num_threads,
+                             progress.Stage("refine", 0, .4)));
+    if (options_.weights) {
+      const WeightStepOptions step{.smoothness = options_.weight_smoothness,
+                                   .prior = options_.weight_prior,
+                                   .num_threads = options_.num_threads};
+      PLEAT_ASSIGN_OR_RETURN(rig_.weights, RefineWeights(moments, rig_, first_.weights, adjacency,
+                                                         step, progress.Stage("refine", .4, .9)));
+    }
+    if (options_.rest) {
+      const RestStepOptions step{.smoothness = options_.rest_smoothness,
+                                 .prior = options_.rest_prior,
+                                 .num_threads = options_.num_threads};
+      PLEAT_ASSIGN_OR_RETURN(rig_.rest_positions,
+                             RefineRestPositions(moments, rig_, first_.rest_positions, adjacency,
+                                                 step, progress.Stage("refine", .9, 1)));
+    }
+    return absl::OkStatus();
+  }
+
+  void Summarize(RigRefinementSummary* summary) const {
+    summary->rms_m = Rms();
+    const Eigen::Matrix3Xd moved = rig_.skeleton.RestPositions() - first_.skeleton.RestPositions();
+    for (Eigen::Index j = 0; j < moved.cols(); ++j) {
+      summary->joint_moved_m.push_back(moved.col(j).norm());
+    }
+    summary->mean_weight_change =
+        (rig_.weights.ToDense() - first_.weights.ToDense()).cwiseAbs().rowwise().sum().mean() / 2;
+    summary->rest_moved_m =
+        std::sqrt((rig_.rest_positions - first_.rest_positions).colwise().squaredNorm().mean());
+  }
+
+  const MeshSequence& sequence_;
+  const Rig& first_;
+  const RigRefinementOptions& options_;
+  Rig rig_;  // as refined so far
+  // Per frame that is used.
+  std::vector<int> frames_;
+  std::vector<Eigen::Vector3d> centres_;
+  std::vector<ChainPose> poses_;
+  std::vector<FrameMoments> moments_;
+  std::vector<double> energies_;  // square metres, of the data
+  RigMoments rig_moments_;
+};
+
+absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
+                        const RigRefinementOptions& options) {
+  if (rig.weights.num_vertices() != sequence.num_vertices() ||
+      rig.rest_positions.cols() != sequence.num_vertices()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "rig refinement: the rig has ", rig.weights.num_vertices(), " vertices, the sequence ",
+        sequence.num_vertices(), "; use the rig of this mesh"));
+  }
+  if (track.num_frames() != sequence.num_frames()) {
+    return absl::InvalidArgumentError(absl::StrCat("rig refinement: the pose track has ",
+                                                   track.num_frames(), " frames, the sequence ",
+                                                   sequence.num_frames()));
+  }
+  for (const Pose& pose : track.poses) {
+    if (static_cast<int>(pose.rotations.size()) != rig.skeleton.num_joints()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("rig refinement: a pose has ", pose.rotations.size(),
+                       " rotations, the skeleton ", rig.skeleton.num_joints(), " joints"));
+    }
+  }
+  const double smallest_pull = std::min({options.weight_smoothness, options.weight_prior,
+                                         options.rest_smoothness, options.rest_prior});
+  if (!(options.joint_prior > 0) || !(smallest_pull >= 0) || options.num_rounds < 1 ||
+      options.max_frames < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("rig refinement: joint_prior (", options.joint_prior, "), num_rounds (",
+                     options.num_rounds, ") and max_frames (", options.max_frames,
+                     ") must be positive, the pulls (least: ", smallest_pull, ") not negative"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<Rig> RefineRig(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
+                              const RigRefinementOptions& options, RigRefinementSummary* summary,
+                              const Progress& progress) {
+  PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, track, options));
+  RigRefinementSummary result;
+  PLEAT_ASSIGN_OR_RETURN(Rig refined,
+                         RigRefiner(sequence, rig, track, options).Run(&result, progress));
+  if (summary != nullptr) *summary = std::move(result);
+  return refined;
+}
+
+}  // namespace pleat

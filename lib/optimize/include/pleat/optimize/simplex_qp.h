@@ -1,0 +1,27 @@
+// Small convex quadratic programs on the unit simplex: blending weights, mixtures.
+// Active-set method in the manner of Lawson and Hanson, "Solving Least Squares Problems" (1974),
+// chapter 23, with the sum as an equality constraint.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pleat {
+
+inline constexpr int kMaxSimplexQpSize = 16;
+using SimplexQpMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSimplexQpSize, kMaxSimplexQpSize>;
+using SimplexQpVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSimplexQpSize, 1>;
+
+// Minimises 1/2 x^T H x - c^T x over x >= 0, sum x = 1. hessian: n x n, symmetric positive
+// definite, n <= kMaxSimplexQpSize; linear: n; `x`: n, a feasible start, overwritten. No allocation.
+// Exact up to rounding.
+void SolveSimplexQp(const SimplexQpMatrix& hessian, const SimplexQpVector& linear,
+                    SimplexQpVector* x);
+
+// The same with at most `max_support` entries of x above zero: the largest ones of the solution
+// without that limit, solved again among themselves (a heuristic; the exact problem is
+// combinatorial).
+void SolveSparseSimplexQp(const SimplexQpMatrix& hessian, const SimplexQpVector& linear,
+                          int max_support, SimplexQpVector* x);
+
+}  // namespace pleat
