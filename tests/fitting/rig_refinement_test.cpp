@@ -116,10 +116,12 @@ TEST_F(RigRefinementTest, AVertexFindsABoneNextToItsOwn) {
   }
   Rig first = figure_.rig;
   PLEAT_ASSERT_OK_AND_ASSIGN(first.weights, SkinWeights::Create(18, rigid));
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const Rig refined,
-      Refine(sequence, first,
-             {.joints = false, .rest = false, .weight_smoothness = 0, .num_rounds = 10}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Rig refined, Refine(sequence, first,
+                                                       {.joints = false,
+                                                        .rest = false,
+                                                        .weight_smoothness = 0,
+                                                        .weight_prior = 0,
+                                                        .num_rounds = 10}));
   EXPECT_LT(WeightError(refined), 0.2 * WeightError(first));
 }
 
