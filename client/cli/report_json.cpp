@@ -1,6 +1,8 @@
 #include "cli/report_json.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 namespace pleat {
 namespace {
@@ -13,6 +15,21 @@ ordered_json JointsJson(const Skeleton& skeleton) {
     const Eigen::Vector3d& p = joint.rest_position;
     joints.push_back(
         {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
+  }
+  return joints;
+}
+
+// All bones, named by their joints, largest error first.
+ordered_json WorstJointsJson(const Skeleton& skeleton, const std::vector<double>& percent) {
+  std::vector<int> order;  // models of older files have none
+  for (int j = 1; j < std::min<int>(skeleton.num_joints(), static_cast<int>(percent.size())); ++j) {
+    order.push_back(j);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return percent[a] > percent[b]; });
+  ordered_json joints = ordered_json::array();
+  for (const int j : order) {
+    joints.push_back({{"name", skeleton.joint(j).name}, {"mean_percent", percent[j]}});
   }
   return joints;
 }
@@ -50,6 +67,15 @@ ordered_json TrainReportJson(const CharacterModel& model, const TrainCosts& cost
                  {"warnings", record.warnings}};
   json["fit"] = ErrorJson(record.fit);
   json["reconstruction"] = ErrorJson(record.reconstruction);
+  json["poses"] = {{"jitter_degrees", record.pose_jitter_degrees},
+                   {"unsmoothed_jitter_degrees", record.unsmoothed_jitter_degrees},
+                   {"unsmoothed_rms_percent", record.unsmoothed_rms_percent}};
+  json["worst_frames"] = ordered_json::array();
+  for (const FrameError& error : record.worst_frames) {
+    json["worst_frames"].push_back(
+        {{"clip", error.clip}, {"frame", error.frame}, {"mean_percent", error.mean_percent}});
+  }
+  json["worst_joints"] = WorstJointsJson(model.skeleton(), record.joint_fit_percent);
   json["learner"] = record.learner;
   json["options"] = OptionsJson(model.options());
   json["num_frames"] = record.num_frames;

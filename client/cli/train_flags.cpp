@@ -27,6 +27,8 @@ const std::map<std::string, FlagText>& FlagTexts() {
       {"history_form", {nullptr, "differences (speeds) or poses (the paper's) of that history"}},
       {"upsampling", {nullptr, "control mesh to all vertices: rbf (the paper's) or refined"}},
       {"bend_stiffness", {nullptr, "pose fit: pull of every bone towards its parent, 0 to 1"}},
+      {"smoothness",
+       {"smooth", "pose fit: pull to the poses before and after, 0 to 1 (.01 calms noise)"}},
       {"resolution_percent",
        {"resolution", "percent of the vertices that learn, 1 to 100 (paper: 5)"}},
       {"rest_frame", {nullptr, "frame to rig; -1 finds it"}},

@@ -1,9 +1,11 @@
 // train INPUT... -o model.pleat: a character, computed here or on a server, with the same bytes.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -98,6 +100,36 @@ uint64_t PeakMemoryBytes() {
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
+// Where to look: the frames and bones that skinning fits worst, and what smoothing did.
+void PrintWorst(const CharacterModel& model, std::ostream& out) {
+  const TrainingRecord& record = model.record();
+  const bool several = std::any_of(record.worst_frames.begin(), record.worst_frames.end(),
+                                   [](const FrameError& error) { return error.clip > 0; });
+  out << "worst frames, skinned only:";
+  for (const FrameError& error : record.worst_frames) {
+    out << (several ? absl::StrFormat(" %d:%d", error.clip, error.frame)
+                    : absl::StrFormat(" %d", error.frame))
+        << absl::StrFormat(" (%.2f %%)", error.mean_percent);
+  }
+  std::vector<int> joints(record.joint_fit_percent.size());
+  std::iota(joints.begin(), joints.end(), 0);
+  std::stable_sort(joints.begin(), joints.end(), [&](int a, int b) {
+    return record.joint_fit_percent[a] > record.joint_fit_percent[b];
+  });
+  joints.resize(std::min<size_t>(3, joints.size()));
+  out << "\nworst bones:";
+  for (const int j : joints) {
+    out << absl::StrFormat(" %s (%.2f %%)", model.skeleton().joint(j).name,
+                           record.joint_fit_percent[j]);
+  }
+  out << "\n";
+  if (model.options().smoothness > 0) {
+    out << absl::StrFormat("smoothing: jitter %.2f -> %.2f degrees, fit RMS %.3f -> %.3f %%\n",
+                           record.unsmoothed_jitter_degrees, record.pose_jitter_degrees,
+                           record.unsmoothed_rms_percent, record.fit.rms_percent);
+  }
+}
+
 void PrintText(const TrainedModel& trained, const std::string& output, std::ostream& out) {
   const TrainingRecord& record = trained.model->record();
   for (const std::string& warning : record.warnings) out << "warning: " << warning << "\n";
@@ -106,6 +138,7 @@ void PrintText(const TrainedModel& trained, const std::string& output, std::ostr
       << FormatTable(ErrorTableHeader("training frames"),
                      {ErrorTableRow("skinned only", record.fit, record.diagonal_m),
                       ErrorTableRow("hybrid", record.reconstruction, record.diagonal_m)});
+  PrintWorst(*trained.model, out);
   if (!trained.id.empty()) out << "model " << trained.id << "\n";
   if (!output.empty()) {
     out << output << ", " << FormatBytes(static_cast<double>(trained.bytes.size())) << "\n";

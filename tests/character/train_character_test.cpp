@@ -27,6 +27,36 @@ TEST(TrainCharacterTest, DetailTakesMostOfWhatSkinningLeaves) {
   EXPECT_EQ(record.learner, "gp");
 }
 
+TEST(TrainCharacterTest, ReportsWorstFramesAndJoints) {
+  const TrainingRecord& record = SmallCharacter()->record();
+  ASSERT_EQ(record.worst_frames.size(), 5u);
+  EXPECT_GT(record.worst_frames[0].mean_percent, record.fit.mean_percent);
+  for (size_t i = 1; i < 5; ++i) {
+    EXPECT_GE(record.worst_frames[i - 1].mean_percent, record.worst_frames[i].mean_percent);
+    EXPECT_EQ(record.worst_frames[i].clip, 0);
+  }
+  // The skirt hangs on hips and thighs; forearms and head are skinned exactly.
+  const auto error_of = [&](const char* joint) {
+    return record.joint_fit_percent[SmallCharacter()->skeleton().FindJoint(joint)];
+  };
+  ASSERT_EQ(record.joint_fit_percent.size(), static_cast<size_t>(kNumHumanJoints));
+  EXPECT_GT(error_of("leftLowerLeg"), 2 * error_of("leftLowerArm"));
+  EXPECT_GT(error_of("rightLowerLeg"), 2 * error_of("head"));
+  EXPECT_EQ(record.unsmoothed_jitter_degrees, record.pose_jitter_degrees);
+  EXPECT_NEAR(record.unsmoothed_rms_percent, record.fit.rms_percent, 1e-3);
+}
+
+TEST(TrainCharacterTest, SmoothingReportsItsCost) {
+  TrainOptions options = FastTrainOptions();
+  options.smoothness = 0.1;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
+                             TrainCharacter({SmallPerformer().sequence}, options));
+  const TrainingRecord& record = model->record();
+  EXPECT_LT(record.pose_jitter_degrees, record.unsmoothed_jitter_degrees);
+  EXPECT_GT(record.fit.rms_percent, record.unsmoothed_rms_percent);
+  EXPECT_LT(record.fit.rms_percent, 1.2 * record.unsmoothed_rms_percent);
+}
+
 TEST(TrainCharacterTest, FindsTheJointsOfTheTruth) {
   const Skeleton& found = SmallCharacter()->skeleton();
   const Skeleton& truth = SmallPerformer().truth.rig.skeleton;
@@ -91,6 +121,10 @@ TEST(TrainCharacterTest, SeveralClipsShareOneCharacter) {
       const auto model,
       TrainCharacter({SmallPerformer().sequence, other.sequence}, FastTrainOptions()));
   EXPECT_EQ(model->record().num_frames, 90);
+  for (const FrameError& error : model->record().worst_frames) {
+    EXPECT_TRUE(error.clip == 0 || error.clip == 1);
+    EXPECT_LT(error.frame, error.clip == 0 ? 60 : 30);
+  }
   EXPECT_LT(model->record().reconstruction.mean_percent, 0.3 * model->record().fit.mean_percent);
 }
 

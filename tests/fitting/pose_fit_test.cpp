@@ -126,25 +126,60 @@ TEST_F(PoseFitTest, SmoothnessCutsJitterAtLittleCost) {
   Random random(8);
   for (double& entry : noise.reshaped()) entry = 0.01 * random.Normal();
   const MeshSequence sequence = MakeSkinnedSequence(figure_, truth_, noise);
-  auto jitter = [](const PoseTrack& track) {
-    double sum = 0;
-    for (int t = 1; t + 1 < track.num_frames(); ++t) {
-      for (int j = 1; j < 18; ++j) {
-        const auto& q = track.poses[t].rotations[j].coeffs();
-        const auto& p = track.poses[t - 1].rotations[j].coeffs();
-        const auto& n = track.poses[t + 1].rotations[j].coeffs();
-        sum += (p - 2 * q + n).squaredNorm();
-      }
-    }
-    return sum;
-  };
   PoseFitSummary plain, smooth;
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack a, FitPoses(sequence, figure_.rig, {}, &plain));
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack b,
                              FitPoses(sequence, figure_.rig, {.smoothness = 0.01}, &smooth));
-  EXPECT_LT(jitter(b), 0.8 * jitter(a));
+  EXPECT_LT(smooth.jitter_rad, 0.9 * plain.jitter_rad);
+  EXPECT_EQ(smooth.jitter_rad, RotationJitter(b));
+  EXPECT_EQ(plain.jitter_rad, RotationJitter(a));
+  EXPECT_EQ(smooth.unsmoothed_jitter_rad, plain.jitter_rad);
+  EXPECT_EQ(smooth.unsmoothed_rms_m, plain.rms_m);
+  EXPECT_EQ(plain.unsmoothed_rms_m, plain.rms_m);
   EXPECT_LT(smooth.rms_m, 1.02 * plain.rms_m);
   EXPECT_GE(smooth.rms_m, plain.rms_m);
+}
+
+TEST_F(PoseFitTest, QuaternionsKeepTheirSignThroughFullTurns) {
+  // The body turns three times about itself, the forearm swings half way round and back.
+  PoseTrack turning = truth_;
+  for (int t = 0; t < 30; ++t) {
+    turning.poses[t].rotations[0] =
+        Eigen::AngleAxisd(0.65 * t, Eigen::Vector3d::UnitY()) * turning.poses[t].rotations[0];
+    turning.poses[t].rotations[kLeftLowerArm] =
+        Eigen::AngleAxisd(3.5 * std::sin(0.2 * t), Eigen::Vector3d::UnitX());
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack track,
+                             FitPoses(MakeSkinnedSequence(figure_, turning), figure_.rig,
+                                      {.bend_stiffness = 1e-9, .clip_starts = {0, 20}}, nullptr));
+  bool negative = false;
+  for (int t = 1; t < 30; ++t) {
+    for (int j = 0; j < 18; ++j) {
+      if (t != 20) {
+        EXPECT_GT(track.poses[t].rotations[j].dot(track.poses[t - 1].rotations[j]), 0.5);
+      }
+      negative |= track.poses[t].rotations[j].w() < 0;
+    }
+  }
+  EXPECT_TRUE(negative);
+  for (int j = 0; j < 18; ++j) EXPECT_GE(track.poses[20].rotations[j].w(), 0);  // a new clip
+}
+
+TEST_F(PoseFitTest, JitterIsTheSecondDifferenceOfRotations) {
+  PoseTrack steady;
+  for (int t = 0; t < 6; ++t) {
+    Pose pose = Pose::Rest(figure_.rig.skeleton);
+    pose.rotations[kHead] = Eigen::AngleAxisd(0.3 * t, Eigen::Vector3d::UnitY());
+    steady.poses.push_back(pose);
+  }
+  EXPECT_NEAR(RotationJitter(steady), 0, 1e-7);
+  steady.poses[5].rotations[kHead] = Eigen::AngleAxisd(0.3 * 5 + 0.1, Eigen::Vector3d::UnitY());
+  EXPECT_NEAR(RotationJitter(steady), 0.1 / std::sqrt(4 * 18), 1e-7);
+  steady.clip_starts = {0, 4};  // now frame 5 belongs to a clip of two frames
+  EXPECT_NEAR(RotationJitter(steady), 0, 1e-7);
+  steady.poses.resize(2);
+  steady.clip_starts = {0};
+  EXPECT_EQ(RotationJitter(steady), 0);
 }
 
 TEST_F(PoseFitTest, RootGaugeLeavesTheMesh) {

@@ -45,6 +45,11 @@ class SmallModelBuilder {
     parts.record.fit.mean_percent = 1.25;
     parts.record.reconstruction.mean_mm = 0.5;
     parts.record.warnings = {"the rig is made by hand"};
+    parts.record.worst_frames = {{0, 2, 3.5}, {0, 1, 1.5}};
+    parts.record.joint_fit_percent = {0, 1.25, 0.75};
+    parts.record.pose_jitter_degrees = 0.5;
+    parts.record.unsmoothed_jitter_degrees = 0.625;
+    parts.record.unsmoothed_rms_percent = 1.125;
     return parts;
   }
   std::shared_ptr<const CharacterModel> Build() { return *CharacterModel::Create(Parts()); }

@@ -40,6 +40,13 @@ TEST_P(ModelFileTest, EverythingRoundTrips) {
   EXPECT_EQ(read->record().warnings, model_->record().warnings);
   EXPECT_EQ(read->record().fit.mean_percent, 1.25);
   EXPECT_EQ(read->record().yaw_degrees, 90);
+  ASSERT_EQ(read->record().worst_frames.size(), 2u);
+  EXPECT_EQ(read->record().worst_frames[0].frame, 2);
+  EXPECT_EQ(read->record().worst_frames[1].mean_percent, 1.5);
+  EXPECT_EQ(read->record().joint_fit_percent, (std::vector<double>{0, 1.25, 0.75}));
+  EXPECT_EQ(read->record().pose_jitter_degrees, 0.5);
+  EXPECT_EQ(read->record().unsmoothed_jitter_degrees, 0.625);
+  EXPECT_EQ(read->record().unsmoothed_rms_percent, 1.125);
 }
 
 TEST_P(ModelFileTest, ReadModelPredictsTheSameBits) {

@@ -190,6 +190,11 @@ TEST(MessagesTest, SequencesJobsAndModelsComeBack) {
   model.record.fit.rms_percent = 1.25;
   model.record.reconstruction.mean_mm = .5;
   model.record.warnings = {"careful"};
+  model.record.worst_frames = {{1, 7, 2.5}};
+  model.record.joint_fit_percent = {0, .5};
+  model.record.pose_jitter_degrees = .25;
+  model.record.unsmoothed_jitter_degrees = .375;
+  model.record.unsmoothed_rms_percent = .625;
   PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo m, FromProto(Reparse(ToProto(model))));
   EXPECT_EQ(m.skeleton.joint(1).name, "chest");
   EXPECT_EQ(m.skeleton.rest_position(1), model.skeleton.rest_position(1));
@@ -197,6 +202,14 @@ TEST(MessagesTest, SequencesJobsAndModelsComeBack) {
   EXPECT_EQ(m.record.fit.rms_percent, 1.25);
   EXPECT_EQ(m.record.reconstruction.mean_mm, .5);
   EXPECT_EQ(m.record.warnings, model.record.warnings);
+  ASSERT_EQ(m.record.worst_frames.size(), 1u);
+  EXPECT_EQ(m.record.worst_frames[0].clip, 1);
+  EXPECT_EQ(m.record.worst_frames[0].frame, 7);
+  EXPECT_EQ(m.record.worst_frames[0].mean_percent, 2.5);
+  EXPECT_EQ(m.record.joint_fit_percent, model.record.joint_fit_percent);
+  EXPECT_EQ(m.record.pose_jitter_degrees, .25);
+  EXPECT_EQ(m.record.unsmoothed_jitter_degrees, .375);
+  EXPECT_EQ(m.record.unsmoothed_rms_percent, .625);
 }
 
 TEST(MessagesTest, AnErrorNeverTurnsIntoSuccess) {

@@ -197,11 +197,12 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
   report.seconds["rig"] = timer.Lap();
 
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack train_track,
-                         FitTrainingFrames(options.train, options.resources, &rigged,
+                         FitTrainingFrames(options.train, options.resources, &rigged, nullptr,
                                            progress.Stage("fit", .15, .25)));
   TestSide test{test_sequence ? *test_sequence : sequence, {}, std::move(split.test)};
-  PLEAT_ASSIGN_OR_RETURN(test.track, FitFrames(test.sequence, {0}, rigged.rig, options.train,
-                                               options.resources, progress.Stage("fit", .25, .35)));
+  PLEAT_ASSIGN_OR_RETURN(test.track,
+                         FitFrames(test.sequence, {0}, rigged.rig, options.train, options.resources,
+                                   nullptr, progress.Stage("fit", .25, .35)));
   if (test_sequence) {
     for (int t = 0; t < test.sequence.num_frames(); ++t) test.frames.push_back(t);
   }

@@ -14,7 +14,7 @@ absl::StatusOr<PoseTrack> FitMotion(const CharacterModel& model, const MeshSeque
                      " and ", model.topology().num_faces(),
                      ": poses are found only in a mesh with the model's own connectivity"));
   }
-  return FitFrames(sequence, {0}, model.rig(), model.options(), resources,
+  return FitFrames(sequence, {0}, model.rig(), model.options(), resources, nullptr,
                    progress.Stage("fit", 0, 1));
 }
 

@@ -1,5 +1,8 @@
 #include "pleat/character/train_character.h"
 
+#include <algorithm>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "pleat/base/status.h"
@@ -15,12 +18,44 @@ ErrorSummary WithoutFrames(ErrorSummary summary) {
   return summary;
 }
 
+// The five frames with the largest mean error, by clip.
+std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percent,
+                                    const std::vector<int>& clip_starts) {
+  std::vector<int> order(frame_mean_percent.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return frame_mean_percent[a] > frame_mean_percent[b]; });
+  std::vector<FrameError> worst;
+  for (size_t i = 0; i < std::min<size_t>(5, order.size()); ++i) {
+    const auto next = std::upper_bound(clip_starts.begin(), clip_starts.end(), order[i]);
+    worst.push_back({static_cast<int>(next - clip_starts.begin()) - 1, order[i] - *(next - 1),
+                     frame_mean_percent[order[i]]});
+  }
+  return worst;
+}
+
+// Mean error of every bone's vertices, each vertex as far as the bone moves it; 0 without vertices.
+std::vector<double> JointErrors(const SkinWeights& weights, const Eigen::VectorXd& vertex_error) {
+  std::vector<double> sums(weights.num_joints(), 0), totals(weights.num_joints(), 0);
+  for (int v = 0; v < weights.num_vertices(); ++v) {
+    const VertexInfluences& influences = weights.vertex(v);
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      sums[influences.bones[k]] += influences.weights[k] * vertex_error[v];
+      totals[influences.bones[k]] += influences.weights[k];
+    }
+  }
+  for (size_t j = 0; j < sums.size(); ++j) sums[j] = totals[j] > 0 ? sums[j] / totals[j] : 0;
+  return sums;
+}
+
 // The errors of the record: skinned only and hybrid against the input.
-absl::Status MeasureReconstruction(std::shared_ptr<const CharacterModel> model,
+absl::Status MeasureReconstruction(const std::shared_ptr<const CharacterModel>& model,
                                    const MeshSequence& sequence, const PoseTrack& track,
                                    TrainingRecord* record, const Progress& progress) {
+  const SkinWeights& weights = model->rig().weights;
+  Eigen::VectorXd vertex_error = Eigen::VectorXd::Zero(sequence.num_vertices());  // summed, metres
   ErrorAccumulator fit(record->diagonal_m), reconstruction(record->diagonal_m);
-  PoseEvaluator evaluator(std::move(model));
+  PoseEvaluator evaluator(model);
   EvaluatedFrame skinned;
   size_t clip = 0;
   PLEAT_RETURN_IF_ERROR(evaluator.EvaluateClip(
@@ -32,10 +67,15 @@ absl::Status MeasureReconstruction(std::shared_ptr<const CharacterModel> model,
         reconstruction.AddFrame(hybrid.positions.cast<double>(), truth, !starts_clip);
         PLEAT_RETURN_IF_ERROR(evaluator.EvaluateSkinned(track.poses[t], {}, &skinned));
         fit.AddFrame(skinned.positions.cast<double>(), truth, !starts_clip);
+        vertex_error += (skinned.positions.cast<double>() - truth).colwise().norm().transpose();
         return absl::OkStatus();
       },
       progress));
-  record->fit = WithoutFrames(fit.Summarize());
+  ErrorSummary fit_summary = fit.Summarize();
+  record->worst_frames = WorstFrames(fit_summary.frame_mean_percent, track.clip_starts);
+  record->joint_fit_percent =
+      JointErrors(weights, 100 / (record->diagonal_m * sequence.num_frames()) * vertex_error);
+  record->fit = WithoutFrames(std::move(fit_summary));
   record->reconstruction = WithoutFrames(reconstruction.Summarize());
   return absl::OkStatus();
 }
@@ -52,8 +92,13 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
 
   PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged,
                          RigFrames(frames, options, resources, progress.Stage("rig", 0, .25)));
-  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitTrainingFrames(options, resources, &rigged,
+  PoseFitSummary fit;
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitTrainingFrames(options, resources, &rigged, &fit,
                                                                   progress.Stage("fit", .25, .45)));
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  record.pose_jitter_degrees = kDegrees * fit.jitter_rad;
+  record.unsmoothed_jitter_degrees = kDegrees * fit.unsmoothed_jitter_rad;
+  record.unsmoothed_rms_percent = 100 * fit.unsmoothed_rms_m / record.diagonal_m;
   PLEAT_ASSIGN_OR_RETURN(
       const LearningData data,
       ComputeLearningData(rigged, track, options, resources, progress.Stage("detail", .45, .5)));

@@ -85,6 +85,7 @@ absl::Status ValidateTrainOptions(const TrainOptions& options) {
       CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("upsampling", options.upsampling, {"refined", "rbf"}));
   PLEAT_RETURN_IF_ERROR(CheckRange("bend_stiffness", options.bend_stiffness, 0.0, 1.0));
+  PLEAT_RETURN_IF_ERROR(CheckRange("smoothness", options.smoothness, 0.0, 1.0));
   PLEAT_RETURN_IF_ERROR(
       CheckChoice("rotations", options.rotations, {"expmap", "euler", "quaternion"}));
   PLEAT_RETURN_IF_ERROR(

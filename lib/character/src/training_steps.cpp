@@ -7,7 +7,6 @@
 #include "absl/strings/str_cat.h"
 #include "option_values.h"
 #include "pleat/base/status.h"
-#include "pleat/fitting/pose_fit.h"
 #include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
 #include "pleat/skeleton/pose_history.h"
@@ -116,26 +115,27 @@ absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const Train
 absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
                                     const std::vector<int>& clip_starts, const Rig& rig,
                                     const TrainOptions& options, const TrainResources& resources,
-                                    const Progress& progress) {
+                                    PoseFitSummary* summary, const Progress& progress) {
   PoseFitOptions fit;
   fit.method = options.fit == "walk" ? PoseFitMethod::kWalk : PoseFitMethod::kAllJoints;
   fit.clip_starts = clip_starts;
   fit.bend_stiffness = options.bend_stiffness;
+  fit.smoothness = options.smoothness;
   fit.num_threads = resources.num_threads;
-  return FitPoses(sequence, rig, fit, nullptr, progress);
+  return FitPoses(sequence, rig, fit, summary, progress);
 }
 
 absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
                                             const TrainResources& resources, RiggedFrames* rigged,
-                                            const Progress& progress) {
+                                            PoseFitSummary* summary, const Progress& progress) {
   const TrainingFrames& frames = rigged->frames;
   if (options.refine == "none") {
-    return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources,
+    return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
                      progress.Stage("fit", 0, 1));
   }
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack first,
                          FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options,
-                                   resources, progress.Stage("fit", 0, .2)));
+                                   resources, nullptr, progress.Stage("fit", 0, .2)));
   RigRefinementOptions refinement;
   if (options.refine == "joints") {
     refinement.weights = refinement.rest = false;
@@ -145,7 +145,7 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
   refinement.num_threads = resources.num_threads;
   PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,
                                                 nullptr, progress.Stage("refine", .2, .8)));
-  return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources,
+  return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
                    progress.Stage("fit", .8, 1));
 }
 

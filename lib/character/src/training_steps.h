@@ -12,6 +12,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
 #include "pleat/character/train_character.h"
+#include "pleat/fitting/pose_fit.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/auto_rig.h"
 #include "pleat/skeleton/pose.h"
@@ -38,16 +39,17 @@ struct RiggedFrames {
 absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const TrainOptions& options,
                                        const TrainResources& resources, const Progress& progress);
 
+// The poses of any frames; `summary` may be null.
 absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
                                     const std::vector<int>& clip_starts, const Rig& rig,
                                     const TrainOptions& options, const TrainResources& resources,
-                                    const Progress& progress);
+                                    PoseFitSummary* summary, const Progress& progress);
 
 // The poses of the training frames. With options.refine the rig is refined on those poses first
 // (RefineRig) and they are fitted again.
 absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
                                             const TrainResources& resources, RiggedFrames* rigged,
-                                            const Progress& progress);
+                                            PoseFitSummary* summary, const Progress& progress);
 
 // What every learner sees: plain matrices, and what turns its output into a full mesh.
 struct LearningData {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -48,8 +49,10 @@ class PoseFitter {
       PLEAT_RETURN_IF_ERROR(TryNeighbours(progress.Stage("fit", begin, end), &changed));
       if (std::find(changed.begin(), changed.end(), 1) == changed.end()) break;
     }
-    if (options_.smoothness > 0) return Smooth(progress.Stage("fit", 0.8, 1));
-    return progress.Stage("fit", 0.8, 1).Report(1);
+    if (!(options_.smoothness > 0)) return progress.Stage("fit", 0.8, 1).Report(1);
+    unsmoothed_rms_m_ = Rms();
+    unsmoothed_jitter_rad_ = RotationJitter(Track());
+    return Smooth(progress.Stage("fit", 0.8, 1));
   }
 
   PoseTrack Track() const {
@@ -60,24 +63,25 @@ class PoseFitter {
       track.poses.push_back(FromChainPose(rig_.skeleton, frame.pose, frame.centre));
       FixRootGauge(rig_.skeleton, &track.poses.back());
     }
+    for (int t = 1; t < track.num_frames(); ++t) {
+      if (SameClip(t - 1, t)) KeepSigns(track.poses[t - 1], &track.poses[t]);
+    }
     return track;
   }
 
   void Summarize(PoseFitSummary* summary) const {
     *summary = {};
-    double squares = 0, iterations = 0;
+    double iterations = 0;
     for (const Frame& frame : frames_) {
-      PoseEnergy energy = energy_;
-      energy.SetFrame(frame.cross, frame.sum_squares);
-      const double mean = std::max(0.0, energy.DataValue(frame.pose)) / chain_.num_vertices;
-      summary->frame_rms_m.push_back(std::sqrt(mean));
-      squares += mean;
+      summary->frame_rms_m.push_back(std::sqrt(MeanSquare(frame)));
       iterations += frame.num_iterations;
       summary->num_rescued_frames += frame.rescued;
     }
-    const double num_frames = static_cast<double>(frames_.size());
-    summary->rms_m = std::sqrt(squares / num_frames);
-    summary->mean_iterations = iterations / num_frames;
+    summary->rms_m = Rms();
+    summary->jitter_rad = RotationJitter(Track());
+    summary->unsmoothed_rms_m = unsmoothed_rms_m_.value_or(summary->rms_m);
+    summary->unsmoothed_jitter_rad = unsmoothed_jitter_rad_.value_or(summary->jitter_rad);
+    summary->mean_iterations = iterations / static_cast<double>(frames_.size());
     summary->worst_frames.resize(frames_.size());
     std::iota(summary->worst_frames.begin(), summary->worst_frames.end(), 0);
     std::stable_sort(summary->worst_frames.begin(), summary->worst_frames.end(), [&](int a, int b) {
@@ -96,6 +100,26 @@ class PoseFitter {
     int num_iterations = 0;
     bool rescued = false;
   };
+
+  // Squared vertex distance of a frame's pose, mean over vertices.
+  double MeanSquare(const Frame& frame) const {
+    PoseEnergy energy = energy_;
+    energy.SetFrame(frame.cross, frame.sum_squares);
+    return std::max(0.0, energy.DataValue(frame.pose)) / chain_.num_vertices;
+  }
+
+  double Rms() const {
+    double squares = 0;
+    for (const Frame& frame : frames_) squares += MeanSquare(frame);
+    return std::sqrt(squares / static_cast<double>(frames_.size()));
+  }
+
+  // Takes of q and -q the one nearer to the frame before.
+  static void KeepSigns(const Pose& previous, Pose* pose) {
+    for (size_t j = 0; j < pose->rotations.size(); ++j) {
+      if (pose->rotations[j].dot(previous.rotations[j]) < 0) pose->rotations[j].coeffs() *= -1;
+    }
+  }
 
   // body(t) for t = first, first + step, ...; in batches, so that progress and cancellation act.
   absl::Status ForFrames(const Progress& progress, int first, int step,
@@ -216,6 +240,7 @@ class PoseFitter {
   const PoseEnergy energy_;      // without a frame
   std::vector<Frame> frames_;
   std::vector<int> clip_of_;
+  std::optional<double> unsmoothed_rms_m_, unsmoothed_jitter_rad_;
 };
 
 absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig,
@@ -248,6 +273,25 @@ absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
   PLEAT_RETURN_IF_ERROR(fitter.Run(progress));
   if (summary != nullptr) fitter.Summarize(summary);
   return fitter.Track();
+}
+
+double RotationJitter(const PoseTrack& track) {
+  double squares = 0;
+  int64_t count = 0;
+  for (int t = 2; t < track.num_frames(); ++t) {
+    const auto next_start = std::upper_bound(track.clip_starts.begin(), track.clip_starts.end(), t);
+    if (next_start != track.clip_starts.begin() && t - 2 < *(next_start - 1)) continue;
+    const auto& before = track.poses[t - 2].rotations;
+    const auto& middle = track.poses[t - 1].rotations;
+    const auto& after = track.poses[t].rotations;
+    for (size_t j = 0; j < middle.size(); ++j) {
+      const Eigen::Quaterniond first = before[j].conjugate() * middle[j];
+      const double angle = first.angularDistance(middle[j].conjugate() * after[j]);
+      squares += angle * angle;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0;
 }
 
 void FixRootGauge(const Skeleton& skeleton, Pose* pose) {

@@ -253,7 +253,43 @@ void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
   const size_t num_warnings = std::min<size_t>(record.warnings.size(), kMaxWarnings);
   writer->Write(static_cast<uint32_t>(num_warnings));
   for (size_t i = 0; i < num_warnings; ++i) writer->WriteString(Clip(record.warnings[i]));
+  writer->Write(static_cast<uint32_t>(record.worst_frames.size()));
+  for (const FrameError& error : record.worst_frames) {
+    writer->Write(static_cast<int32_t>(error.clip));
+    writer->Write(static_cast<int32_t>(error.frame));
+    writer->Write(error.mean_percent);
+  }
+  writer->Write(static_cast<uint32_t>(record.joint_fit_percent.size()));
+  for (const double percent : record.joint_fit_percent) writer->Write(percent);
+  writer->Write(record.pose_jitter_degrees);
+  writer->Write(record.unsmoothed_jitter_degrees);
+  writer->Write(record.unsmoothed_rms_percent);
 }
+
+namespace {
+
+// The end of the record, which the first files of this version lack.
+absl::Status ReadFitReport(ByteReader* reader, TrainingRecord* record) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_frames, reader->Read<uint32_t>("worst frame count"));
+  for (uint32_t i = 0; i < num_frames; ++i) {
+    FrameError error;
+    PLEAT_ASSIGN_OR_RETURN(error.clip, reader->Read<int32_t>("clip of a worst frame"));
+    PLEAT_ASSIGN_OR_RETURN(error.frame, reader->Read<int32_t>("worst frame"));
+    PLEAT_ASSIGN_OR_RETURN(error.mean_percent, reader->Read<double>("error of a worst frame"));
+    record->worst_frames.push_back(error);
+  }
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_joints, reader->Read<uint32_t>("joint error count"));
+  for (uint32_t j = 0; j < num_joints; ++j) {
+    PLEAT_ASSIGN_OR_RETURN(const double percent, reader->Read<double>("error of a joint"));
+    record->joint_fit_percent.push_back(percent);
+  }
+  PLEAT_ASSIGN_OR_RETURN(record->pose_jitter_degrees, reader->Read<double>("pose jitter"));
+  PLEAT_ASSIGN_OR_RETURN(record->unsmoothed_jitter_degrees, reader->Read<double>("pose jitter"));
+  PLEAT_ASSIGN_OR_RETURN(record->unsmoothed_rms_percent, reader->Read<double>("pose error"));
+  return absl::OkStatus();
+}
+
+}  // namespace
 
 absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
   TrainingRecord record;
@@ -274,6 +310,7 @@ absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
     PLEAT_ASSIGN_OR_RETURN(std::string warning, reader->ReadString(kMaxNameBytes, "warning"));
     record.warnings.push_back(std::move(warning));
   }
+  if (reader->remaining() > 0) PLEAT_RETURN_IF_ERROR(ReadFitReport(reader, &record));
   return record;
 }
 

@@ -28,6 +28,7 @@ v1::TrainOptions ToProto(const TrainOptions& options) {
   message.set_upsampling(options.upsampling);
   message.set_bend_stiffness(options.bend_stiffness);
   message.set_refine(options.refine);
+  message.set_smoothness(options.smoothness);
   return message;
 }
 
@@ -51,6 +52,7 @@ absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
   if (message.has_upsampling()) options.upsampling = message.upsampling();
   if (message.has_bend_stiffness()) options.bend_stiffness = message.bend_stiffness();
   if (message.has_refine()) options.refine = message.refine();
+  if (message.has_smoothness()) options.smoothness = message.smoothness();
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   return options;
 }
@@ -66,6 +68,17 @@ v1::TrainingRecord ToProto(const TrainingRecord& record) {
   *message.mutable_fit() = ToProto(record.fit);
   *message.mutable_reconstruction() = ToProto(record.reconstruction);
   for (const std::string& warning : record.warnings) message.add_warnings(ToValidUtf8(warning));
+  for (const FrameError& error : record.worst_frames) {
+    v1::FrameError* out = message.add_worst_frames();
+    out->set_clip(error.clip);
+    out->set_frame(error.frame);
+    out->set_mean_percent(error.mean_percent);
+  }
+  message.mutable_joint_fit_percent()->Assign(record.joint_fit_percent.begin(),
+                                              record.joint_fit_percent.end());
+  message.set_pose_jitter_degrees(record.pose_jitter_degrees);
+  message.set_unsmoothed_jitter_degrees(record.unsmoothed_jitter_degrees);
+  message.set_unsmoothed_rms_percent(record.unsmoothed_rms_percent);
   return message;
 }
 
@@ -80,6 +93,14 @@ TrainingRecord FromProto(const v1::TrainingRecord& message) {
   record.fit = FromProto(message.fit());
   record.reconstruction = FromProto(message.reconstruction());
   record.warnings.assign(message.warnings().begin(), message.warnings().end());
+  for (const v1::FrameError& error : message.worst_frames()) {
+    record.worst_frames.push_back({error.clip(), error.frame(), error.mean_percent()});
+  }
+  record.joint_fit_percent.assign(message.joint_fit_percent().begin(),
+                                  message.joint_fit_percent().end());
+  record.pose_jitter_degrees = message.pose_jitter_degrees();
+  record.unsmoothed_jitter_degrees = message.unsmoothed_jitter_degrees();
+  record.unsmoothed_rms_percent = message.unsmoothed_rms_percent();
   return record;
 }
 

@@ -19,6 +19,12 @@
 
 namespace pleat {
 
+struct FrameError {
+  int clip = 0;             // index of the training clip
+  int frame = 0;            // in that clip
+  double mean_percent = 0;  // mean vertex distance
+};
+
 // What training found out about its own result; kept in the model file.
 struct TrainingRecord {
   std::string learner;  // the learner that was chosen: "gp" or "sgplvm"
@@ -30,6 +36,12 @@ struct TrainingRecord {
   ErrorSummary fit;             // skinned only against the input; frame_mean_percent not kept
   ErrorSummary reconstruction;  // hybrid against the input; frame_mean_percent not kept
   std::vector<std::string> warnings;
+  std::vector<FrameError> worst_frames;   // up to five, skinned only, largest error first
+  std::vector<double> joint_fit_percent;  // per joint: skinned only, mean over its bone's vertices
+  // How much the poses shake (RotationJitter), and what smoothing started from.
+  double pose_jitter_degrees = 0;
+  double unsmoothed_jitter_degrees = 0;
+  double unsmoothed_rms_percent = 0;
 };
 
 // Never changes after it is made; queries share it without locks.

@@ -23,9 +23,10 @@ struct TrainOptions {
   int rest_frame = -1;                 // frame to rig, -1 = found automatically
   double yaw_degrees = -1;             // facing of the character about +y from +z, -1 = automatic
   double bend_stiffness = 0.0001;      // pose fit: pull of a bone to its parent, 0..1
-  int latent_dimensions = 12;          // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
-  int iterations = 100;                // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
-  double dynamics_weight = 1;          // lambda on the GPDM term, 0..1e6 (paper: 1)
+  double smoothness = 0;           // pose fit: pull to the poses before and after, 0..1; 0 = none
+  int latent_dimensions = 12;      // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
+  int iterations = 100;            // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
+  double dynamics_weight = 1;      // lambda on the GPDM term, 0..1e6 (paper: 1)
   double detail_energy = 0.99999;  // share of the details' energy that the PCA basis keeps, 0..1
   int max_components = 96;         // upper bound of the PCA basis, 1..1024
   uint64_t seed = 1;               // of everything random
@@ -61,6 +62,7 @@ void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("rest_frame", options.rest_frame);
   visit("yaw_degrees", options.yaw_degrees);
   visit("bend_stiffness", options.bend_stiffness);
+  visit("smoothness", options.smoothness);
   visit("latent_dimensions", options.latent_dimensions);
   visit("iterations", options.iterations);
   visit("dynamics_weight", options.dynamics_weight);

@@ -44,15 +44,26 @@ struct PoseFitSummary {
   std::vector<int> worst_frames;    // up to five, largest error first
   double mean_iterations = 0;       // linear systems (or walk sweeps) per frame
   int num_rescued_frames = 0;       // frames that a neighbour's start improved
+  double jitter_rad = 0;            // RotationJitter of the track
+  // What smoothing started from; the same as above without it.
+  double unsmoothed_rms_m = 0;
+  double unsmoothed_jitter_rad = 0;
 };
 
 // Fits rig.skeleton to every frame of `sequence`. The rest pose and the joints stay as they are.
 // The root's rotation, which has no influence on the mesh, is set to the mean of the bones at the
-// hips (FixRootGauge). kInvalidArgument when the vertex counts of rig and sequence differ, or
-// clip_starts are not ascending from 0; kCancelled. `summary` may be null.
+// hips (FixRootGauge). Quaternions keep their sign from frame to frame within a clip (the angle
+// between consecutive ones is at most 90 degrees in four dimensions), so that curves over their
+// entries or over unwrapped angles have no jumps. kInvalidArgument when the vertex counts of rig
+// and sequence differ, or clip_starts are not ascending from 0; kCancelled. `summary` may be null.
 absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
                                    const PoseFitOptions& options, PoseFitSummary* summary,
                                    const Progress& progress = {});
+
+// How much rotations shake: RMS over joints and frames of the angle between a frame's turn since
+// the frame before and the turn that follows (the second difference in time), radians. Clips apart;
+// 0 when no clip has three frames.
+double RotationJitter(const PoseTrack& track);
 
 // Sets the root's world rotation to the mean rotation of the bones from the root to
 // leftUpperLeg and rightUpperLeg (of all children of the root where those names are missing) and
