@@ -1,0 +1,345 @@
+#include "connectivity_coder.h"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "free_numbers.h"
+#include "integer_model.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+// A side that a neighbouring face may still use, as the directed edge that this face would have.
+struct Gate {
+  int from = 0, to = 0;
+  int opposite = 0;  // a corner of the face behind it
+  int face = 0;      // its number
+};
+
+// How a corner is named.
+enum CornerKind { kNewVertex = 0, kAfterTo = 1, kBeforeFrom = 2, kOtherVertex = 3 };
+
+uint64_t EdgeKey(int from, int to) {
+  return static_cast<uint64_t>(static_cast<uint32_t>(from)) << 32 | static_cast<uint32_t>(to);
+}
+
+// One walk over the surface that codes or decodes; both directions make the same choices.
+class ConnectivityWalk {
+ public:
+  // known: the mesh to encode, or null.
+  ConnectivityWalk(int num_vertices, int num_faces, int num_corners, const Topology* known,
+                   BinaryCoder* coder)
+      : num_faces_(num_faces),
+        num_corners_(num_corners),
+        known_(known),
+        coder_(coder),
+        out_(num_vertices),
+        in_(num_vertices),
+        valence_(num_vertices, 0),
+        seen_(num_vertices, false),
+        face_sum_(num_vertices, 0),
+        free_vertices_(num_vertices),
+        free_faces_(num_faces),
+        faces_(num_faces),
+        done_(num_faces, false) {
+    if (known_ == nullptr) return;
+    for (int f = 0; f < num_faces; ++f) {
+      const auto face = known_->face(f);
+      for (size_t i = 0; i < face.size(); ++i) {
+        edge_faces_.emplace(EdgeKey(face[i], face[(i + 1) % face.size()]), f);
+      }
+    }
+  }
+
+  absl::Status Run() {
+    while (num_done_ < num_faces_) {
+      if (gates_.empty()) {
+        PLEAT_RETURN_IF_ERROR(CodeSeed());
+        continue;
+      }
+      const Gate gate = gates_.front();
+      gates_.pop_front();
+      if (!IsOpen(gate)) continue;
+      PLEAT_RETURN_IF_ERROR(CodeBehind(gate));
+    }
+    return absl::OkStatus();
+  }
+
+  const std::vector<std::vector<int32_t>>& faces() const { return faces_; }
+
+ private:
+  absl::Status Damaged() const { return absl::DataLossError("the connectivity is damaged"); }
+
+  bool IsOpen(const Gate& gate) const {
+    const auto& heads = out_[gate.from];
+    return std::find(heads.begin(), heads.end(), gate.to) != heads.end();
+  }
+
+  // Encoder: a face that has the directed edge and is not coded yet, or -1.
+  int FindFace(const Gate& gate) const {
+    const auto [begin, end] = edge_faces_.equal_range(EdgeKey(gate.from, gate.to));
+    int found = -1;
+    for (auto it = begin; it != end; ++it) {
+      if (!done_[it->second] && (found < 0 || it->second < found)) found = it->second;
+    }
+    return found;
+  }
+
+  absl::Status CodeSize(int* size) {
+    *size = sizes_.CodeUnsigned(coder_, *size - 3, {0}, 0) + 3;
+    num_corners_ -= *size;
+    return num_corners_ < 0 || coder_->overrun() ? Damaged() : absl::OkStatus();
+  }
+
+  // The first face of a component: the free one with the lowest number.
+  absl::Status CodeSeed() {
+    std::vector<int32_t> corners;
+    if (known_ != nullptr) {
+      const auto face = known_->face(free_faces_.Select(0));
+      corners.assign(face.begin(), face.end());
+    }
+    int size = static_cast<int>(corners.size());
+    PLEAT_RETURN_IF_ERROR(CodeSize(&size));
+    corners.resize(size);
+    for (int i = 0; i < size; ++i) {
+      PLEAT_RETURN_IF_ERROR(
+          CodeCorner(i == 0 ? last_vertex_ : corners[i - 1], -1, last_vertex_, &corners[i]));
+    }
+    return Finish(free_faces_.Select(0), 0, std::move(corners));
+  }
+
+  absl::Status CodeBehind(const Gate& gate) {
+    const int face = known_ != nullptr ? FindFace(gate) : -1;
+    const int present = borders_.CodeUnsigned(
+        coder_, face < 0, {std::min<int>(valence_[gate.from], 9), last_border_}, 0);
+    last_border_ = present;
+    if (present > 1) return Damaged();
+    if (present == 1) {  // a border of the surface
+      RemoveOpen(gate.from, gate.to);
+      return absl::OkStatus();
+    }
+    std::vector<int32_t> corners;
+    int rotation = 0;
+    if (known_ != nullptr) {
+      const auto named = known_->face(face);
+      const int size = static_cast<int>(named.size());
+      while (named[rotation] != gate.from || named[(rotation + 1) % size] != gate.to) ++rotation;
+      for (int i = 0; i < size; ++i) corners.push_back(named[(rotation + i) % size]);
+    }
+    int size = static_cast<int>(corners.size());
+    PLEAT_RETURN_IF_ERROR(CodeSize(&size));
+    corners.resize(size);
+    corners[0] = gate.from;
+    corners[1] = gate.to;
+    for (int i = 2; i < size; ++i) {
+      PLEAT_RETURN_IF_ERROR(
+          CodeCorner(corners[i - 1], i + 1 == size ? gate.from : -1, gate.opposite, &corners[i]));
+    }
+    return CodeNumber(gate.face, face, rotation, std::move(corners));
+  }
+
+  // The corner that follows `before`; `after`: the corner behind it where that is known, or -1.
+  absl::Status CodeCorner(int before, int after, int opposite, int32_t* vertex) {
+    const bool any = num_done_ > 0;
+    const int next = any && !out_[before].empty() ? out_[before].back() : -1;
+    const int previous = any && after >= 0 && !in_[after].empty() ? in_[after].back() : -1;
+    int kind = kOtherVertex;
+    if (known_ != nullptr) {
+      kind = !seen_[*vertex]       ? kNewVertex
+             : *vertex == next     ? kAfterTo
+             : *vertex == previous ? kBeforeFrom
+                                   : kOtherVertex;
+    }
+    const int situation = (next >= 0) + 2 * (previous >= 0) + 4 * (next >= 0 && next == previous);
+    const int valence_before = std::min<int>(valence_[before], 9);
+    const int valence_after = after < 0 ? 10 : std::min<int>(valence_[after], 9);
+    kind = kinds_.CodeUnsigned(coder_, kind,
+                               {situation * 11 + valence_before, situation * 11 + valence_after,
+                                valence_before * 11 + valence_after, situation * 16 + history_},
+                               situation);
+    history_ = (history_ << 2 | std::min(kind, 3)) & 15;
+    if (kind > kOtherVertex || (kind == kAfterTo && next < 0) ||
+        (kind == kBeforeFrom && previous < 0)) {
+      return Damaged();
+    }
+    if (kind == kAfterTo) *vertex = next;
+    if (kind == kBeforeFrom) *vertex = previous;
+    if (kind == kOtherVertex) {
+      const int delta = others_.CodeSigned(coder_, *vertex - before, {0}, 0);
+      const int64_t value = int64_t{before} + delta;
+      if (value < 0 || value >= static_cast<int64_t>(out_.size()) || !seen_[value]) {
+        return Damaged();
+      }
+      *vertex = static_cast<int32_t>(value);
+    }
+    return kind == kNewVertex ? CodeNewVertex(before, after, opposite, vertex) : absl::OkStatus();
+  }
+
+  absl::Status CodeNewVertex(int before, int after, int opposite, int32_t* vertex) {
+    if (free_vertices_.num_free() == 0) return Damaged();
+    if (after < 0) after = before;
+    // The file's numbers of neighbours are near each other: the middle one of three.
+    const int guess =
+        std::max(std::min(before, after), std::min(std::max(before, after), opposite));
+    const int spread =
+        BitLengthClass(std::max({before, after, opposite}) - std::min({before, after, opposite}));
+    const int base = free_vertices_.Rank(guess);
+    const int rank = vertices_.Code(coder_, free_vertices_, {before, opposite, after}, base, spread,
+                                    free_vertices_.Rank(*vertex));
+    if (rank < 0 || rank >= free_vertices_.num_free() || coder_->overrun()) return Damaged();
+    *vertex = free_vertices_.Select(rank);
+    free_vertices_.Take(*vertex);
+    seen_[*vertex] = true;
+    last_vertex_ = *vertex;
+    return absl::OkStatus();
+  }
+
+  // The face's own number in the file and which of its corners the file names first.
+  absl::Status CodeNumber(int behind, int face, int rotation, std::vector<int32_t> corners) {
+    int64_t sum = 0, count = 0;
+    for (const int32_t v : corners) {
+      sum += face_sum_[v];
+      count += valence_[v];
+    }
+    const int guess = count > 0 ? static_cast<int>(sum / count) : 0;
+    const int base = free_faces_.Rank(guess);
+    const int class_ = std::min<int>(static_cast<int>(count), 15);
+    const int rank = numbers_.Code(coder_, free_faces_, {behind, behind, behind}, base, class_,
+                                   known_ ? free_faces_.Rank(face) : 0);
+    if (rank < 0 || rank >= free_faces_.num_free() || coder_->overrun()) return Damaged();
+    face = free_faces_.Select(rank);
+    const int size = static_cast<int>(corners.size());
+    const int lowest =
+        static_cast<int>(std::min_element(corners.begin(), corners.end()) - corners.begin());
+    // As the place of the file's first corner among `corners`.
+    const int first = rotations_.CodeUnsigned(coder_, (size - rotation) % size,
+                                              {std::min(lowest, 7), last_first_}, 0);
+    if (first >= size) return Damaged();
+    last_first_ = std::min(first, 7);
+    return Finish(face, first, std::move(corners));
+  }
+
+  absl::Status Finish(int face, int first, std::vector<int32_t> corners) {
+    const size_t size = corners.size();
+    for (size_t i = 0; i < size; ++i) {
+      const int from = corners[i], to = corners[(i + 1) % size];
+      if (!RemoveOpen(from, to)) {
+        out_[to].push_back(from);
+        in_[from].push_back(to);
+        gates_.push_back({to, from, corners[(i + 2) % size], face});
+      }
+      ++valence_[from];
+      face_sum_[from] += face;
+    }
+    free_faces_.Take(face);
+    done_[face] = true;
+    ++num_done_;
+    std::rotate(corners.begin(), corners.begin() + first, corners.end());
+    faces_[face] = std::move(corners);
+    return absl::OkStatus();
+  }
+
+  bool RemoveOpen(int from, int to) {
+    auto& heads = out_[from];
+    const auto head = std::find(heads.begin(), heads.end(), to);
+    if (head == heads.end()) return false;
+    heads.erase(head);
+    auto& tails = in_[to];
+    tails.erase(std::find(tails.begin(), tails.end(), from));
+    return true;
+  }
+
+  // The rank of a free number: one of the neighbours of `near`, or a signed difference to `base`.
+  // The last magnitudes tell how far numbers jump just now.
+  struct RankModel {
+    IntegerModel<2> hits{{256, 16 * 4}, 1};
+    int history = 0;
+    IntegerModel<2> bits{{16 * 16, 16}, 1};
+    IntegerModel<2> mantissas{{20 * 8, 20}, 1};
+    int last = 0;
+
+    int Code(BinaryCoder* coder, const FreeNumbers& free, const std::array<int, 3>& near, int base,
+             int context, int rank) {
+      for (int i = 0; i < 4; ++i) {
+        const int candidate = free.Rank(near[i / 2]) - i % 2;  // the free number above, or below
+        const int hit = hits.CodeUnsigned(coder, rank == candidate,
+                                          {(history & 63) * 4 + i, context * 4 + i}, 0);
+        history = (history << 1 | (hit != 0)) & 255;
+        if (hit == 1) return candidate;
+      }
+      return base + CodeDelta(coder, rank - base, context);
+    }
+
+   private:
+    int CodeDelta(BinaryCoder* coder, int delta, int context) {
+      const int zigzag = delta < 0 ? -2 * delta - 1 : 2 * delta;
+      int length = 0;
+      while (zigzag >> length != 0) ++length;
+      length = bits.CodeUnsigned(coder, length, {context * 16 + last, last}, 0);
+      if (length > 28) return 1 << 30;
+      last = std::min(length, 15);
+      if (length <= 1) return length == 0 ? 0 : -1;
+      // The two bits below the highest are modelled, the rest is noise.
+      const int num_modelled = std::min(length - 1, 2), num_raw = length - 1 - num_modelled;
+      const int place = std::min(length, 19);
+      int high = zigzag >> num_raw & ((1 << num_modelled) - 1);
+      high = mantissas.CodeUnsigned(coder, high, {place * 8 + num_modelled, place}, 0);
+      if (high >= 1 << num_modelled) return 1 << 30;
+      const int raw = static_cast<int>(
+          coder->CodeBits(static_cast<uint32_t>(zigzag) & ((1u << num_raw) - 1), num_raw));
+      const int decoded = 1 << (length - 1) | high << num_raw | raw;
+      return decoded & 1 ? -(decoded + 1) / 2 : decoded / 2;
+    }
+  };
+
+  const int num_faces_;
+  int num_corners_;
+  const Topology* known_;
+  BinaryCoder* coder_;
+  std::unordered_multimap<uint64_t, int> edge_faces_;  // encoder
+  std::vector<std::vector<int32_t>> out_, in_;         // ends of the open edges of every vertex
+  std::vector<int32_t> valence_;                       // faces so far
+  std::vector<bool> seen_;
+  std::vector<int64_t> face_sum_;  // of the numbers of those faces
+  FreeNumbers free_vertices_, free_faces_;
+  std::vector<std::vector<int32_t>> faces_;  // by number
+  std::vector<bool> done_;
+  std::deque<Gate> gates_;
+  int num_done_ = 0, last_vertex_ = 0, last_border_ = 0, last_first_ = 0, history_ = 0;
+
+  IntegerModel<1> sizes_{{1}, 1}, others_{{1}, 1};
+  IntegerModel<2> borders_{{10, 2}, 1}, rotations_{{8, 8}, 1};
+  IntegerModel<4> kinds_{{88, 88, 121, 128}, 8};
+  RankModel vertices_, numbers_;
+};
+
+}  // namespace
+
+void EncodeTopology(const Topology& topology, BinaryCoder* coder) {
+  ConnectivityWalk walk(topology.num_vertices(), topology.num_faces(), topology.num_corners(),
+                        &topology, coder);
+  walk.Run().IgnoreError();  // only damaged code fails
+}
+
+absl::StatusOr<Topology> DecodeTopology(int num_vertices, int num_faces, int num_corners,
+                                        BinaryCoder* coder) {
+  ConnectivityWalk walk(num_vertices, num_faces, num_corners, nullptr, coder);
+  PLEAT_RETURN_IF_ERROR(walk.Run());
+  std::vector<int32_t> corners, sizes;
+  for (const std::vector<int32_t>& face : walk.faces()) {
+    corners.insert(corners.end(), face.begin(), face.end());
+    sizes.push_back(static_cast<int32_t>(face.size()));
+  }
+  if (static_cast<int>(corners.size()) != num_corners) {
+    return absl::DataLossError("the connectivity is damaged");
+  }
+  return Topology::Create(num_vertices, std::move(corners), std::move(sizes));
+}
+
+}  // namespace pleat

@@ -1,0 +1,19 @@
+// Polygons with their exact order, numbering and rotation, coded by growing a region of faces.
+// Connectivity after Gumhold and Strasser 1998 (cut-border machine) with vertex valences as
+// context; numbers are coded as ranks among the numbers that are still free. Any polygon soup is
+// accepted.
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "binary_coder.h"
+#include "pleat/mesh/topology.h"
+
+namespace pleat {
+
+void EncodeTopology(const Topology& topology, BinaryCoder* coder);
+
+// num_corners: the sum of all face sizes. kDataLoss when the code is damaged.
+absl::StatusOr<Topology> DecodeTopology(int num_vertices, int num_faces, int num_corners,
+                                        BinaryCoder* coder);
+
+}  // namespace pleat

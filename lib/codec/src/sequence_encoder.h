@@ -1,0 +1,42 @@
+// One encoding of an analysed sequence at one quantisation step.
+#pragma once
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/bytes.h"
+#include "pleat/base/progress.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "residual_coder.h"
+#include "sequence_analysis.h"
+
+namespace pleat {
+
+class SequenceEncoder {
+ public:
+  // Codes what does not depend on the rate. num_threads: 0 = one per core.
+  SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis, int num_threads);
+
+  // The whole file. step_m: of the fields, the one number that sets the rate; grid: of the residual
+  // layer. Errors: see CompressSequence.
+  absl::StatusOr<std::string> Encode(double step_m, const ResidualGrid& grid,
+                                     const Progress& progress) const;
+
+  // Connectivity, face order and appearance, in bytes.
+  uint64_t topology_bytes() const { return topology_.size() + appearance_.size(); }
+  // Components that are worth coding at that step.
+  int NumComponents(const SegmentAnalysis& segment, double step_m) const;
+  const SequenceAnalysis& analysis() const { return analysis_; }
+
+ private:
+  struct Shared;
+  absl::Status EncodeSegment(const SegmentAnalysis& segment, const Shared& shared,
+                             ByteWriter* writer) const;
+
+  const MeshSequence& sequence_;
+  const SequenceAnalysis analysis_;
+  const int num_threads_;
+  std::string topology_, appearance_;
+};
+
+}  // namespace pleat
