@@ -24,6 +24,8 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddEvaluateVerb(*app, session);
   AddRenderVerb(*app, session);
   AddCompareVerb(*app, session);
+  AddCompressVerb(*app, session);
+  AddDecompressVerb(*app, session);
   AddGenerateVerb(*app, session);
   AddUploadVerb(*app, session);
   AddSequencesVerb(*app, session);

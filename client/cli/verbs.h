@@ -22,6 +22,8 @@ void AddServerFlags(CLI::App* verb, Session& session);
 void AddInProcessFlag(CLI::App* verb, Session& session);
 
 void AddGenerateVerb(CLI::App& app, Session& session);
+void AddCompressVerb(CLI::App& app, Session& session);
+void AddDecompressVerb(CLI::App& app, Session& session);
 void AddInspectVerb(CLI::App& app, Session& session);
 void AddCompareVerb(CLI::App& app, Session& session);
 void AddRenderVerb(CLI::App& app, Session& session);

@@ -154,5 +154,38 @@ TEST(Local, RefusesWhatIsNotHumanLike) {
   EXPECT_EQ(result.exit_code, 5) << result.err;
 }
 
+TEST(Local, CompressesWithAPromiseAndDecodesRanges) {
+  PleatProgram pleat;
+  const std::string input = pleat.GeneratePerformer(40, 800);
+  const std::string file = pleat.File("x.plt"), copy = pleat.File("copy.pc2");
+  ProcessResult result = pleat.Run(
+      {"compress", input, "-o", file, "--max-error-mm", "1", "--report", pleat.File("r.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json report = ParseJson(Bytes(pleat.File("r.json")));
+  EXPECT_EQ(report["schema"], "pleat.compress/1");
+  EXPECT_EQ(report["bytes"], Bytes(file).size());
+  EXPECT_LE(report["max_error_mm"], 1);
+  EXPECT_GT(report["encode_seconds"], 0);
+  EXPECT_GT(report["decode_seconds"], 0);
+
+  ASSERT_EQ(pleat.Run({"decompress", file, "-o", copy}).exit_code, 0);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence truth, ReadSequence(input));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence decoded, ReadSequence(copy));
+  EXPECT_LE(LargestDifference(truth, decoded), 1e-3);
+  EXPECT_TRUE(decoded.topology() == truth.topology());
+  EXPECT_NEAR(report["bpvf"], 8.0 * Bytes(file).size() / (40.0 * truth.num_vertices()), 1e-9);
+
+  result = pleat.Run({"decompress", file, "-o", pleat.File("few.pseq"), "--frames", "17:20"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence few, ReadSequence(pleat.File("few.pseq")));
+  ASSERT_EQ(few.num_frames(), 3);
+  EXPECT_EQ(few.frame(0), decoded.frame(17));
+
+  EXPECT_EQ(pleat.Run({"compress", input, "-o", file}).exit_code, 2);
+  EXPECT_EQ(pleat.Run({"decompress", file, "-o", copy, "--frames", "3"}).exit_code, 2);
+  EXPECT_EQ(pleat.Run({"decompress", file, "-o", copy, "--frames", "3:99"}).exit_code, 3);
+  EXPECT_EQ(pleat.Run({"decompress", copy, "-o", pleat.File("no.pc2")}).exit_code, 3);
+}
+
 }  // namespace
 }  // namespace pleat

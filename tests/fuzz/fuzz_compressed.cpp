@@ -1,0 +1,18 @@
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "codec/compressed_clip.h"
+#include "pleat/codec/sequence_decoder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  // With the right checksums, so that the fuzzer gets behind them.
+  pleat::SequenceDecoderLimits limits;
+  limits.max_vertices = limits.max_faces = 20'000;
+  limits.max_frames = 500;
+  limits.max_field_bytes = 100'000'000;
+  auto decoder = pleat::SequenceDecoder::Open(
+      pleat::ResealSections({reinterpret_cast<const char*>(data), size}), limits);
+  if (decoder.ok()) decoder->DecodeAll().IgnoreError();
+  return 0;
+}
