@@ -18,6 +18,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   app->require_subcommand(1);
   app->footer(std::string("\n") + ExitCodeHelp());
   AddInspectVerb(*app, session);
+  AddRigVerb(*app, session);
   AddTrainVerb(*app, session);
   AddMotionVerb(*app, session);
   AddPoseVerb(*app, session);

@@ -9,14 +9,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json JointsJson(const Skeleton& skeleton) {
-  ordered_json joints = ordered_json::array();
-  for (const Joint& joint : skeleton.joints()) {
-    const Eigen::Vector3d& p = joint.rest_position;
-    joints.push_back(
-        {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
-  }
-  return joints;
+ordered_json ErrorsJson(const std::map<std::string, ErrorSummary>& errors) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [name, error] : errors) json[name] = ErrorJson(error);
+  return json;
 }
 
 // All bones, named by their joints, largest error first.
@@ -34,13 +30,17 @@ ordered_json WorstJointsJson(const Skeleton& skeleton, const std::vector<double>
   return joints;
 }
 
-ordered_json ErrorsJson(const std::map<std::string, ErrorSummary>& errors) {
-  ordered_json json = ordered_json::object();
-  for (const auto& [name, error] : errors) json[name] = ErrorJson(error);
-  return json;
-}
-
 }  // namespace
+
+ordered_json JointsJson(const Skeleton& skeleton) {
+  ordered_json joints = ordered_json::array();
+  for (const Joint& joint : skeleton.joints()) {
+    const Eigen::Vector3d& p = joint.rest_position;
+    joints.push_back(
+        {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
+  }
+  return joints;
+}
 
 ordered_json ErrorJson(const ErrorSummary& error) {
   return {{"mean_percent", error.mean_percent},

@@ -10,8 +10,12 @@
 #include "pleat/character/evaluate.h"
 #include "pleat/character/train_options.h"
 #include "pleat/mesh/error_metrics.h"
+#include "pleat/skeleton/skeleton.h"
 
 namespace pleat {
+
+// Joints in order: {"name", "parent", "position_m"}, rest pose.
+nlohmann::ordered_json JointsJson(const Skeleton& skeleton);
 
 // {"mean_percent", "rms_percent", "p95_percent", "max_percent", "mean_mm"}
 nlohmann::ordered_json ErrorJson(const ErrorSummary& error);

@@ -6,6 +6,7 @@
 #include "cli/animation_writer.h"
 #include "cli/frame_rate.h"
 #include "cli/progress_display.h"
+#include "cli/report_json.h"
 #include "cli/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
@@ -26,13 +27,7 @@ nlohmann::ordered_json TruthJson(const PerformerOptions& options, const Performe
   json["seed"] = options.seed;
   json["character_seed"] = options.character_seed;
   json["fps"] = truth.track.fps;
-  for (const Joint& joint : truth.rig.skeleton.joints()) {
-    json["joints"].push_back(
-        {{"name", joint.name},
-         {"parent", joint.parent},
-         {"position_m",
-          {joint.rest_position.x(), joint.rest_position.y(), joint.rest_position.z()}}});
-  }
+  json["joints"] = JointsJson(truth.rig.skeleton);
   json["skirt_vertices"] = nlohmann::ordered_json::array();
   for (size_t v = 0; v < truth.is_skirt.size(); ++v) {
     if (truth.is_skirt[v]) json["skirt_vertices"].push_back(v);

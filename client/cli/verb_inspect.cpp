@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/frame_rate.h"
 #include "cli/input.h"
+#include "cli/mesh_report_json.h"
 #include "cli/verbs.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/sequence_file.h"
@@ -29,22 +30,6 @@ Eigen::AlignedBox3d BoundsOfAllFrames(const MeshSequence& sequence) {
 
 nlohmann::ordered_json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-nlohmann::ordered_json ReportJson(const MeshReport& report) {
-  nlohmann::ordered_json json;
-  json["closed"] = report.closed();
-  json["num_components"] = report.num_components;
-  json["num_welded_components"] = report.num_welded_components;
-  json["num_boundary_edges"] = report.num_boundary_edges;
-  json["num_non_manifold_edges"] = report.num_non_manifold_edges;
-  json["num_inconsistent_edges"] = report.num_inconsistent_edges;
-  json["num_unreferenced_vertices"] = report.num_unreferenced_vertices;
-  json["num_duplicate_vertices"] = report.num_duplicate_vertices;
-  json["num_degenerate_faces"] = report.num_degenerate_faces;
-  json["signed_volume_m3"] = report.signed_volume_m3;
-  json["faults"] = DescribeFaults(report);
-  return json;
-}
-
 // What the verb finds out, in the words of both forms of output.
 struct Findings {
   Eigen::AlignedBox3d bounds;  // of all frames, metres
@@ -66,7 +51,7 @@ void PrintJson(const MeshSequence& sequence, const Findings& findings, std::ostr
   json["bounds"] = {{"min_m", VectorJson(findings.bounds.min())},
                     {"max_m", VectorJson(findings.bounds.max())}};
   json["sequence_id"] = SequenceId(EncodeSequence(sequence));
-  json["mesh_report"] = ReportJson(findings.report);
+  json["mesh_report"] = MeshReportJson(findings.report);
   out << json.dump(2) << "\n";
 }
 

@@ -4,15 +4,20 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
 #include "cli/model_input.h"
+#include "cli/progress_display.h"
+#include "cli/rig_sheet.h"
 #include "cli/sheet.h"
 #include "cli/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/character/pose_evaluator.h"
+#include "pleat/fitting/pose_fit.h"
+#include "pleat/rigging/auto_rig.h"
 
 namespace pleat {
 namespace {
@@ -22,6 +27,7 @@ struct RenderVerbOptions {
   std::string output, frames, model, fps;
   std::optional<double> azimuth_degrees;
   SheetOptions sheet;
+  bool rig = false;
 };
 
 // The rows that a model adds below its input: what its rig alone makes of the input's poses, and
@@ -50,13 +56,72 @@ absl::Status AddModelRows(std::shared_ptr<const CharacterModel> model, const Mes
   return absl::OkStatus();
 }
 
-absl::Status RunRender(RenderVerbOptions options, const Session& session) {
-  if (options.labels.size() > options.inputs.size()) {
-    return UsageError("there are more --label than inputs");
+RigSheetRow::View ViewOf(const std::string& label, const Rig& rig, const Pose& pose,
+                         const Eigen::Matrix3Xd& positions) {
+  BoneTransforms transforms;
+  ComputeBoneTransforms(rig.skeleton, pose, {}, &transforms);
+  return {label, positions, transforms.joint_positions};
+}
+
+RigSheetRow ModelRigRow(const std::string& label, const CharacterModel& model) {
+  const Rig& rig = model.rig();
+  return {label,
+          model.topology(),
+          rig.skeleton,
+          model.record().yaw_degrees,
+          {ViewOf("rest", rig, Pose::Rest(rig.skeleton), rig.rest_positions)}};
+}
+
+// The automatic rig of a sequence: its rest frame, and the given frames in the poses fitted to
+// them.
+absl::StatusOr<RigSheetRow> SequenceRigRow(const std::string& label, const MeshSequence& sequence,
+                                           const std::vector<int>& frames, const Session& session) {
+  for (const int t : frames) {
+    if (t < sequence.num_frames()) continue;
+    return absl::InvalidArgumentError(absl::StrCat("'", label, "' has no frame ", t, ": it has ",
+                                                   sequence.num_frames(), " frames, from 0"));
   }
-  if (!options.frames.empty()) {
-    PLEAT_ASSIGN_OR_RETURN(options.sheet.frames, ParseFrameList(options.frames));
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  AutoRigSummary summary;
+  PLEAT_ASSIGN_OR_RETURN(const Rig rig,
+                         AutoRig(sequence, {}, &summary, InterruptibleProgress(&display)));
+  RigSheetRow row{label, sequence.topology(), rig.skeleton, summary.yaw_degrees, {}};
+  row.views.push_back(ViewOf(absl::StrCat("rest: frame ", summary.rest_frame), rig,
+                             Pose::Rest(rig.skeleton), rig.rest_positions));
+  if (frames.empty()) return row;
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitPoses(sequence.Subset(frames), rig, {}, nullptr,
+                                                         InterruptibleProgress(&display)));
+  for (size_t k = 0; k < frames.size(); ++k) {
+    row.views.push_back(ViewOf(absl::StrCat("frame ", frames[k]), rig, track.poses[k],
+                               sequence.FrameAsDouble(frames[k])));
   }
+  return row;
+}
+
+absl::StatusOr<std::string> DrawRigs(const RenderVerbOptions& options, const Session& session) {
+  if (!options.model.empty() || options.azimuth_degrees) {
+    return UsageError("--rig goes with neither --model nor --azimuth; a model is an INPUT there");
+  }
+  std::vector<RigSheetRow> rows;
+  for (size_t i = 0; i < options.inputs.size(); ++i) {
+    const std::string& input = options.inputs[i];
+    const std::string label = i < options.labels.size() ? options.labels[i] : "";
+    if (absl::EndsWith(input, ".pleat")) {
+      PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
+                             LoadModel(session, input));
+      rows.push_back(ModelRigRow(label.empty() ? model->name() : label, *model));
+      continue;
+    }
+    PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, input, options.fps));
+    PLEAT_ASSIGN_OR_RETURN(RigSheetRow row,
+                           SequenceRigRow(label.empty() ? sequence.name() : label, sequence,
+                                          options.sheet.frames, session));
+    rows.push_back(std::move(row));
+  }
+  return RenderRigSheet(rows, {options.sheet.tile_width, options.sheet.tile_height});
+}
+
+absl::StatusOr<std::string> DrawSheet(RenderVerbOptions options, const Session& session) {
   std::vector<SheetRow> rows;
   for (size_t i = 0; i < options.inputs.size(); ++i) {
     PLEAT_ASSIGN_OR_RETURN(MeshSequence sequence,
@@ -72,7 +137,18 @@ absl::Status RunRender(RenderVerbOptions options, const Session& session) {
     options.sheet.azimuth_degrees = model->record().yaw_degrees;
   }
   if (options.azimuth_degrees) options.sheet.azimuth_degrees = *options.azimuth_degrees;
-  PLEAT_ASSIGN_OR_RETURN(const std::string png, RenderSheet(rows, options.sheet));
+  return RenderSheet(rows, options.sheet);
+}
+
+absl::Status RunRender(RenderVerbOptions options, const Session& session) {
+  if (options.labels.size() > options.inputs.size()) {
+    return UsageError("there are more --label than inputs");
+  }
+  if (!options.frames.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(options.sheet.frames, ParseFrameList(options.frames));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const std::string png,
+                         options.rig ? DrawRigs(options, session) : DrawSheet(options, session));
   PLEAT_RETURN_IF_ERROR(WriteFile(options.output, png));
   if (!session.quiet) *session.out << options.output << "\n";
   return absl::OkStatus();
@@ -104,6 +180,9 @@ void AddRenderVerb(CLI::App& app, Session& session) {
   verb->add_option("--tile-height", options->sheet.tile_height, "pixels")
       ->check(CLI::Range(32, 2048))
       ->capture_default_str();
+  verb->add_flag("--rig", options->rig,
+                 "draw mesh and skeleton from two sides: the rig of a model (.pleat), or the "
+                 "automatic one of a sequence in its rest frame and in --frames");
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
   AddServerFlags(verb, session);
 }

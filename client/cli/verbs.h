@@ -27,6 +27,7 @@ void AddDecompressVerb(CLI::App& app, Session& session);
 void AddInspectVerb(CLI::App& app, Session& session);
 void AddCompareVerb(CLI::App& app, Session& session);
 void AddRenderVerb(CLI::App& app, Session& session);
+void AddRigVerb(CLI::App& app, Session& session);
 void AddTrainVerb(CLI::App& app, Session& session);
 void AddPoseVerb(CLI::App& app, Session& session);
 void AddMotionVerb(CLI::App& app, Session& session);

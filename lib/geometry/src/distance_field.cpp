@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/parallel.h"
@@ -12,8 +13,108 @@ namespace {
 
 constexpr int kMinResolution = 8, kMaxResolution = 512;
 constexpr double kBandCells = 2;
+constexpr int kBlockNodes = 16;             // work items
+constexpr double kWindingTolerance = 0.05;  // of the winding number's approximation
+
+// Side of a ball free of surface whose centre has the winding number `winding`.
+enum class Side { kUnknown, kInside, kOutside };
+
+// The winding number is harmonic away from the surface, so that its distance u >= 0 to 0 (outside)
+// or to 1 (inside) obeys Harnack's inequality: within `ratio` of the radius of a ball free of
+// surface it is at most u (1 + ratio) / (1 - ratio)^2. The ball lies on one side when that stays
+// under one half. Across the holes of an open mesh it does not.
+Side SideOfBall(double winding, double ratio) {
+  if (!(ratio < 1)) return Side::kUnknown;
+  const bool is_inside = winding > 0.5;
+  const double offset = std::max(is_inside ? 1 - winding : winding, 0.0) + kWindingTolerance;
+  const double largest = offset * (1 + ratio) / ((1 - ratio) * (1 - ratio));
+  if (!(largest < 0.5)) return Side::kUnknown;
+  return is_inside ? Side::kInside : Side::kOutside;
+}
 
 }  // namespace
+
+// Fills blocks of nodes from coarse to fine: far from the surface one closest point and one winding
+// number decide about many nodes.
+class DistanceField::Sampler {
+ public:
+  Sampler(const TriangleTree& tree, const WindingNumber& winding_number, DistanceField* field)
+      : tree_(tree), winding_number_(winding_number), field_(*field) {}
+
+  // Nodes low <= node < high. `reach`: an upper bound of the distance of the block's centre.
+  void Fill(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
+            double reach = std::numeric_limits<double>::infinity()) const {
+    const Eigen::Vector3i sizes = high - low;
+    if (sizes.prod() == 1) {
+      FillNode(low, reach, Side::kUnknown);
+      return;
+    }
+    const Eigen::Vector3d centre = Centre(low, high);
+    const double radius =
+        0.5 * field_.spacing_ * (sizes.array() - 1).matrix().cast<double>().norm();
+    const double distance = DistanceWithin(centre, reach);
+    const Side side =
+        distance > radius ? SideOfBall(winding_number_(centre), radius / distance) : Side::kUnknown;
+    if (side != Side::kUnknown) {
+      FillOneSided(low, high, centre, distance, side);
+      return;
+    }
+    Eigen::Vector3i middle = low + (sizes + Eigen::Vector3i::Ones()) / 2;
+    for (int part = 0; part < 8; ++part) {
+      Eigen::Vector3i from = low, to = high;
+      for (int k = 0; k < 3; ++k) ((part >> k & 1) != 0 ? from[k] : to[k]) = middle[k];
+      if ((from.array() >= to.array()).any()) continue;
+      Fill(from, to, distance + (Centre(from, to) - centre).norm());
+    }
+  }
+
+ private:
+  Eigen::Vector3d Centre(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const {
+    return field_.origin_ +
+           0.5 * field_.spacing_ * (low + high - Eigen::Vector3i::Ones()).cast<double>();
+  }
+
+  double DistanceWithin(const Eigen::Vector3d& point, double reach) const {
+    reach *= 1 + 1e-9;
+    return std::sqrt(tree_.ClosestPoint(point, reach * reach).squared_distance);
+  }
+
+  void FillOneSided(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
+                    const Eigen::Vector3d& centre, double distance, Side side) const {
+    const double band = kBandCells * field_.spacing_;
+    for (int z = low.z(); z < high.z(); ++z) {
+      for (int y = low.y(); y < high.y(); ++y) {
+        for (int x = low.x(); x < high.x(); ++x) {
+          const double offset = (field_.NodePosition(x, y, z) - centre).norm();
+          if (side == Side::kOutside && distance - offset >= band) {
+            field_.distances_[field_.NodeIndex(x, y, z)] = static_cast<float>(band);
+          } else {
+            FillNode({x, y, z}, distance + offset, side);
+          }
+        }
+      }
+    }
+  }
+
+  void FillNode(const Eigen::Vector3i& at, double reach, Side side) const {
+    const Eigen::Vector3d point = field_.NodePosition(at.x(), at.y(), at.z());
+    const int node = field_.NodeIndex(at.x(), at.y(), at.z());
+    const bool inside =
+        side == Side::kUnknown ? winding_number_.IsInside(point) : side == Side::kInside;
+    const double band = kBandCells * field_.spacing_;
+    const double radius = inside ? reach * (1 + 1e-9) : std::min(band, reach * (1 + 1e-9));
+    const SurfacePoint nearest = tree_.ClosestPoint(point, radius * radius);
+    const double distance = nearest.triangle < 0 ? band : std::sqrt(nearest.squared_distance);
+    field_.distances_[node] = static_cast<float>(inside ? -distance : distance);
+    if (inside && distance > 0) {
+      field_.directions_[node] = ((nearest.position - point) / distance).cast<float>();
+    }
+  }
+
+  const TriangleTree& tree_;
+  const WindingNumber& winding_number_;
+  DistanceField& field_;
+};
 
 absl::StatusOr<DistanceField> DistanceField::Compute(const TriangleTree& tree,
                                                      const WindingNumber& winding_number,
@@ -45,33 +146,18 @@ absl::StatusOr<DistanceField> DistanceField::Compute(const TriangleTree& tree,
                            static_cast<size_t>(field.num_nodes_.z());
   field.distances_.resize(num_nodes);
   field.directions_.assign(num_nodes, Eigen::Vector3f::Zero());
-  ParallelFor(field.num_nodes_.z(), options.num_threads, [&](int z) {
-    for (int y = 0; y < field.num_nodes_.y() && !progress.cancelled(); ++y) {
-      field.ComputeRow(tree, winding_number, y, z);
-    }
+  const Eigen::Vector3i num_blocks = (field.num_nodes_.array() + kBlockNodes - 1) / kBlockNodes;
+  const Sampler sampler(tree, winding_number, &field);
+  ParallelFor(num_blocks.prod(), options.num_threads, [&](int block) {
+    if (progress.cancelled()) return;
+    const Eigen::Vector3i low =
+        kBlockNodes * Eigen::Vector3i(block % num_blocks.x(),
+                                      block / num_blocks.x() % num_blocks.y(),
+                                      block / (num_blocks.x() * num_blocks.y()));
+    sampler.Fill(low, (low.array() + kBlockNodes).min(field.num_nodes_.array()).matrix());
   });
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
   return field;
-}
-
-void DistanceField::ComputeRow(const TriangleTree& tree, const WindingNumber& winding_number, int y,
-                               int z) {
-  const double band = kBandCells * spacing_;
-  // The distance changes by at most one spacing from node to node, which bounds the next search.
-  double reach = std::numeric_limits<double>::infinity();
-  for (int x = 0; x < num_nodes_.x(); ++x) {
-    const Eigen::Vector3d point = NodePosition(x, y, z);
-    const int node = NodeIndex(x, y, z);
-    const bool inside = winding_number.IsInside(point);
-    const double radius = inside ? reach : band;
-    const SurfacePoint nearest = tree.ClosestPoint(point, radius * radius);
-    const double distance = nearest.triangle < 0 ? band : std::sqrt(nearest.squared_distance);
-    distances_[node] = static_cast<float>(inside ? -distance : distance);
-    if (inside && distance > 0) {
-      directions_[node] = ((nearest.position - point) / distance).cast<float>();
-    }
-    reach = inside ? (distance + spacing_) * (1 + 1e-9) : std::numeric_limits<double>::infinity();
-  }
 }
 
 double DistanceField::SignedDistance(const Eigen::Vector3d& point) const {

@@ -47,7 +47,7 @@ class DistanceField {
   const Eigen::Vector3f& node_direction(int node) const { return directions_[node]; }
 
  private:
-  void ComputeRow(const TriangleTree& tree, const WindingNumber& winding_number, int y, int z);
+  class Sampler;
 
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double spacing_ = 1;
