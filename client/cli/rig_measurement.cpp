@@ -153,7 +153,11 @@ nlohmann::ordered_json RigMeasurementJson(const RigMeasurement& measurement) {
   const AutoRigSummary& summary = measurement.summary;
   json["rest_frame"] = summary.rest_frame;
   json["yaw_degrees"] = summary.yaw_degrees;
+  json["up"] = {summary.up.x(), summary.up.y(), summary.up.z()};
   json["residual"] = summary.residual;
+  json["evidence"] = {{"feet", summary.evidence.feet},
+                      {"knees", summary.evidence.knees},
+                      {"is_turned", summary.is_turned_by_evidence}};
   json["num_frames_tried"] = summary.num_frames_tried;
   json["num_spheres"] = summary.num_spheres;
   json["facings"] = FacingsJson(summary);

@@ -54,7 +54,7 @@ TEST(AutoRigTest, LooksForABetterRestFrame) {
   AutoRigSummary summary;
   ASSERT_THAT(AutoRig(sequence, {}, &summary), IsOk());
   EXPECT_EQ(summary.rest_frame, 3);
-  EXPECT_EQ(summary.num_frames_tried, 4);
+  EXPECT_EQ(summary.num_frames_tried, 6);
   AutoRigOptions first;
   first.rest_frame = 0;
   EXPECT_THAT(AutoRig(sequence, first),

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/status_matchers.h"
 #include "support/triangle_shapes.h"
 
 namespace pleat {
@@ -33,15 +34,21 @@ class PillarsTest : public ::testing::Test {
   TriangleMesh mesh_;
   TriangleTree tree_;
   WindingNumber winding_number_;
+  InsideTest inside_{&tree_, &winding_number_, nullptr};
 };
 
 TEST_F(PillarsTest, TheGapHidesTheOtherPillar) {
   const double tolerance = .005;
-  EXPECT_TRUE(IsVisibleInside(tree_, winding_number_, {-.3, 1, 0}, {-.1, 1, 0}, tolerance));
-  EXPECT_TRUE(IsVisibleInside(tree_, winding_number_, {-.3, .2, 0}, {-.5, 1, 0}, tolerance));
-  EXPECT_FALSE(IsVisibleInside(tree_, winding_number_, {.3, 1, 0}, {-.1, 1, 0}, tolerance));
-  EXPECT_FALSE(IsVisibleInside(tree_, winding_number_, {0, 1, 0}, {-.1, 1, 0}, tolerance));
-  EXPECT_FALSE(IsVisibleInside(tree_, winding_number_, {3, 1, 0}, {.5, 1, 0}, tolerance));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DistanceField field,
+                             DistanceField::Compute(tree_, winding_number_, {.resolution = 48}));
+  for (const InsideTest& inside : {InsideTest{&tree_, &winding_number_, nullptr},
+                                   InsideTest{&tree_, &winding_number_, &field}}) {
+    EXPECT_TRUE(IsVisibleInside(inside, {-.3, 1, 0}, {-.1, 1, 0}, tolerance));
+    EXPECT_TRUE(IsVisibleInside(inside, {-.3, .2, 0}, {-.5, 1, 0}, tolerance));
+    EXPECT_FALSE(IsVisibleInside(inside, {.3, 1, 0}, {-.1, 1, 0}, tolerance));
+    EXPECT_FALSE(IsVisibleInside(inside, {0, 1, 0}, {-.1, 1, 0}, tolerance));
+    EXPECT_FALSE(IsVisibleInside(inside, {3, 1, 0}, {.5, 1, 0}, tolerance));
+  }
 }
 
 TEST_F(PillarsTest, NearestBoneIsTheNearestOneInSight) {
@@ -49,12 +56,11 @@ TEST_F(PillarsTest, NearestBoneIsTheNearestOneInSight) {
   const Skeleton skeleton = *Skeleton::Create(
       {{"root", -1, {0, 0, 0}}, {"left", 0, {-.45, 1.5, 0}}, {"right", 0, {.12, 1.5, 0}}});
   const Eigen::Vector3d vertex(-.1, 1, 0);
-  const auto nearest = [&](const TriangleTree* tree) {
-    return FindNearestBones(skeleton, skeleton.RestPositions(), vertex, tree, &winding_number_,
-                            .005);
+  const auto nearest = [&](const InsideTest* inside) {
+    return FindNearestBones(skeleton, skeleton.RestPositions(), vertex, inside, .005);
   };
   EXPECT_THAT(nearest(nullptr).bones, ElementsAre(2));
-  const NearestBones seen = nearest(&tree_);
+  const NearestBones seen = nearest(&inside_);
   EXPECT_THAT(seen.bones, ElementsAre(1));
   EXPECT_GT(seen.distance, nearest(nullptr).distance);
 }
@@ -62,12 +68,10 @@ TEST_F(PillarsTest, NearestBoneIsTheNearestOneInSight) {
 TEST_F(PillarsTest, TiesAreShared) {
   const Skeleton skeleton = *Skeleton::Create(
       {{"root", -1, {0, 0, 0}}, {"left", 0, {-.3, 0, 0}}, {"right", 0, {.3, 0, 0}}});
-  const NearestBones nearest = FindNearestBones(skeleton, skeleton.RestPositions(), {0, .2, 0},
-                                                &tree_, &winding_number_, .005);
+  const NearestBones nearest =
+      FindNearestBones(skeleton, skeleton.RestPositions(), {0, .2, 0}, &inside_, .005);
   EXPECT_THAT(nearest.bones, ElementsAre(1, 2));
-  EXPECT_THAT(FindNearestBones(skeleton, skeleton.RestPositions(), {5, 5, 0}, &tree_,
-                               &winding_number_, .005)
-                  .bones,
+  EXPECT_THAT(FindNearestBones(skeleton, skeleton.RestPositions(), {5, 5, 0}, &inside_, .005).bones,
               IsEmpty());
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -10,88 +10,55 @@
 #include "pleat/base/status.h"
 #include "pleat/rigging/body_volume.h"
 #include "pleat/skeleton/human_template.h"
+#include "rest_frame.h"
 
 namespace pleat {
 namespace {
 
 constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left and right
-constexpr char kWhatToDo[] =
-    "choose another rest frame, one that stands upright with arms and legs apart, or bring your "
-    "own rig";
+// Evidence below this turns the character round; from `clear` on the residuals of other facings are
+// no doubt.
+constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
+constexpr double kShortArm = .02;  // of the body's size under a fifth
+constexpr double kUpCosine = .9;   // 26 degrees: a character that leans is no reason for a warning
 
-struct FrameEmbedding {
-  int frame = -1;
-  BodyVolume volume;
-  Embedding embedding;
-};
-
-// The frames to look at, best guess first.
-std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
-  if (options.rest_frame >= 0) return {options.rest_frame};
-  const int count = std::clamp(options.max_frames_tried, 1, num_frames);
-  std::vector<int> frames;
-  for (int k = 0; k < count; ++k) {
-    frames.push_back(static_cast<int>(static_cast<int64_t>(k) * num_frames / count));
-  }
-  return frames;
+FacingEvidence EvidenceOf(const MeshSequence& sequence, const FrameEmbedding& found) {
+  const double yaw = found.embedding.yaw_degrees * std::numbers::pi / 180;
+  const Eigen::Matrix3d input_from_upright = found.upright_from_input.transpose();
+  FacingEvidence evidence = WeighFacing(
+      sequence, {.frame = found.frame,
+                 .joints = found.embedding.joints,
+                 .forward = input_from_upright * Eigen::Vector3d(std::sin(yaw), 0, std::cos(yaw)),
+                 .up = input_from_upright.col(1)});
+  // In the rest frame itself the knees bend as the template does: they say nothing.
+  if (sequence.num_frames() == 1) evidence.knees = 0;
+  return evidence;
 }
 
-absl::StatusOr<FrameEmbedding> EmbedFrame(const MeshSequence& sequence, int frame,
-                                          const AutoRigOptions& options, const Progress& progress) {
-  FrameEmbedding result;
-  result.frame = frame;
-  BodyVolumeOptions volume_options = options.volume;
-  volume_options.num_threads = options.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(result.volume,
-                         ComputeBodyVolume(sequence.topology(), sequence.FrameAsDouble(frame),
-                                           volume_options, progress.Stage("rig", 0, .7)));
-  EmbeddingOptions embedding_options = options.embedding;
-  if (options.yaw_degrees) {
-    embedding_options.yaws_degrees = {*options.yaw_degrees};
-    embedding_options.adjust_yaw = false;
+// Turns the character round when feet and knees speak against the facing that the search found and
+// for the opposite one. Only kCancelled is an error.
+absl::Status CheckFacing(const MeshSequence& sequence, const AutoRigOptions& options,
+                         FrameEmbedding* found, AutoRigSummary* summary, const Progress& progress) {
+  summary->evidence = EvidenceOf(sequence, *found);
+  if (options.yaw_degrees || summary->evidence.total() > kContraryEvidence) {
+    return absl::OkStatus();
   }
-  PLEAT_ASSIGN_OR_RETURN(result.embedding, EmbedSkeleton(result.volume, embedding_options,
-                                                         progress.Stage("rig", .7, 1)));
-  return result;
-}
-
-// The first frame whose embedding is trusted, else the best of all tried.
-absl::StatusOr<FrameEmbedding> FindRestFrame(const MeshSequence& sequence,
-                                             const AutoRigOptions& options, AutoRigSummary* summary,
-                                             const Progress& progress) {
-  FrameEmbedding best;
-  best.embedding.residual = std::numeric_limits<double>::infinity();
-  absl::Status failure;
-  const std::vector<int> frames = FramesToTry(sequence.num_frames(), options);
-  for (size_t k = 0; k < frames.size(); ++k) {
-    absl::StatusOr<FrameEmbedding> tried =
-        EmbedFrame(sequence, frames[k], options,
-                   progress.Stage("rig", static_cast<double>(k) / frames.size(),
-                                  static_cast<double>(k + 1) / frames.size()));
-    ++summary->num_frames_tried;
-    if (absl::IsCancelled(tried.status())) return tried.status();
-    if (!tried.ok()) {
-      if (failure.ok()) failure = tried.status();
-      continue;
-    }
-    if (tried->embedding.residual < best.embedding.residual) best = *std::move(tried);
-    if (best.embedding.residual < options.trusted_residual) break;
-  }
-  if (best.frame < 0) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("no frame of ", sequence.name(), " (", summary->num_frames_tried,
-                     " tried) can be rigged: ", failure.message(), "; ", kWhatToDo));
-  }
-  if (best.embedding.residual > options.refused_residual) {
-    return absl::FailedPreconditionError(absl::StrFormat(
-        "%s does not look like one standing human: in the best of %d frames, frame %d, the "
-        "skeleton "
-        "fits with a residual of %.3f, above %.3f (%.0f %% of the surface is far from every "
-        "bone); %s",
-        sequence.name(), summary->num_frames_tried, best.frame, best.embedding.residual,
-        options.refused_residual, 100 * best.embedding.uncovered_share, kWhatToDo));
-  }
-  return best;
+  EmbeddingOptions embedding = options.embedding;
+  embedding.upright_from_input = found->upright_from_input;
+  embedding.yaws_degrees = {std::fmod(found->embedding.yaw_degrees + 180, 360)};
+  absl::StatusOr<Embedding> opposite = EmbedSkeleton(found->volume, embedding, progress);
+  if (absl::IsCancelled(opposite.status())) return opposite.status();
+  if (!opposite.ok() || opposite->residual > options.refused_residual) return absl::OkStatus();
+  FrameEmbedding turned{.frame = found->frame,
+                        .volume = {},
+                        .upright_from_input = found->upright_from_input,
+                        .embedding = *std::move(opposite)};
+  const FacingEvidence evidence = EvidenceOf(sequence, turned);
+  if (evidence.total() < summary->evidence.total()) return absl::OkStatus();
+  summary->evidence = evidence;
+  summary->is_turned_by_evidence = true;
+  found->embedding = std::move(turned.embedding);
+  return absl::OkStatus();
 }
 
 absl::Status CheckOptions(const MeshSequence& sequence, const AutoRigOptions& options) {
@@ -106,21 +73,21 @@ absl::Status CheckOptions(const MeshSequence& sequence, const AutoRigOptions& op
   return absl::OkStatus();
 }
 
-void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
-                 AutoRigSummary* summary) {
-  const Embedding& embedding = found.embedding;
-  summary->rest_frame = found.frame;
-  summary->yaw_degrees = embedding.yaw_degrees;
-  summary->residual = embedding.residual;
-  summary->facings = embedding.facings;
-  summary->num_spheres = embedding.num_spheres;
-  summary->surface = found.volume.surface.report;
-  if (embedding.residual >= options.trusted_residual) {
+void WarnOfFacing(const Embedding& embedding, const AutoRigOptions& options,
+                  AutoRigSummary* summary) {
+  const double total = summary->evidence.total();
+  if (total <= kContraryEvidence) {
     summary->warnings.push_back(absl::StrFormat(
-        "the skeleton fits frame %d with a residual of %.3f, above %.3f: look at the rig, and %s "
-        "if it is wrong",
-        found.frame, embedding.residual, options.trusted_residual, kWhatToDo));
+        "feet and knees speak against the facing of %.0f degrees: look at the rig, and set the yaw "
+        "if left and right are swapped",
+        embedding.yaw_degrees));
+  } else if (total < kWeakEvidence) {
+    summary->warnings.push_back(absl::StrFormat(
+        "neither feet nor knees show where the character faces: check that %.0f degrees is its "
+        "front, and set the yaw if left and right are swapped",
+        embedding.yaw_degrees));
   }
+  if (total >= kClearEvidence) return;
   for (const FacingResidual& facing : embedding.facings) {
     const double turn = std::remainder(facing.yaw_degrees - embedding.yaw_degrees, 360);
     if (std::abs(turn) < kOtherFacingDegrees ||
@@ -132,17 +99,52 @@ void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
         "yaw if left and right are swapped",
         embedding.yaw_degrees, embedding.search_residual, facing.yaw_degrees, facing.residual));
   }
-  const SurfaceReport& surface = summary->surface;
-  if (surface.num_boundary_edges > 0 || surface.num_nonmanifold_edges > 0 ||
-      surface.num_components > 1 || surface.num_flipped_triangles > 0) {
-    summary->warnings.push_back(absl::StrFormat(
-        "the mesh is not one clean closed surface: %d components, %d boundary edges, %d "
-        "non-manifold edges, %d triangles oriented inward, %d degenerate triangles, %d "
-        "unreferenced vertices",
-        surface.num_components, surface.num_boundary_edges, surface.num_nonmanifold_edges,
-        surface.num_flipped_triangles, surface.num_degenerate_triangles,
-        surface.num_unreferenced_vertices));
+}
+
+void WarnOfSurface(const SurfaceReport& surface, AutoRigSummary* summary) {
+  if (surface.num_boundary_edges == 0 && surface.num_nonmanifold_edges == 0 &&
+      surface.num_components <= 1 && surface.num_flipped_triangles == 0) {
+    return;
   }
+  summary->warnings.push_back(absl::StrFormat(
+      "the mesh is not one clean closed surface: %d components, %d boundary edges, %d "
+      "non-manifold edges, %d triangles oriented inward, %d degenerate triangles, %d "
+      "unreferenced vertices",
+      surface.num_components, surface.num_boundary_edges, surface.num_nonmanifold_edges,
+      surface.num_flipped_triangles, surface.num_degenerate_triangles,
+      surface.num_unreferenced_vertices));
+}
+
+void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
+                 AutoRigSummary* summary) {
+  const Embedding& embedding = found.embedding;
+  summary->rest_frame = found.frame;
+  summary->yaw_degrees = embedding.yaw_degrees;
+  summary->up = found.upright_from_input.row(1).transpose();
+  summary->residual = embedding.residual;
+  summary->facings = embedding.facings;
+  summary->num_spheres = embedding.num_spheres;
+  summary->surface = found.volume.surface.report;
+  if (embedding.residual >= options.trusted_residual) {
+    summary->warnings.push_back(absl::StrFormat(
+        "the skeleton fits frame %d with a residual of %.3f, above %.3f: look at the rig, and %s "
+        "if it is wrong",
+        found.frame, embedding.residual, options.trusted_residual, kRigAdvice));
+  }
+  if (embedding.arm_shortfall > kShortArm) {
+    summary->warnings.push_back(absl::StrFormat(
+        "an arm seems to end early in frame %d, as one does that is folded against the body: look "
+        "at the rig, and %s if it is wrong",
+        found.frame, kRigAdvice));
+  }
+  if (summary->up.y() < kUpCosine) {
+    summary->warnings.push_back(absl::StrFormat(
+        "the character's head points along (%.2f, %.2f, %.2f) instead of +y in frame %d: it is "
+        "rigged as it is; turn the input to Y up if it should stand",
+        summary->up.x(), summary->up.y(), summary->up.z(), found.frame));
+  }
+  WarnOfFacing(embedding, options, summary);
+  WarnOfSurface(summary->surface, summary);
 }
 
 }  // namespace
@@ -153,8 +155,9 @@ absl::StatusOr<Rig> AutoRig(const MeshSequence& sequence, const AutoRigOptions& 
   if (!summary) summary = &local_summary;
   *summary = {};
   PLEAT_RETURN_IF_ERROR(CheckOptions(sequence, options));
-  PLEAT_ASSIGN_OR_RETURN(const FrameEmbedding found,
+  PLEAT_ASSIGN_OR_RETURN(FrameEmbedding found,
                          FindRestFrame(sequence, options, summary, progress.Stage("rig", 0, .7)));
+  PLEAT_RETURN_IF_ERROR(CheckFacing(sequence, options, &found, summary, progress));
   FillSummary(found, options, summary);
 
   const Skeleton skeleton = HumanTemplate().WithRestPositions(found.embedding.joints);
@@ -163,10 +166,11 @@ absl::StatusOr<Rig> AutoRig(const MeshSequence& sequence, const AutoRigOptions& 
       (volume.scale * found.embedding.joints).colwise() + volume.offset;
   HeatWeightsOptions heat_options = options.heat;
   heat_options.num_threads = options.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(const Eigen::MatrixXd weights,
-                         SolveHeatEquilibrium(volume.surface, *volume.tree, *volume.winding_number,
-                                              skeleton, unit_joints, heat_options, &summary->heat,
-                                              progress.Stage("rig", .7, 1)));
+  PLEAT_ASSIGN_OR_RETURN(
+      const Eigen::MatrixXd weights,
+      SolveHeatEquilibrium(
+          volume.surface, {volume.tree.get(), volume.winding_number.get(), &volume.field}, skeleton,
+          unit_joints, heat_options, &summary->heat, progress.Stage("rig", .7, 1)));
   const Eigen::Matrix3Xd rest = sequence.FrameAsDouble(found.frame);
   PLEAT_ASSIGN_OR_RETURN(
       SkinWeights skin_weights,

@@ -19,21 +19,33 @@ Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen:
   return a + std::clamp(bone.dot(point - a) / squared_length, 0.0, 1.0) * bone;
 }
 
-bool IsVisibleInside(const TriangleTree& tree, const WindingNumber& winding_number,
-                     const Eigen::Vector3d& inner, const Eigen::Vector3d& vertex,
-                     double tolerance) {
+bool IsVisibleInside(const InsideTest& inside, const Eigen::Vector3d& inner,
+                     const Eigen::Vector3d& vertex, double tolerance) {
   const double length = (vertex - inner).norm();
   if (length <= 2 * tolerance) return true;
-  if (!winding_number.IsInside(inner)) return false;
+  // Between its nodes the field is off by less than one spacing.
+  const double margin = inside.field != nullptr ? inside.field->spacing() : 0;
+  if (inside.field == nullptr || std::abs(inside.field->SignedDistance(inner)) <= margin) {
+    if (!inside.winding_number->IsInside(inner)) return false;
+  }
   const Eigen::Vector3d direction = (vertex - inner) / length;
   // A ball that reaches no surface is all inside or all outside: walk from ball to ball, and ask
   // for the side again only after a step that may have crossed a surface.
   for (double walked = 0; walked < length - 2 * tolerance;) {
     const Eigen::Vector3d point = inner + walked * direction;
-    const double clearance = std::sqrt(tree.ClosestPoint(point).squared_distance);
+    if (inside.field != nullptr) {
+      const double distance = inside.field->SignedDistance(point);
+      if (distance > margin) return false;
+      if (distance < -margin - tolerance) {
+        walked += -distance - margin;
+        continue;
+      }
+    }
+    const double clearance = std::sqrt(inside.tree->ClosestPoint(point).squared_distance);
     walked += std::max(clearance, tolerance);
     if (clearance >= tolerance) continue;
-    if (walked < length - 2 * tolerance && !winding_number.IsInside(inner + walked * direction)) {
+    if (walked < length - 2 * tolerance &&
+        !inside.winding_number->IsInside(inner + walked * direction)) {
       return false;
     }
   }
@@ -41,8 +53,8 @@ bool IsVisibleInside(const TriangleTree& tree, const WindingNumber& winding_numb
 }
 
 NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
-                              const Eigen::Vector3d& vertex, const TriangleTree* tree,
-                              const WindingNumber* winding_number, double tolerance) {
+                              const Eigen::Vector3d& vertex, const InsideTest* inside,
+                              double tolerance) {
   std::vector<std::pair<double, int>> by_distance;
   std::vector<Eigen::Vector3d> nearest_points(skeleton.num_joints());
   for (int b = 1; b < skeleton.num_joints(); ++b) {
@@ -54,9 +66,7 @@ NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& 
   NearestBones nearest;
   for (const auto& [distance, b] : by_distance) {
     if (!nearest.bones.empty() && distance > nearest.distance * kTieRatio) break;
-    if (tree && !IsVisibleInside(*tree, *winding_number, nearest_points[b], vertex, tolerance)) {
-      continue;
-    }
+    if (inside && !IsVisibleInside(*inside, nearest_points[b], vertex, tolerance)) continue;
     if (nearest.bones.empty()) nearest.distance = distance;
     nearest.bones.push_back(b);
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "main_body.h"
 #include "pleat/base/status.h"
 #include "pleat/rigging/bone_visibility.h"
 #include "pleat/skeleton/human_template.h"
@@ -19,75 +20,20 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kMinYawChangeDegrees = 10;
-
-// The spheres that hang together and hold the most volume, and the bounds of the mesh components
-// around them: things that float beside the character are left out.
-struct MainBody {
-  std::vector<Sphere> spheres;
-  std::vector<char> is_body;  // per mesh component
-  Eigen::AlignedBox3d bounds;
-};
-
-std::vector<Sphere> LargestConnectedGroup(const SphereGraph& graph) {
-  std::vector<int> group(graph.size(), -1);
-  int best_group = -1;
-  double best_volume = 0;
-  for (int seed = 0; seed < graph.size(); ++seed) {
-    if (group[seed] >= 0) continue;
-    double volume = 0;
-    for (int i = 0; i < graph.size(); ++i) {
-      if (!std::isfinite(graph.PathLength(seed, i))) continue;
-      group[i] = seed;
-      volume += std::pow(graph.sphere(i).radius, 3);
-    }
-    if (volume > best_volume) {
-      best_volume = volume;
-      best_group = seed;
-    }
-  }
-  std::vector<Sphere> spheres;
-  for (int i = 0; i < graph.size(); ++i) {
-    if (group[i] == best_group) spheres.push_back(graph.sphere(i));
-  }
-  return spheres;
-}
-
-MainBody FindMainBody(const BodyVolume& volume, const SphereGraph& graph) {
-  MainBody body;
-  body.spheres = LargestConnectedGroup(graph);
-  const SolidSurface& surface = volume.surface;
-  body.is_body.assign(surface.report.num_components, 0);
-  for (int f = 0; f < surface.triangles.cols(); ++f) {
-    const int component = surface.triangle_components[f];
-    if (body.is_body[component]) continue;
-    const Eigen::Vector3d corner = surface.positions.col(surface.triangles(0, f));
-    body.is_body[component] =
-        std::any_of(body.spheres.begin(), body.spheres.end(), [&](const Sphere& sphere) {
-          return (sphere.centre - corner).norm() < 1.5 * sphere.radius + volume.field.spacing();
-        });
-  }
-  for (int f = 0; f < surface.triangles.cols(); ++f) {
-    if (!body.is_body[surface.triangle_components[f]]) continue;
-    for (int k = 0; k < 3; ++k) {
-      body.bounds.extend(Eigen::Vector3d(surface.positions.col(surface.triangles(k, f))));
-    }
-  }
-  return body;
-}
+constexpr double kArmShare = .2;  // of the body's size; arms measure .21 to .31
 
 // Share of the area of the body's components that lies farther than `reach` from every bone.
-double UncoveredShare(const SolidSurface& surface, const std::vector<char>& is_body,
+double UncoveredShare(const SolidSurface& surface, const MainBody& body,
                       const Eigen::Matrix3Xd& joints, double reach) {
   double total = 0, uncovered = 0;
   for (int f = 0; f < surface.triangles.cols(); ++f) {
-    if (!is_body[surface.triangle_components[f]]) continue;
-    const Eigen::Vector3d a = surface.positions.col(surface.triangles(0, f));
-    const Eigen::Vector3d b = surface.positions.col(surface.triangles(1, f));
-    const Eigen::Vector3d c = surface.positions.col(surface.triangles(2, f));
+    if (body.is_body[surface.triangle_components[f]] == 0) continue;
+    const Eigen::Vector3d a = body.positions.col(surface.triangles(0, f));
+    const Eigen::Vector3d b = body.positions.col(surface.triangles(1, f));
+    const Eigen::Vector3d c = body.positions.col(surface.triangles(2, f));
     const double area = (b - a).cross(c - a).norm();
     total += area;
-    const NearestBones nearest =
-        FindNearestBones(HumanTemplate(), joints, (a + b + c) / 3, nullptr, nullptr, 0);
+    const NearestBones nearest = FindNearestBones(HumanTemplate(), joints, (a + b + c) / 3);
     if (nearest.distance > reach) uncovered += area;
   }
   return uncovered / total;
@@ -116,8 +62,10 @@ Eigen::Matrix3Xd TurnedTemplate(double yaw_rad, double body_size) {
                       HumanTemplate().RestPositions());
 }
 
-Eigen::Matrix3Xd WorldFromUnit(const BodyVolume& volume, const Eigen::Matrix3Xd& points) {
-  return (points.colwise() - volume.offset) / volume.scale;
+// From the upright unit box to the input.
+Eigen::Matrix3Xd WorldFromUpright(const BodyVolume& volume, const Eigen::Matrix3d& upright,
+                                  const Eigen::Matrix3Xd& points) {
+  return ((upright.transpose() * points).colwise() - volume.offset) / volume.scale;
 }
 
 // One facing of the template and how far its search has come.
@@ -210,16 +158,37 @@ absl::StatusOr<const FacingSearch*> AdjustFacing(
   return adjusted.found ? &adjusted : best;
 }
 
+// Embedding::arm_shortfall. joints in the unit box.
+double ArmShortfall(const Eigen::Matrix3Xd& joints, double body_size) {
+  const auto length = [&](int shoulder, int elbow, int hand) {
+    return (joints.col(elbow) - joints.col(shoulder)).norm() +
+           (joints.col(hand) - joints.col(elbow)).norm();
+  };
+  const double shorter = std::min(length(kLeftUpperArm, kLeftLowerArm, kLeftHand),
+                                  length(kRightUpperArm, kRightLowerArm, kRightHand));
+  return std::max(0.0, kArmShare - shorter / body_size);
+}
+
 }  // namespace
+
+Eigen::Matrix3d UprightFromJoints(const Eigen::Matrix3Xd& joints) {
+  const Eigen::Vector3d feet = 0.5 * (joints.col(kLeftFoot) + joints.col(kRightFoot));
+  const Eigen::Vector3d up = (Eigen::Vector3d(joints.col(kHead)) - feet).normalized();
+  Eigen::Vector3d left = joints.col(kLeftUpperLeg) - joints.col(kRightUpperLeg) +
+                         joints.col(kLeftUpperArm) - joints.col(kRightUpperArm);
+  left = (left - up * up.dot(left)).normalized();
+  Eigen::Matrix3d upright;
+  upright << left.transpose(), up.transpose(), left.cross(up).transpose();
+  return upright;
+}
 
 absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const EmbeddingOptions& options,
                                         const Progress& progress) {
   if (options.yaws_degrees.empty()) {
     return absl::InvalidArgumentError("no facing to try for the skeleton");
   }
-  const SphereGraph whole(PackSpheres(volume.medial_samples, options.max_spheres), volume.field);
-  const MainBody body = FindMainBody(volume, whole);
-  const SphereGraph graph(body.spheres, volume.field);
+  const MainBody body = FindMainBody(volume, options.max_spheres, options.upright_from_input);
+  const SphereGraph& graph = body.graph;
   const double body_size = body.bounds.sizes().maxCoeff();
   const double floor_height = body.bounds.min().y();
 
@@ -247,13 +216,15 @@ absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const Embeddin
   embedding.yaw_degrees = best->facing.yaw_degrees;
   for (const auto& search : searches) embedding.facings.push_back(search->facing);
   const Eigen::Matrix3Xd best_joints = PlaceAllJoints(graph, best->tree, best->found->spheres);
-  embedding.initial_joints = WorldFromUnit(volume, best_joints);
+  const Eigen::Matrix3d& upright = options.upright_from_input;
+  embedding.initial_joints = WorldFromUpright(volume, upright, best_joints);
   const Eigen::Matrix3Xd refined =
       RefineEmbedding(best_joints, TurnedTemplate(embedding.yaw_degrees / kDegrees, body_size),
-                      volume.medial_samples, options.refinement);
-  embedding.joints = WorldFromUnit(volume, refined);
+                      body.medial_samples, options.refinement);
+  embedding.joints = WorldFromUpright(volume, upright, refined);
+  embedding.arm_shortfall = ArmShortfall(refined, body_size);
   embedding.uncovered_share =
-      UncoveredShare(volume.surface, body.is_body, refined, options.cover_distance * body_size);
+      UncoveredShare(volume.surface, body, refined, options.cover_distance * body_size);
   embedding.residual = embedding.search_residual +
                        options.uncovered_weight * std::min(0.25, embedding.uncovered_share);
   PLEAT_RETURN_IF_ERROR(progress.Report(1));

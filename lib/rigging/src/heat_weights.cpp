@@ -75,8 +75,7 @@ void HeatColdComponents(const SolidSurface& surface, const Skeleton& skeleton,
     for (int k = 0; k < 3; ++k) {
       const int v = surface.triangles(k, f);
       if (!(*nearest)[v].bones.empty()) continue;
-      (*nearest)[v] =
-          FindNearestBones(skeleton, joints, surface.positions.col(v), nullptr, nullptr, 0);
+      (*nearest)[v] = FindNearestBones(skeleton, joints, surface.positions.col(v));
     }
   }
   summary->num_cold_components = static_cast<int>(std::count(is_warm.begin(), is_warm.end(), 0));
@@ -85,9 +84,9 @@ void HeatColdComponents(const SolidSurface& surface, const Skeleton& skeleton,
 }  // namespace
 
 absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
-    const SolidSurface& surface, const TriangleTree& tree, const WindingNumber& winding_number,
-    const Skeleton& skeleton, const Eigen::Matrix3Xd& joints, const HeatWeightsOptions& options,
-    HeatWeightsSummary* summary, const Progress& progress) {
+    const SolidSurface& surface, const InsideTest& inside, const Skeleton& skeleton,
+    const Eigen::Matrix3Xd& joints, const HeatWeightsOptions& options, HeatWeightsSummary* summary,
+    const Progress& progress) {
   HeatWeightsSummary local_summary;
   if (!summary) summary = &local_summary;
   *summary = {};
@@ -101,8 +100,8 @@ absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
   std::vector<NearestBones> nearest(num_vertices);
   ParallelFor(num_vertices, options.num_threads, [&](int v) {
     if (progress.cancelled()) return;
-    nearest[v] = FindNearestBones(skeleton, joints, surface.positions.col(v), &tree,
-                                  &winding_number, kToleranceFraction * diagonal);
+    nearest[v] = FindNearestBones(skeleton, joints, surface.positions.col(v), &inside,
+                                  kToleranceFraction * diagonal);
   });
   PLEAT_RETURN_IF_ERROR(progress.Report(0.7));
   for (const NearestBones& bones : nearest) summary->num_hidden_vertices += bones.bones.empty();
@@ -141,8 +140,7 @@ absl::StatusOr<SkinWeights> WeightsOfInput(const SolidSurface& surface,
     if (source >= 0) {
       dense.row(v) = surface_weights.row(source);
     } else {
-      for (int b :
-           FindNearestBones(skeleton, joints, positions.col(v), nullptr, nullptr, 0).bones) {
+      for (int b : FindNearestBones(skeleton, joints, positions.col(v)).bones) {
         dense(v, b) = 1;
       }
     }
@@ -161,8 +159,8 @@ absl::StatusOr<SkinWeights> ComputeHeatWeights(const Topology& topology,
   const WindingNumber winding_number(tree);
   const Eigen::Matrix3Xd joints = skeleton.RestPositions();
   PLEAT_ASSIGN_OR_RETURN(const Eigen::MatrixXd weights,
-                         SolveHeatEquilibrium(surface, tree, winding_number, skeleton, joints,
-                                              options, summary, progress));
+                         SolveHeatEquilibrium(surface, {&tree, &winding_number, nullptr}, skeleton,
+                                              joints, options, summary, progress));
   return WeightsOfInput(surface, weights, positions, skeleton, joints);
 }
 

@@ -1,6 +1,7 @@
 // From a mesh sequence to a rig with 18 joints, without help.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "pleat/geometry/solid_surface.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/embedding.h"
+#include "pleat/rigging/facing_evidence.h"
 #include "pleat/rigging/heat_weights.h"
 #include "pleat/skinning/rig.h"
 
@@ -19,11 +21,19 @@ struct AutoRigOptions {
   int rest_frame = -1;  // -1 = automatic: frame 0 when it is trusted, else the best of a few
   // Where the character faces, degrees about +y from +z towards +x. Unset: the best of four.
   std::optional<double> yaw_degrees;
-  int max_frames_tried = 6;
+  int max_frames_tried = 12;
+  // Grid of the frames that are only compared with each other; the chosen one is looked at again on
+  // volume.resolution.
+  int probe_resolution = 64;
+  // Also try other axes than +y as up when no frame is trusted as it stands (Z up, lying, upside
+  // down). The rig stays in the axes of the input.
+  bool any_orientation = true;
   // Residuals of the embedding (method.md, 2.2): below `trusted` the first frame is taken at once,
-  // above it the rig carries a warning, above `refused` there is no rig.
+  // arms that reach out provided; above it the rig carries a warning, above `refused` there is none.
   double trusted_residual = .03;
   double refused_residual = .15;
+  // What Embedding::arm_shortfall adds to the residual when frames are compared.
+  double arm_shortfall_weight = .5;
   // Two facings whose residuals are nearer than this are reported as doubtful.
   double facing_margin = .004;
   int num_threads = 0;  // 0 = one per core
@@ -35,7 +45,12 @@ struct AutoRigOptions {
 struct AutoRigSummary {
   int rest_frame = 0;
   double yaw_degrees = 0;
+  // Where the character's head is in the rest frame, as a unit vector; +y when it stands as input
+  // is expected to.
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();
   double residual = 0;
+  FacingEvidence evidence;
+  bool is_turned_by_evidence = false;   // front and back are those of the feet and knees
   std::vector<FacingResidual> facings;  // of the rest frame
   int num_frames_tried = 0;
   int num_spheres = 0;

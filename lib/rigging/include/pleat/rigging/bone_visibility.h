@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "pleat/geometry/distance_field.h"
 #include "pleat/geometry/triangle_tree.h"
 #include "pleat/geometry/winding_number.h"
 #include "pleat/skeleton/skeleton.h"
@@ -14,10 +15,18 @@ namespace pleat {
 Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                                       const Eigen::Vector3d& b);
 
+// What tells inside from outside. A distance field, where there is one, answers far from the
+// surface without a search of the tree; the result is the same.
+struct InsideTest {
+  const TriangleTree* tree = nullptr;
+  const WindingNumber* winding_number = nullptr;
+  const DistanceField* field = nullptr;  // may be null
+};
+
 // True when the way from `inner` to the surface vertex `vertex` stays inside the body. `tolerance`:
 // length of the last stretch, next to the vertex, that is not looked at.
-bool IsVisibleInside(const TriangleTree& tree, const WindingNumber& winding_number,
-                     const Eigen::Vector3d& inner, const Eigen::Vector3d& vertex, double tolerance);
+bool IsVisibleInside(const InsideTest& inside, const Eigen::Vector3d& inner,
+                     const Eigen::Vector3d& vertex, double tolerance);
 
 // The bones at the smallest distance from a vertex; more than one at a tie.
 struct NearestBones {
@@ -25,9 +34,9 @@ struct NearestBones {
   double distance = 0;
 };
 
-// joints: 3 x J. With `tree` null every bone is visible.
+// joints: 3 x J. With `inside` null every bone is visible.
 NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
-                              const Eigen::Vector3d& vertex, const TriangleTree* tree,
-                              const WindingNumber* winding_number, double tolerance);
+                              const Eigen::Vector3d& vertex, const InsideTest* inside = nullptr,
+                              double tolerance = 0);
 
 }  // namespace pleat

@@ -14,6 +14,8 @@
 namespace pleat {
 
 struct EmbeddingOptions {
+  // Turns the mesh so that the character would stand along +y; the identity for most inputs.
+  Eigen::Matrix3d upright_from_input = Eigen::Matrix3d::Identity();
   // Facings to try, degrees about +y from +z towards +x. A wrong one costs milliseconds.
   std::vector<double> yaws_degrees = {0, 90, 180, 270};
   // Once the best of them is known, also try the facing that its own left and right feet and hands
@@ -46,10 +48,17 @@ struct Embedding {
   double residual = 0;              // search + uncovered surface; .03-.10 is doubtful, .15 no human
   double search_residual = 0;       // penalties alone
   double uncovered_share = 0;       // of the body's surface, 0..1
-  double yaw_degrees = 0;           // where the character faces
+  // How much the shorter arm falls short of a fifth of the body's size, as a share of it: an arm
+  // that is folded against the body seems to end at the elbow. 0 = none does.
+  double arm_shortfall = 0;
+  double yaw_degrees = 0;           // where the character faces, seen upright
   std::vector<FacingResidual> facings;  // every facing tried, in the order given
   int num_spheres = 0;
 };
+
+// The rotation that stands a placed skeleton upright: its own axis from the feet to the head along
+// +y, its own left along +x. joints: 3 x 18, template order.
+Eigen::Matrix3d UprightFromJoints(const Eigen::Matrix3Xd& joints);
 
 // The whole embedding of Baran and Popovic 2007, "Automatic rigging and animation of 3D
 // characters": sphere packing, graph, search over the facings, refinement. kNotFound when the

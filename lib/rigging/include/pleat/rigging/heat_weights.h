@@ -6,9 +6,8 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/geometry/solid_surface.h"
-#include "pleat/geometry/triangle_tree.h"
-#include "pleat/geometry/winding_number.h"
 #include "pleat/mesh/topology.h"
+#include "pleat/rigging/bone_visibility.h"
 #include "pleat/skeleton/skeleton.h"
 #include "pleat/skinning/skin_weights.h"
 
@@ -41,10 +40,9 @@ absl::StatusOr<SkinWeights> ComputeHeatWeights(const Topology& topology,
 // The same for a surface that is already prepared. joints: 3 x J in the surface's unit; weights for
 // the surface's own vertices, W x J, not yet cut to four, column 0 zero.
 absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
-    const SolidSurface& surface, const TriangleTree& tree, const WindingNumber& winding_number,
-    const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
-    const HeatWeightsOptions& options = {}, HeatWeightsSummary* summary = nullptr,
-    const Progress& progress = {});
+    const SolidSurface& surface, const InsideTest& inside, const Skeleton& skeleton,
+    const Eigen::Matrix3Xd& joints, const HeatWeightsOptions& options = {},
+    HeatWeightsSummary* summary = nullptr, const Progress& progress = {});
 
 // Carries weights of a prepared surface (W x J) to the vertices of the mesh it was made from.
 // positions: 3 x V, joints: 3 x J, same unit.

@@ -1,0 +1,230 @@
+#include "rest_frame.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kMaxFullFrames = 2;    // of the probed ones, looked at again on the full grid
+constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
+
+// The frames to look at; the first one first.
+std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
+  if (options.rest_frame >= 0) return {options.rest_frame};
+  const int count = std::clamp(options.max_frames_tried, 1, num_frames);
+  std::vector<int> frames;
+  for (int k = 0; k < count; ++k) {
+    frames.push_back(static_cast<int>(static_cast<int64_t>(k) * num_frames / count));
+  }
+  return frames;
+}
+
+Eigen::Matrix3d TurnToY(const Eigen::Vector3d& up) {
+  return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitY()).toRotationMatrix();
+}
+
+// The other coordinate axes (Z up is common), then the principal axes of the surface, both ways.
+std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
+  std::vector<Eigen::Matrix3d> turns;
+  for (const Eigen::Vector3d& up :
+       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0, -1, 0),
+        Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 0)}) {
+    turns.push_back(TurnToY(up));
+  }
+  const Eigen::Matrix3Xd centred =
+      volume.surface.positions.colwise() - volume.surface.positions.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centred * centred.transpose());
+  for (int k = 2; k >= 0; --k) {
+    turns.push_back(TurnToY(axes.eigenvectors().col(k)));
+    turns.push_back(TurnToY(-axes.eigenvectors().col(k)));
+  }
+  return turns;
+}
+
+class RestFrameSearch {
+ public:
+  RestFrameSearch(const MeshSequence& sequence, const AutoRigOptions& options,
+                  const Progress& progress)
+      : sequence_(sequence), options_(options), progress_(progress) {
+    best_.embedding.residual = std::numeric_limits<double>::infinity();
+  }
+
+  absl::StatusOr<FrameEmbedding> Run(int* num_frames_tried) {
+    const std::vector<int> frames = FramesToTry(sequence_.num_frames(), options_);
+    *num_frames_tried = 1;
+    PLEAT_RETURN_IF_ERROR(TryFully(frames[0], Eigen::Matrix3d::Identity()));
+    if (!IsTrusted() && frames.size() > 1) {
+      *num_frames_tried = static_cast<int>(frames.size());
+      PLEAT_RETURN_IF_ERROR(ProbeOthers(frames));
+    }
+    if (best_.embedding.residual >= options_.trusted_residual && options_.any_orientation) {
+      PLEAT_RETURN_IF_ERROR(TurnOver(frames[0]));
+    }
+    PLEAT_RETURN_IF_ERROR(Judge(*num_frames_tried));
+    return std::move(best_);
+  }
+
+ private:
+  // Frames with the least of this are rigged best.
+  double Score(const Embedding& embedding) const {
+    return embedding.residual + options_.arm_shortfall_weight * embedding.arm_shortfall;
+  }
+  bool IsTrusted() const { return Score(best_.embedding) < options_.trusted_residual; }
+
+  EmbeddingOptions EmbeddingOptionsFor(const Eigen::Matrix3d& upright) const {
+    EmbeddingOptions embedding = options_.embedding;
+    embedding.upright_from_input = upright;
+    if (options_.yaw_degrees) {
+      embedding.yaws_degrees = {*options_.yaw_degrees};
+      embedding.adjust_yaw = false;
+    }
+    return embedding;
+  }
+
+  absl::StatusOr<BodyVolume> VolumeOf(int frame, int resolution) const {
+    BodyVolumeOptions volume = options_.volume;
+    volume.num_threads = options_.num_threads;
+    volume.resolution = resolution;
+    return ComputeBodyVolume(sequence_.topology(), sequence_.FrameAsDouble(frame), volume,
+                             progress_);
+  }
+
+  absl::StatusOr<FrameEmbedding> Embed(int frame, int resolution,
+                                       const Eigen::Matrix3d& upright) const {
+    FrameEmbedding result{
+        .frame = frame, .volume = {}, .upright_from_input = upright, .embedding = {}};
+    PLEAT_ASSIGN_OR_RETURN(result.volume, VolumeOf(frame, resolution));
+    PLEAT_ASSIGN_OR_RETURN(result.embedding,
+                           EmbedSkeleton(result.volume, EmbeddingOptionsFor(upright), progress_));
+    return result;
+  }
+
+  // Keeps the frame when it is the best so far. Where the full grid is not trusted the coarse one
+  // is asked as well: their spheres differ, and either may miss a way through a thin limb.
+  absl::Status TryFully(int frame, const Eigen::Matrix3d& upright) {
+    PLEAT_RETURN_IF_ERROR(TryAt(frame, options_.volume.resolution, upright));
+    if (IsTrusted()) return absl::OkStatus();
+    return TryAt(frame, options_.probe_resolution, upright);
+  }
+
+  // Only kCancelled is an error.
+  absl::Status TryAt(int frame, int resolution, const Eigen::Matrix3d& upright) {
+    absl::StatusOr<FrameEmbedding> tried = Embed(frame, resolution, upright);
+    if (absl::IsCancelled(tried.status())) return tried.status();
+    if (!tried.ok()) {
+      if (failure_.ok()) failure_ = tried.status();
+    } else if (Score(tried->embedding) < Score(best_.embedding)) {
+      best_ = *std::move(tried);
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status ProbeOthers(const std::vector<int>& frames) {
+    std::vector<std::pair<double, int>> ranked;  // score, frame
+    for (size_t k = 1; k < frames.size(); ++k) {
+      PLEAT_RETURN_IF_ERROR(progress_.Report(.2 + .5 * k / frames.size()));
+      const absl::StatusOr<FrameEmbedding> probe =
+          Embed(frames[k], options_.probe_resolution, Eigen::Matrix3d::Identity());
+      if (absl::IsCancelled(probe.status())) return probe.status();
+      if (probe.ok()) ranked.push_back({Score(probe->embedding), frames[k]});
+    }
+    std::sort(ranked.begin(), ranked.end());
+    for (size_t k = 0; k < ranked.size() && k < kMaxFullFrames && !IsTrusted(); ++k) {
+      probed_.push_back(ranked[k].second);
+      PLEAT_RETURN_IF_ERROR(TryFully(ranked[k].second, Eigen::Matrix3d::Identity()));
+    }
+    return absl::OkStatus();
+  }
+
+  // Other orientations of the first and of the best probed frame; one is taken only when it is
+  // trusted, since a beast on its hind legs comes near to a human.
+  absl::Status TurnOver(int first_frame) {
+    std::vector<int> frames = {first_frame};
+    if (!probed_.empty()) frames.push_back(probed_[0]);
+    for (size_t k = 0; k < frames.size() && k < kMaxTurnedFrames; ++k) {
+      const absl::StatusOr<BodyVolume> volume = VolumeOf(frames[k], options_.probe_resolution);
+      if (absl::IsCancelled(volume.status())) return volume.status();
+      if (!volume.ok()) continue;
+      PLEAT_ASSIGN_OR_RETURN(const std::optional<Eigen::Matrix3d> upright,
+                             FindOrientation(*volume));
+      if (!upright) continue;
+      FrameEmbedding as_it_stands = std::move(best_);
+      best_ = {};
+      best_.embedding.residual = std::numeric_limits<double>::infinity();
+      PLEAT_RETURN_IF_ERROR(TryFully(frames[k], *upright));
+      if (IsTrusted()) return absl::OkStatus();
+      best_ = std::move(as_it_stands);
+    }
+    return absl::OkStatus();
+  }
+
+  // The orientation with the least residual under twice the trusted one, made exact by what the
+  // skeleton itself says about up; none when there is no such.
+  absl::StatusOr<std::optional<Eigen::Matrix3d>> FindOrientation(const BodyVolume& volume) const {
+    std::optional<Eigen::Matrix3d> best;
+    Eigen::Matrix3Xd joints;
+    double least = 2 * options_.trusted_residual;
+    for (const Eigen::Matrix3d& turn : OrientationsToTry(volume)) {
+      PLEAT_RETURN_IF_ERROR(progress_.Report(.8));
+      EmbeddingOptions embedding = EmbeddingOptionsFor(turn);
+      embedding.search.max_bound = std::min(embedding.search.max_bound, least);
+      const absl::StatusOr<Embedding> found = EmbedSkeleton(volume, embedding, progress_);
+      if (absl::IsCancelled(found.status())) return found.status();
+      if (!found.ok() || !(found->residual < least)) continue;
+      least = found->residual;
+      best = turn;
+      joints = found->joints;
+    }
+    if (!best) return best;
+    const Eigen::Matrix3d own = UprightFromJoints(joints);
+    if (options_.yaw_degrees || !own.allFinite()) return best;
+    const absl::StatusOr<Embedding> found =
+        EmbedSkeleton(volume, EmbeddingOptionsFor(own), progress_);
+    if (absl::IsCancelled(found.status())) return found.status();
+    if (found.ok() && found->residual < least) best = own;
+    return best;
+  }
+
+  absl::Status Judge(int num_frames_tried) const {
+    if (best_.frame < 0) {
+      return absl::FailedPreconditionError(
+          absl::StrCat("no frame of ", sequence_.name(), " (", num_frames_tried,
+                       " tried) can be rigged: ", failure_.message(), "; ", kRigAdvice));
+    }
+    if (best_.embedding.residual > options_.refused_residual) {
+      return absl::FailedPreconditionError(absl::StrFormat(
+          "%s does not look like one standing human: in the best of %d frames, frame %d, the "
+          "skeleton fits with a residual of %.3f, above %.3f (%.0f %% of the surface is far from "
+          "every bone); %s",
+          sequence_.name(), num_frames_tried, best_.frame, best_.embedding.residual,
+          options_.refused_residual, 100 * best_.embedding.uncovered_share, kRigAdvice));
+    }
+    return absl::OkStatus();
+  }
+
+  const MeshSequence& sequence_;
+  const AutoRigOptions& options_;
+  const Progress& progress_;
+  FrameEmbedding best_;
+  std::vector<int> probed_;  // best first
+  absl::Status failure_;     // of the first frame that could not be embedded
+};
+
+}  // namespace
+
+absl::StatusOr<FrameEmbedding> FindRestFrame(const MeshSequence& sequence,
+                                             const AutoRigOptions& options, AutoRigSummary* summary,
+                                             const Progress& progress) {
+  return RestFrameSearch(sequence, options, progress).Run(&summary->num_frames_tried);
+}
+
+}  // namespace pleat

@@ -1,0 +1,32 @@
+// The frame of a sequence that is rigged, and how the character stands in it.
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/rigging/auto_rig.h"
+#include "pleat/rigging/body_volume.h"
+#include "pleat/rigging/embedding.h"
+
+namespace pleat {
+
+struct FrameEmbedding {
+  int frame = -1;
+  BodyVolume volume;
+  Eigen::Matrix3d upright_from_input = Eigen::Matrix3d::Identity();
+  Embedding embedding;
+};
+
+// The first frame when it is trusted; else the best of a few, looked at on a coarse grid first; and
+// when none of them is trusted as it stands, also lying and upside down. kFailedPrecondition, with
+// what to do, when no human fits; kCancelled. Fills summary->num_frames_tried.
+absl::StatusOr<FrameEmbedding> FindRestFrame(const MeshSequence& sequence,
+                                             const AutoRigOptions& options, AutoRigSummary* summary,
+                                             const Progress& progress);
+
+// What a user can do about a sequence that cannot be rigged.
+inline constexpr char kRigAdvice[] =
+    "choose another rest frame, one that stands upright with arms and legs apart, or bring your "
+    "own rig";
+
+}  // namespace pleat
