@@ -11,8 +11,8 @@
 #include "cli/session.h"
 #include "pleat/base/status.h"
 #include "pleat/character/train_options.h"
-#include "pleat/fitting/joint_refinement.h"
 #include "pleat/fitting/pose_fit.h"
+#include "pleat/fitting/rig_refinement.h"
 #include "pleat/mesh/bounds.h"
 
 namespace pleat {
@@ -58,18 +58,18 @@ absl::Status MeasureFit(const MeshSequence& sequence, const MeshSequence& used,
   const double percent = 100 / measurement->diagonal_m;
   PoseFitSummary fit;
   double start = MonotonicSeconds();
-  PLEAT_RETURN_IF_ERROR(
-      FitPoses(used, *measurement->rig, FitOptions(options), &fit, progress.Stage("fit", 0, .3))
-          .status());
+  PLEAT_ASSIGN_OR_RETURN(
+      const PoseTrack track,
+      FitPoses(used, *measurement->rig, FitOptions(options), &fit, progress.Stage("fit", 0, .3)));
   measurement->fit_seconds = MonotonicSeconds() - start;
   measurement->fit_rms_percent = fit.rms_m * percent;
 
-  JointRefinementOptions refinement;
+  RigRefinementOptions refinement;  // all of it, as training's --refine full
+  refinement.bend_stiffness = TrainOptions().bend_stiffness;
   refinement.num_threads = options.rig.num_threads;
   start = MonotonicSeconds();
-  PLEAT_ASSIGN_OR_RETURN(
-      const Rig refined,
-      RefineJoints(used, *measurement->rig, refinement, nullptr, progress.Stage("refine", .3, .8)));
+  PLEAT_ASSIGN_OR_RETURN(const Rig refined, RefineRig(used, *measurement->rig, track, refinement,
+                                                      nullptr, progress.Stage("refine", .3, .8)));
   measurement->refine_seconds = MonotonicSeconds() - start;
   PLEAT_RETURN_IF_ERROR(
       FitPoses(used, refined, FitOptions(options), &fit, progress.Stage("fit", .8, 1)).status());
