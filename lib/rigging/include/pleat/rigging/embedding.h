@@ -51,7 +51,7 @@ struct Embedding {
   // How much the shorter arm falls short of a fifth of the body's size, as a share of it: an arm
   // that is folded against the body seems to end at the elbow. 0 = none does.
   double arm_shortfall = 0;
-  double yaw_degrees = 0;           // where the character faces, seen upright
+  double yaw_degrees = 0;               // where the character faces, seen upright
   std::vector<FacingResidual> facings;  // every facing tried, in the order given
   int num_spheres = 0;
 };
