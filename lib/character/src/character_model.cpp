@@ -123,12 +123,13 @@ CharacterModel::CharacterModel(Parts parts, PoseFeatures features)
   if (parts_.upsampler) {
     upsampled_basis_ = UpsampleColumns(*parts_.upsampler, detail.basis());
     upsampled_mean_ = UpsampleColumns(*parts_.upsampler, detail.mean());
-    full_basis_ = &upsampled_basis_;
-    full_mean_ = &upsampled_mean_;
-  } else {
-    full_basis_ = &detail.basis();
-    full_mean_ = &detail.mean();
   }
+}
+
+std::shared_ptr<const CharacterModel> CharacterModel::WithRecord(TrainingRecord record) const {
+  const std::shared_ptr<CharacterModel> copy(new CharacterModel(*this));
+  copy->parts_.record = std::move(record);
+  return copy;
 }
 
 size_t CharacterModel::memory_bytes() const {

@@ -144,7 +144,8 @@ using ModelsByLearner = std::map<std::string, std::shared_ptr<const CharacterMod
 
 absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const LearningData& data,
                                             const std::vector<std::string>& learners,
-                                            const TrainOptions& options, const Progress& progress) {
+                                            const TrainOptions& options, double diagonal_m,
+                                            const Progress& progress) {
   ModelsByLearner models;
   for (size_t i = 0; i < learners.size(); ++i) {
     const double begin = static_cast<double>(i) / static_cast<double>(learners.size());
@@ -152,8 +153,8 @@ absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const Le
     PLEAT_ASSIGN_OR_RETURN(
         const std::shared_ptr<const DetailModel> detail_model,
         LearnDetails(data, learners[i], options, progress.Stage("learn", begin, end)));
-    PLEAT_ASSIGN_OR_RETURN(models[learners[i]],
-                           AssembleModel(rigged, data, options, learners[i], detail_model, {}));
+    PLEAT_ASSIGN_OR_RETURN(models[learners[i]], AssembleModel(rigged, data, options, learners[i],
+                                                              detail_model, diagonal_m));
   }
   return models;
 }
@@ -214,9 +215,10 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
   PLEAT_ASSIGN_OR_RETURN(report.learner,
                          ChooseLearner(data, options.train, report.diagonal_m, nullptr,
                                        progress.Stage("validate", .4, .5)));
-  PLEAT_ASSIGN_OR_RETURN(const ModelsByLearner models,
-                         LearnModels(rigged, data, LearnersToMeasure(options, report.learner),
-                                     options.train, progress.Stage("learn", .5, .7)));
+  PLEAT_ASSIGN_OR_RETURN(
+      const ModelsByLearner models,
+      LearnModels(rigged, data, LearnersToMeasure(options, report.learner), options.train,
+                  report.diagonal_m, progress.Stage("learn", .5, .7)));
   PLEAT_ASSIGN_OR_RETURN(const auto baselines, TrainBaselines(data));
   report.seconds["learn"] = timer.Lap();
   PLEAT_RETURN_IF_ERROR(

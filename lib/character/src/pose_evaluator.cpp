@@ -105,8 +105,8 @@ absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
                                      EvaluatedFrame* frame) {
   Scratch& s = *scratch_;
   if (poses.empty()) return absl::InvalidArgumentError("a pose query needs at least one pose");
-  PLEAT_RETURN_IF_ERROR(EvaluateSkinned(*poses[0], bone_scales, frame));
-  for (size_t h = 0; h < s.history.size(); ++h) {
+  PLEAT_RETURN_IF_ERROR(Skin(*poses[0], bone_scales));
+  for (size_t h = 1; h < s.history.size(); ++h) {
     const Pose& pose = *poses[std::min(h, poses.size() - 1)];
     PLEAT_RETURN_IF_ERROR(CheckPose(pose, model_->skeleton().num_joints()));
     CopyNormalized(pose, &s.history[h]);
@@ -127,14 +127,19 @@ absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
 absl::Status PoseEvaluator::EvaluateSkinned(const Pose& pose,
                                             const std::vector<double>& bone_scales,
                                             EvaluatedFrame* frame) {
+  PLEAT_RETURN_IF_ERROR(Skin(pose, bone_scales));
+  frame->positions = scratch_->skinned.cast<float>();
+  frame->confidence = 1;
+  return absl::OkStatus();
+}
+
+absl::Status PoseEvaluator::Skin(const Pose& pose, const std::vector<double>& bone_scales) {
   Scratch& s = *scratch_;
   PLEAT_RETURN_IF_ERROR(CheckPose(pose, model_->skeleton().num_joints()));
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, model_->skeleton().num_joints()));
   CopyNormalized(pose, &s.history[0]);
   ComputeBoneTransforms(model_->skeleton(), s.history[0], bone_scales, &s.transforms);
   SkinVertices(model_->rig().weights, model_->rig().rest_positions, s.transforms, &s.skinned);
-  frame->positions = s.skinned.cast<float>();
-  frame->confidence = 1;
   return absl::OkStatus();
 }
 

@@ -49,12 +49,13 @@ std::vector<double> JointErrors(const SkinWeights& weights, const Eigen::VectorX
 }
 
 // The errors of the record: skinned only and hybrid against the input.
-absl::Status MeasureReconstruction(const std::shared_ptr<const CharacterModel>& model,
-                                   const MeshSequence& sequence, const PoseTrack& track,
-                                   TrainingRecord* record, const Progress& progress) {
+absl::StatusOr<TrainingRecord> MeasureReconstruction(
+    const std::shared_ptr<const CharacterModel>& model, const MeshSequence& sequence,
+    const PoseTrack& track, const Progress& progress) {
+  TrainingRecord record = model->record();
   const SkinWeights& weights = model->rig().weights;
   Eigen::VectorXd vertex_error = Eigen::VectorXd::Zero(sequence.num_vertices());  // summed, metres
-  ErrorAccumulator fit(record->diagonal_m), reconstruction(record->diagonal_m);
+  ErrorAccumulator fit(record.diagonal_m), reconstruction(record.diagonal_m);
   PoseEvaluator evaluator(model);
   EvaluatedFrame skinned;
   size_t clip = 0;
@@ -72,12 +73,12 @@ absl::Status MeasureReconstruction(const std::shared_ptr<const CharacterModel>& 
       },
       progress));
   ErrorSummary fit_summary = fit.Summarize();
-  record->worst_frames = WorstFrames(fit_summary.frame_mean_percent, track.clip_starts);
-  record->joint_fit_percent =
-      JointErrors(weights, 100 / (record->diagonal_m * sequence.num_frames()) * vertex_error);
-  record->fit = WithoutFrames(std::move(fit_summary));
-  record->reconstruction = WithoutFrames(reconstruction.Summarize());
-  return absl::OkStatus();
+  record.worst_frames = WorstFrames(fit_summary.frame_mean_percent, track.clip_starts);
+  record.joint_fit_percent =
+      JointErrors(weights, 100 / (record.diagonal_m * sequence.num_frames()) * vertex_error);
+  record.fit = WithoutFrames(std::move(fit_summary));
+  record.reconstruction = WithoutFrames(reconstruction.Summarize());
+  return record;
 }
 
 }  // namespace
@@ -87,39 +88,38 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, JoinClips(clips));
-  TrainingRecord record;
-  record.diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
+  const double diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
 
   PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged,
                          RigFrames(frames, options, resources, progress.Stage("rig", 0, .25)));
   PoseFitSummary fit;
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitTrainingFrames(options, resources, &rigged, &fit,
                                                                   progress.Stage("fit", .25, .45)));
-  constexpr double kDegrees = 180 / std::numbers::pi;
-  record.pose_jitter_degrees = kDegrees * fit.jitter_rad;
-  record.unsmoothed_jitter_degrees = kDegrees * fit.unsmoothed_jitter_rad;
-  record.unsmoothed_rms_percent = 100 * fit.unsmoothed_rms_m / record.diagonal_m;
   PLEAT_ASSIGN_OR_RETURN(
       const LearningData data,
       ComputeLearningData(rigged, track, options, resources, progress.Stage("detail", .45, .5)));
   std::map<std::string, double> validation;
-  PLEAT_ASSIGN_OR_RETURN(const std::string learner,
-                         ChooseLearner(data, options, record.diagonal_m, &validation,
-                                       progress.Stage("validate", .5, .75)));
+  PLEAT_ASSIGN_OR_RETURN(
+      const std::string learner,
+      ChooseLearner(data, options, diagonal_m, &validation, progress.Stage("validate", .5, .75)));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> detail_model,
                          LearnDetails(data, learner, options, progress.Stage("learn", .75, .95)));
 
-  // The record belongs to the model and the model to the record's errors: measure on a first copy.
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> draft,
-                         AssembleModel(rigged, data, options, learner, detail_model, record));
-  PLEAT_RETURN_IF_ERROR(MeasureReconstruction(draft, frames.sequence, track, &record,
-                                              progress.Stage("measure", .95, 1)));
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> unmeasured,
+                         AssembleModel(rigged, data, options, learner, detail_model, diagonal_m));
+  PLEAT_ASSIGN_OR_RETURN(
+      TrainingRecord record,
+      MeasureReconstruction(unmeasured, frames.sequence, track, progress.Stage("measure", .95, 1)));
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  record.pose_jitter_degrees = kDegrees * fit.jitter_rad;
+  record.unsmoothed_jitter_degrees = kDegrees * fit.unsmoothed_jitter_rad;
+  record.unsmoothed_rms_percent = 100 * fit.unsmoothed_rms_m / diagonal_m;
   if (summary) {
     summary->validation_mean_percent = std::move(validation);
     summary->num_components = static_cast<int>(detail_model->basis().cols());
     summary->num_control_vertices = static_cast<int>(data.control_vertices.size());
   }
-  return AssembleModel(rigged, data, options, learner, detail_model, record);
+  return unmeasured->WithRecord(std::move(record));
 }
 
 }  // namespace pleat

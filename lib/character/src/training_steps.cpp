@@ -31,31 +31,53 @@ absl::Status ConnectivityDiffers(const std::string& name, const Topology& a, con
                    "; all clips of a character share one connectivity"));
 }
 
-// From the control vertices to all. "refined" starts from the radial basis functions and learns
-// the weights from the details of all vertices in the training frames.
-absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged, const PoseTrack& track,
+// From the control vertices to all by radial basis functions on the rest pose.
+absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged,
                                            const std::vector<int>& control_vertices,
-                                           const TrainOptions& options,
                                            const TrainResources& resources,
                                            const Progress& progress) {
-  const MeshSequence& sequence = rigged.frames.sequence;
   RbfUpsamplingOptions rbf;
   rbf.features = rigged.rig.weights.ToDense().transpose();
   rbf.num_threads = resources.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(RbfUpsampler upsampler,
-                         RbfUpsampler::Build(sequence.topology(), rigged.rig.rest_positions,
-                                             control_vertices, rbf, progress));
-  if (options.upsampling == "rbf") return upsampler;
-  std::vector<int> all_vertices(sequence.num_vertices());
-  std::iota(all_vertices.begin(), all_vertices.end(), 0);
-  ComputeDetailsOptions detail_options{.axes = DetailAxesOf(options),
-                                       .num_threads = resources.num_threads};
+  return RbfUpsampler::Build(rigged.frames.sequence.topology(), rigged.rig.rest_positions,
+                             control_vertices, rbf, progress);
+}
+
+// Fills details and upsampler of `data`, whose control vertices are known. Refined upsampling
+// learns its weights from the details of all vertices in the training frames.
+absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& track,
+                                   const TrainOptions& options, const TrainResources& resources,
+                                   const Progress& progress, LearningData* data) {
+  const MeshSequence& sequence = rigged.frames.sequence;
+  const bool decimated = static_cast<int>(data->control_vertices.size()) < sequence.num_vertices();
+  const bool refined = decimated && options.upsampling == "refined";
+  const ComputeDetailsOptions detail_options{.axes = DetailAxesOf(options),
+                                             .num_threads = resources.num_threads};
+  std::vector<int> vertices = data->control_vertices;
+  if (refined) {
+    vertices.resize(sequence.num_vertices());
+    std::iota(vertices.begin(), vertices.end(), 0);
+  }
   PLEAT_ASSIGN_OR_RETURN(
-      const Eigen::MatrixXd details,
-      ComputeDetails(sequence, rigged.rig, track, all_vertices, detail_options, progress));
+      Eigen::MatrixXd details,
+      ComputeDetails(sequence, rigged.rig, track, vertices, detail_options, progress));
+  if (decimated) {
+    PLEAT_ASSIGN_OR_RETURN(data->upsampler,
+                           MakeUpsampler(rigged, data->control_vertices, resources, progress));
+  }
+  if (!refined) {
+    data->details = std::move(details);
+    return absl::OkStatus();
+  }
   UpsamplingRefinementOptions refinement;
   refinement.num_threads = resources.num_threads;
-  return upsampler.Refine(details, control_vertices, refinement, progress);
+  PLEAT_ASSIGN_OR_RETURN(data->upsampler, data->upsampler->Refine(details, data->control_vertices,
+                                                                  refinement, progress));
+  data->details.resize(details.rows(), 3 * data->control_vertices.size());
+  for (size_t c = 0; c < data->control_vertices.size(); ++c) {
+    data->details.middleCols<3>(3 * c) = details.middleCols<3>(3 * data->control_vertices[c]);
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -159,16 +181,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   PLEAT_ASSIGN_OR_RETURN(data.control_vertices,
                          SelectControlVertices(sequence.topology(), rigged.rig.rest_positions,
                                                options.resolution_percent / 100));
-  ComputeDetailsOptions detail_options;
-  detail_options.axes = DetailAxesOf(options);
-  detail_options.num_threads = resources.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(
-      data.details,
-      ComputeDetails(sequence, rigged.rig, track, data.control_vertices, detail_options, progress));
-  if (static_cast<int>(data.control_vertices.size()) < sequence.num_vertices()) {
-    PLEAT_ASSIGN_OR_RETURN(data.upsampler, MakeUpsampler(rigged, track, data.control_vertices,
-                                                         options, resources, progress));
-  }
+  PLEAT_RETURN_IF_ERROR(ComputeControlDetails(rigged, track, options, resources, progress, &data));
   const PoseFeatureOptions feature_options = FeatureOptionsOf(options);
   // A single held-out frame is bridged from its neighbours, so that the frame after it has a speed.
   const FilledTrack filled = FillGaps(track, rigged.frames.frame_numbers, kMaxBridgedFrames);
@@ -182,7 +195,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
     const std::string& learner, std::shared_ptr<const DetailModel> detail_model,
-    const TrainingRecord& record) {
+    double diagonal_m) {
   const MeshSequence& sequence = rigged.frames.sequence;
   CharacterModel::Parts parts{.name = sequence.name(),
                               .frame_rate = sequence.frame_rate(),
@@ -194,11 +207,12 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
                               .control_vertices = data.control_vertices,
                               .upsampler = data.upsampler,
                               .detail_model = std::move(detail_model),
-                              .record = record};
+                              .record = {}};
   parts.record.learner = learner;
   parts.record.num_frames = sequence.num_frames();
   parts.record.rest_frame = rigged.rig_summary.rest_frame;
   parts.record.yaw_degrees = rigged.rig_summary.yaw_degrees;
+  parts.record.diagonal_m = diagonal_m;
   parts.record.rig_residual = rigged.rig_summary.residual;
   parts.record.warnings = rigged.rig_summary.warnings;
   return CharacterModel::Create(std::move(parts));

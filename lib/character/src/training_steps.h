@@ -78,10 +78,10 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
                                           std::map<std::string, double>* validation_mean_percent,
                                           const Progress& progress);
 
-// All but the errors of the record.
+// All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, metres.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
     const std::string& learner, std::shared_ptr<const DetailModel> detail_model,
-    const TrainingRecord& record);
+    double diagonal_m);
 
 }  // namespace pleat

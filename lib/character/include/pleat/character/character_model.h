@@ -64,6 +64,9 @@ class CharacterModel {
   // Checks that all parts fit together (counts, ranges): kInvalidArgument names what does not.
   static absl::StatusOr<std::shared_ptr<const CharacterModel>> Create(Parts parts);
 
+  // The same character with another record.
+  std::shared_ptr<const CharacterModel> WithRecord(TrainingRecord record) const;
+
   const Parts& parts() const { return parts_; }
   const std::string& name() const { return parts_.name; }
   const Topology& topology() const { return parts_.topology; }
@@ -78,21 +81,24 @@ class CharacterModel {
 
   // Control-to-full upsampling folded into the detail basis: details of all vertices =
   // full_mean + full_basis * coefficients (3V, 3V x r; xyz of vertex 0, of vertex 1, ...).
-  const Eigen::MatrixXf& full_basis() const { return *full_basis_; }
-  const Eigen::VectorXf& full_mean() const { return *full_mean_; }
+  const Eigen::MatrixXf& full_basis() const {
+    return parts_.upsampler ? upsampled_basis_ : parts_.detail_model->basis();
+  }
+  const Eigen::VectorXf& full_mean() const {
+    return parts_.upsampler ? upsampled_mean_ : parts_.detail_model->mean();
+  }
 
   // Resident size, what the cache is charged.
   size_t memory_bytes() const;
 
  private:
   CharacterModel(Parts parts, PoseFeatures features);
+  CharacterModel(const CharacterModel&) = default;
 
   Parts parts_;
   PoseFeatures features_;
   Eigen::MatrixXf upsampled_basis_;  // empty at full resolution
   Eigen::VectorXf upsampled_mean_;
-  const Eigen::MatrixXf* full_basis_ = nullptr;  // upsampled_* or the detail model's own
-  const Eigen::VectorXf* full_mean_ = nullptr;
 };
 
 }  // namespace pleat

@@ -49,6 +49,9 @@ class PoseEvaluator {
 
  private:
   struct Scratch;
+  // Checks and skins history pose 0, into the scratch memory.
+  absl::Status Skin(const Pose& pose, const std::vector<double>& bone_scales);
+
   std::shared_ptr<const CharacterModel> model_;
   std::unique_ptr<Scratch> scratch_;
 };
