@@ -81,7 +81,6 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
 // All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, metres.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
-    const std::string& learner, std::shared_ptr<const DetailModel> detail_model,
-    double diagonal_m);
+    const std::string& learner, std::shared_ptr<const DetailModel> detail_model, double diagonal_m);
 
 }  // namespace pleat
