@@ -144,7 +144,7 @@ absl::Status WriteStream(const PoseVerbOptions& options, RemoteCharacterService&
     header = received;
     return absl::OkStatus();
   };
-  sink.on_frame = [&](int t, std::string_view draco, double frame_confidence) {
+  sink.on_frame = [&](int t, std::string_view draco, const FrameMark&, double frame_confidence) {
     confidence->Add(t, frame_confidence);
     PLEAT_RETURN_IF_ERROR(writer.AddFrame(draco));
     return progress.Report((t + 1.0) / query.track.num_frames());

@@ -47,13 +47,14 @@ class RemoteLiveSession final : public LiveSession {
   const FrameDecoder& decoder() const override { return *decoder_; }
 
   absl::Status Send(uint64_t number, const Pose& pose, const std::vector<Pose>& history,
-                    bool restart) override {
+                    bool restart, bool keyframe) override {
     v1::LiveSessionRequest request;
     v1::LiveSessionRequest::LivePose* message = request.mutable_pose();
     message->set_number(number);
     *message->mutable_pose() = ToProto(pose);
     for (const Pose& earlier : history) *message->add_history() = ToProto(earlier);
     message->set_restart(restart);
+    message->set_keyframe(keyframe);
     if (stream_->Write(request)) return absl::OkStatus();
     return absl::UnavailableError("the live session has ended; Receive says why");
   }
@@ -65,7 +66,8 @@ class RemoteLiveSession final : public LiveSession {
     frame->number = response.frame().number();
     frame->confidence = response.frame().confidence();
     frame->draco = std::move(*response.mutable_frame()->mutable_draco());
-    return decoder_->Decode(frame->draco, &frame->positions);
+    frame->mark = MarkOf(response.frame());
+    return decoder_->Decode(frame->draco, frame->mark, &frame->positions);
   }
 
   void SendDone() override { stream_->WritesDone(); }
@@ -114,7 +116,8 @@ absl::Status RemoteCharacterService::StreamClip(const ClipQuery& query,
     } else if (response.frame().number() != static_cast<uint64_t>(next)) {
       status = BrokenStream("a frame is missing");
     } else {
-      status = sink.on_frame(next++, response.frame().draco(), response.frame().confidence());
+      status = sink.on_frame(next++, response.frame().draco(), MarkOf(response.frame()),
+                             response.frame().confidence());
     }
   }
   if (!status.ok()) context.TryCancel();
@@ -129,18 +132,18 @@ absl::Status RemoteCharacterService::EvaluateClip(
     const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume) {
   std::optional<FrameDecoder> decoder;
   EvaluatedFrame frame;
-  return StreamClip(
-      query, state_->options.stream,
-      {.on_header = [&](const StreamHeader& header) -> absl::Status {
-         PLEAT_ASSIGN_OR_RETURN(FrameDecoder created, FrameDecoder::Create(header));
-         decoder.emplace(std::move(created));
-         return absl::OkStatus();
-       },
-       .on_frame = [&](int t, std::string_view draco, double confidence) -> absl::Status {
-         PLEAT_RETURN_IF_ERROR(decoder->Decode(draco, &frame.positions));
-         frame.confidence = confidence;
-         return consume(t, frame);
-       }});
+  return StreamClip(query, state_->options.stream,
+                    {.on_header = [&](const StreamHeader& header) -> absl::Status {
+                       PLEAT_ASSIGN_OR_RETURN(FrameDecoder created, FrameDecoder::Create(header));
+                       decoder.emplace(std::move(created));
+                       return absl::OkStatus();
+                     },
+                     .on_frame = [&](int t, std::string_view draco, const FrameMark& mark,
+                                     double confidence) -> absl::Status {
+                       PLEAT_RETURN_IF_ERROR(decoder->Decode(draco, mark, &frame.positions));
+                       frame.confidence = confidence;
+                       return consume(t, frame);
+                     }});
 }
 
 absl::StatusOr<EvaluatedFrame> RemoteCharacterService::EvaluatePose(
@@ -163,7 +166,8 @@ absl::StatusOr<EvaluatedFrame> RemoteCharacterService::EvaluatePose(
       state_->Call(state_->poses.get(), &v1::PoseService::Stub::EvaluatePose, request, &response));
   EvaluatedFrame frame;
   frame.confidence = response.frame().confidence();
-  PLEAT_RETURN_IF_ERROR(decoder.Decode(response.frame().draco(), &frame.positions));
+  PLEAT_RETURN_IF_ERROR(
+      decoder.Decode(response.frame().draco(), MarkOf(response.frame()), &frame.positions));
   return frame;
 }
 

@@ -20,11 +20,18 @@ const std::optional<MeshSequence>& Performer10k() {
   return sequence;
 }
 
+std::optional<MeshSequence> ReadShared(const char* name) {
+  const std::optional<std::string> path = FindSharedData(name);
+  return path ? std::optional(ReadSequence(*path).value()) : std::nullopt;
+}
+
 const std::optional<MeshSequence>& Samba() {
-  static const std::optional<MeshSequence> sequence = [] {
-    const std::optional<std::string> path = FindSharedData("samba.pc2");
-    return path ? std::optional(ReadSequence(*path).value()) : std::nullopt;
-  }();
+  static const std::optional<MeshSequence> sequence = ReadShared("samba.pc2");
+  return sequence;
+}
+
+const std::optional<MeshSequence>& Crane() {
+  static const std::optional<MeshSequence> sequence = ReadShared("crane.pc2");
   return sequence;
 }
 
@@ -42,23 +49,28 @@ void Codec(benchmark::State& state, Source source, FrameEncoding encoding, bool 
                              .value();
   FrameDecoder decoder = FrameDecoder::Create(encoder.header()).value();
   std::vector<std::string> frames;
-  size_t num_bytes = 0;
+  std::vector<FrameMark> marks;
+  size_t num_bytes = 0;  // of the frames that are no key frames of a stream of differences
+  int num_counted = 0;
   for (int t = 0; t < sequence.num_frames(); ++t) {
     frames.push_back(encoder.Encode(sequence.frame(t)).value());
+    marks.push_back(encoder.mark());
+    if (encoding == FrameEncoding::kDracoDelta && marks.back().keyframe) continue;
     num_bytes += frames.back().size();
+    ++num_counted;
   }
   Eigen::Matrix3Xf positions;
-  int t = 0;
+  int t = sequence.num_frames() - 1;
   for (auto _ : state) {
     t = (t + 1) % sequence.num_frames();
     if (decode) {
-      benchmark::DoNotOptimize(decoder.Decode(frames[t], &positions));
+      benchmark::DoNotOptimize(decoder.Decode(frames[t], marks[t], &positions));
     } else {
       benchmark::DoNotOptimize(encoder.Encode(sequence.frame(t)));
     }
   }
-  state.counters["bytes_per_frame"] =
-      static_cast<double>(num_bytes) / static_cast<double>(frames.size());
+  state.counters["bytes_per_frame"] = static_cast<double>(num_bytes) / num_counted;
+  state.counters["key_bytes"] = static_cast<double>(frames[0].size());
   state.counters["header_bytes"] = static_cast<double>(encoder.header().topology.size());
 }
 
@@ -77,6 +89,10 @@ PLEAT_CODEC_BENCH(Performer10k, DracoMesh);
 PLEAT_CODEC_BENCH(Performer10k, DracoPointCloud);
 PLEAT_CODEC_BENCH(Samba, DracoMesh);
 PLEAT_CODEC_BENCH(Samba, DracoPointCloud);
+PLEAT_CODEC_BENCH(Crane, DracoPointCloud);
+PLEAT_CODEC_BENCH(Performer10k, DracoDelta);
+PLEAT_CODEC_BENCH(Samba, DracoDelta);
+PLEAT_CODEC_BENCH(Crane, DracoDelta);
 
 }  // namespace
 }  // namespace pleat

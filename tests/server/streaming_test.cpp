@@ -47,7 +47,7 @@ TEST_F(StreamingTest, ALiveSessionShowsEveryPose) {
   const auto model = running_.local().AcquireModel(id).value();
   const PoseTrack track = MakeMotion(model->skeleton(), 50);
   for (const FrameEncoding encoding :
-       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const auto session,
         running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}},

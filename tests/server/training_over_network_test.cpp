@@ -57,7 +57,7 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
                                                 }),
               IsOk());
   for (const FrameEncoding encoding :
-       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     std::optional<FrameDecoder> decoder;
     double worst_steps = 0;
     ASSERT_THAT(client->StreamClip(
@@ -68,9 +68,9 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
                            return absl::OkStatus();
                          },
                      .on_frame =
-                         [&](int t, std::string_view draco, double) {
+                         [&](int t, std::string_view draco, const FrameMark& mark, double) {
                            Eigen::Matrix3Xf positions;
-                           const absl::Status status = decoder->Decode(draco, &positions);
+                           const absl::Status status = decoder->Decode(draco, mark, &positions);
                            if (!status.ok()) return status;
                            worst_steps = std::max<double>(
                                worst_steps, (positions - truth[t].positions).cwiseAbs().maxCoeff() /

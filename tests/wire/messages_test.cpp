@@ -282,6 +282,22 @@ TEST(MessagesTest, StreamsComeBack) {
   bad.set_speed(-1);
   EXPECT_FALSE(FromProto(bad).ok());
   bad.clear_speed();
+  bad.set_max_error_mm(1);
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("both")));
+  bad.clear_position_bits();
+  EXPECT_EQ(FromProto(bad)->max_error_mm, 1);
+  EXPECT_EQ(FromProto(ToProto(*FromProto(bad)))->max_error_mm, 1);
+  bad.set_max_error_mm(-1);
+  EXPECT_FALSE(FromProto(bad).ok());
+  bad.clear_max_error_mm();
+  for (const FrameEncoding encoding :
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
+    EXPECT_EQ(*FromProto(ToProto(encoding)), encoding);
+  }
+  v1::Frame difference;
+  difference.set_difference(true);
+  difference.set_checksum(7);
+  EXPECT_EQ(MarkOf(difference), (FrameMark{.keyframe = false, .checksum = 7}));
   bad.set_encoding(static_cast<v1::FrameEncoding>(99));
   EXPECT_FALSE(FromProto(bad).ok());
 

@@ -54,41 +54,50 @@ absl::StatusOr<uint8_t> ReadHeader(ByteReader* reader, uint8_t type, uint8_t min
   return fields[3];
 }
 
+enum class Contents { kPositions, kPositionsAndIds, kResiduals };
+
+bool IsInteger(const draco::PointAttribute& attribute) {
+  return attribute.attribute_type() == draco::GeometryAttribute::GENERIC &&
+         attribute.data_type() == draco::DT_INT32 && attribute.num_components() == 1;
+}
+
 // What must hold before attribute values are decoded: this alone bounds Draco's memory.
-bool AttributesAreExpected(const draco::PointCloud& cloud, uint32_t num_points, bool with_ids) {
+bool AttributesAreExpected(const draco::PointCloud& cloud, uint32_t num_points, Contents contents) {
   if (cloud.num_points() != num_points) return false;
+  if (contents == Contents::kResiduals) {
+    return cloud.num_attributes() == 3 && IsInteger(*cloud.attribute(0)) &&
+           IsInteger(*cloud.attribute(1)) && IsInteger(*cloud.attribute(2));
+  }
+  const bool with_ids = contents == Contents::kPositionsAndIds;
   if (cloud.num_attributes() != (with_ids ? 2 : 1)) return false;
   const draco::PointAttribute& position = *cloud.attribute(0);
   if (position.attribute_type() != draco::GeometryAttribute::POSITION ||
       position.data_type() != draco::DT_FLOAT32 || position.num_components() != 3) {
     return false;
   }
-  if (!with_ids) return true;
-  const draco::PointAttribute& ids = *cloud.attribute(1);
-  return ids.attribute_type() == draco::GeometryAttribute::GENERIC &&
-         ids.data_type() == draco::DT_INT32 && ids.num_components() == 1;
+  return !with_ids || IsInteger(*cloud.attribute(1));
 }
 
 // A Draco decoder that looks at the declared attributes before it decodes their values.
 template <typename Decoder>
 class Guarded final : public Decoder {
  public:
-  Guarded(int num_points, bool with_ids) : num_points_(num_points), with_ids_(with_ids) {}
+  Guarded(int num_points, Contents contents) : num_points_(num_points), contents_(contents) {}
 
  protected:
   bool DecodeAllAttributes() override {
-    return AttributesAreExpected(*this->point_cloud(), num_points_, with_ids_) &&
+    return AttributesAreExpected(*this->point_cloud(), num_points_, contents_) &&
            Decoder::DecodeAllAttributes();
   }
 
  private:
   uint32_t num_points_;
-  bool with_ids_;
+  Contents contents_;
 };
 
 template <typename Decoder, typename Geometry>
-absl::Status Run(std::string_view bytes, int num_points, bool with_ids, Geometry* geometry) {
-  Guarded<Decoder> decoder(num_points, with_ids);
+absl::Status Run(std::string_view bytes, int num_points, Contents contents, Geometry* geometry) {
+  Guarded<Decoder> decoder(num_points, contents);
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   const draco::DecoderOptions options;
@@ -166,11 +175,11 @@ absl::Status DecodeDracoMesh(std::string_view bytes, int num_points, int num_tri
   if (method == kEdgebreakerMethod) {
     PLEAT_RETURN_IF_ERROR(CheckEdgebreakerHeader(&reader, num_points, num_triangles));
     PLEAT_RETURN_IF_ERROR(
-        Run<draco::MeshEdgebreakerDecoder>(bytes, num_points, /*with_ids=*/true, &mesh));
+        Run<draco::MeshEdgebreakerDecoder>(bytes, num_points, Contents::kPositionsAndIds, &mesh));
   } else if (method == kSequentialMethod) {
     PLEAT_RETURN_IF_ERROR(CheckSequentialMeshHeader(&reader, num_points, num_triangles));
     PLEAT_RETURN_IF_ERROR(
-        Run<draco::MeshSequentialDecoder>(bytes, num_points, /*with_ids=*/true, &mesh));
+        Run<draco::MeshSequentialDecoder>(bytes, num_points, Contents::kPositionsAndIds, &mesh));
   } else {
     return Malformed("unknown mesh encoding method");
   }
@@ -178,18 +187,42 @@ absl::Status DecodeDracoMesh(std::string_view bytes, int num_points, int num_tri
   return ReadMesh(mesh, num_vertices, positions, point_vertices, triangles);
 }
 
-absl::Status DecodeDracoPointCloud(std::string_view bytes, int num_points,
-                                   Eigen::Matrix3Xf* positions) {
+namespace {
+
+absl::Status DecodeCloud(std::string_view bytes, int num_points, Contents contents,
+                         draco::PointCloud* cloud) {
   ByteReader reader(bytes);
   PLEAT_ASSIGN_OR_RETURN(const uint8_t method, ReadHeader(&reader, kPointCloudType, 3));
   if (method != kSequentialMethod) return Malformed("not a sequential point cloud");
   PLEAT_ASSIGN_OR_RETURN(const int32_t points, reader.Read<int32_t>("points"));
   if (points < 0) return Malformed("a negative number of points");
   PLEAT_RETURN_IF_ERROR(ExpectCount(points, num_points, "points"));
+  return Run<draco::PointCloudSequentialDecoder>(bytes, num_points, contents, cloud);
+}
+
+}  // namespace
+
+absl::Status DecodeDracoPointCloud(std::string_view bytes, int num_points,
+                                   Eigen::Matrix3Xf* positions) {
   draco::PointCloud cloud;
-  PLEAT_RETURN_IF_ERROR(
-      Run<draco::PointCloudSequentialDecoder>(bytes, num_points, /*with_ids=*/false, &cloud));
+  PLEAT_RETURN_IF_ERROR(DecodeCloud(bytes, num_points, Contents::kPositions, &cloud));
   return ReadPositions(cloud, positions);
+}
+
+absl::Status DecodeDracoResiduals(std::string_view bytes, int num_points,
+                                  Eigen::Matrix3Xi* residuals) {
+  draco::PointCloud cloud;
+  PLEAT_RETURN_IF_ERROR(DecodeCloud(bytes, num_points, Contents::kResiduals, &cloud));
+  residuals->resize(3, num_points);
+  for (int c = 0; c < 3; ++c) {
+    const draco::PointAttribute& attribute = *cloud.attribute(c);
+    for (int i = 0; i < num_points; ++i) {
+      const draco::AttributeValueIndex index = attribute.mapped_index(draco::PointIndex(i));
+      if (index.value() >= attribute.size()) return Malformed("a point without residual");
+      attribute.GetValue(index, &(*residuals)(c, i));
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace pleat

@@ -20,4 +20,8 @@ absl::Status DecodeDracoMesh(std::string_view bytes, int num_points, int num_tri
 absl::Status DecodeDracoPointCloud(std::string_view bytes, int num_points,
                                    Eigen::Matrix3Xf* positions);
 
+// The same for three int32 attributes of one component each. residuals: 3 x P.
+absl::Status DecodeDracoResiduals(std::string_view bytes, int num_points,
+                                  Eigen::Matrix3Xi* residuals);
+
 }  // namespace pleat

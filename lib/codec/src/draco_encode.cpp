@@ -70,6 +70,34 @@ void SetDracoPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
   }
 }
 
+std::unique_ptr<draco::PointCloud> MakeDracoResidualCloud(int num_points) {
+  auto cloud = std::make_unique<draco::PointCloud>();
+  cloud->set_num_points(num_points);
+  for (int c = 0; c < 3; ++c) {
+    AddAttribute(draco::GeometryAttribute::GENERIC, draco::DT_INT32, 1, num_points, cloud.get());
+  }
+  return cloud;
+}
+
+void SetDracoResiduals(const Eigen::Matrix3Xi& residuals, draco::PointCloud* cloud) {
+  for (int c = 0; c < 3; ++c) {
+    draco::PointAttribute* attribute = cloud->attribute(c);
+    auto* values = reinterpret_cast<int32_t*>(attribute->GetAddress(draco::AttributeValueIndex(0)));
+    for (Eigen::Index i = 0; i < residuals.cols(); ++i) values[i] = residuals(c, i);
+  }
+}
+
+absl::StatusOr<std::string> EncodeDracoResiduals(const draco::PointCloud& cloud, int speed) {
+  draco::ExpertEncoder encoder(cloud);
+  encoder.SetSpeedOptions(speed, speed);
+  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+  for (int c = 0; c < 3; ++c) {  // they are predicted already
+    const draco::Status status = encoder.SetAttributePredictionScheme(c, draco::PREDICTION_NONE);
+    if (!status.ok()) return absl::InternalError(status.error_msg_string());
+  }
+  return Run(&encoder);
+}
+
 absl::StatusOr<std::string> EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box,
                                             MeshMethod method, int speed) {
   draco::ExpertEncoder encoder(mesh);

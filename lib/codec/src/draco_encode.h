@@ -23,6 +23,12 @@ std::unique_ptr<draco::PointCloud> MakeDracoPointCloud(int num_points);
 void SetDracoPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                        const std::vector<int32_t>& order, draco::PointCloud* cloud);
 
+// A Draco point cloud with three int32 attributes of one component (0, 1, 2: x, y, z): apart they
+// decode in half the time of one attribute with three components.
+std::unique_ptr<draco::PointCloud> MakeDracoResidualCloud(int num_points);
+void SetDracoResiduals(const Eigen::Matrix3Xi& residuals, draco::PointCloud* cloud);
+absl::StatusOr<std::string> EncodeDracoResiduals(const draco::PointCloud& cloud, int speed);
+
 absl::StatusOr<std::string> EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box,
                                             MeshMethod method, int speed);
 absl::StatusOr<std::string> EncodeDracoPointCloud(const draco::PointCloud& cloud,

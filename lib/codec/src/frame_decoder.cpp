@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "delta_predictor.h"
 #include "draco_decode.h"
 #include "pleat/base/status.h"
 
@@ -11,7 +12,8 @@ namespace {
 
 absl::Status CheckHeader(const StreamHeader& header, const FrameDecoderLimits& limits) {
   if (header.encoding != FrameEncoding::kDracoMesh &&
-      header.encoding != FrameEncoding::kDracoPointCloud) {
+      header.encoding != FrameEncoding::kDracoPointCloud &&
+      header.encoding != FrameEncoding::kDracoDelta) {
     return absl::InvalidArgumentError("unknown frame encoding");
   }
   if (header.num_vertices < 1 || header.num_vertices > limits.max_vertices ||
@@ -78,10 +80,51 @@ absl::StatusOr<FrameDecoder> FrameDecoder::Create(StreamHeader header,
   for (int& corner : triangles.reshaped()) corner = point_vertices[corner];
   PLEAT_ASSIGN_OR_RETURN(Topology topology,
                          Topology::FromTriangles(header.num_vertices, triangles));
-  return FrameDecoder(std::move(header), std::move(topology), std::move(reference));
+  FrameDecoder decoder(std::move(header), std::move(topology), std::move(reference));
+  if (decoder.header_.encoding == FrameEncoding::kDracoDelta) {
+    decoder.predictor_ = std::make_shared<DeltaPredictor>(decoder.topology_, decoder.reference_,
+                                                          decoder.header_.box);
+  }
+  return decoder;
 }
 
-absl::Status FrameDecoder::Decode(std::string_view bytes, Eigen::Matrix3Xf* positions) {
+absl::Status FrameDecoder::DecodeDelta(std::string_view bytes, const FrameMark& mark,
+                                       Eigen::Matrix3Xf* positions) {
+  const Eigen::Matrix3Xi last = std::move(last_);  // empty again until this frame is right
+  last_.resize(3, 0);
+  if (mark.keyframe) {
+    PLEAT_RETURN_IF_ERROR(DecodeDracoPointCloud(bytes, header_.num_vertices, &points_));
+    positions->resize(3, header_.num_vertices);
+    for (int k = 0; k < header_.num_vertices; ++k) {
+      positions->col(header_.vertex_order[k]) = points_.col(k);
+    }
+    const float limit = static_cast<float>(header_.box.step_m() * (1 << 26));
+    if (!((positions->colwise() - header_.box.origin_m).cwiseAbs().maxCoeff() < limit)) {
+      return absl::DataLossError("malformed key frame: a position is out of range");
+    }
+    now_ = SnapToGrid(*positions, header_.box);
+  } else {
+    if (last.cols() != header_.num_vertices) {
+      return absl::FailedPreconditionError(
+          "this frame is a difference and the frame before is not known; ask for a key frame");
+    }
+    PLEAT_RETURN_IF_ERROR(DecodeDracoResiduals(bytes, header_.num_vertices, &residuals_));
+    if (!predictor_->Restore(last, residuals_, &now_)) {
+      return absl::DataLossError("malformed frame: a position is out of range");
+    }
+  }
+  if (GridChecksum(now_) != mark.checksum) {
+    return absl::DataLossError(
+        "the frame is not the one that was sent: its checksum does not agree; ask for a key frame");
+  }
+  PlaceOnGrid(now_, header_.box, positions);
+  last_.swap(now_);
+  return absl::OkStatus();
+}
+
+absl::Status FrameDecoder::Decode(std::string_view bytes, const FrameMark& mark,
+                                  Eigen::Matrix3Xf* positions) {
+  if (header_.encoding == FrameEncoding::kDracoDelta) return DecodeDelta(bytes, mark, positions);
   if (header_.encoding == FrameEncoding::kDracoPointCloud) {
     PLEAT_RETURN_IF_ERROR(DecodeDracoPointCloud(bytes, header_.num_vertices, &points_));
     positions->resize(3, header_.num_vertices);

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "delta_predictor.h"
 #include "draco/compression/decode.h"
 #include "draco_encode.h"
 #include "pleat/base/status.h"
+#include "pleat/codec/frame_decoder.h"
 
 namespace pleat {
 namespace {
@@ -22,6 +25,14 @@ QuantizationBox MakeBox(const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
   const Eigen::Vector3f high = reference.rowwise().maxCoeff();
   const float edge = static_cast<float>((high - low).maxCoeff() * options.box_margin);
   box.range_m = std::max(edge, 1e-6f);
+  if (options.max_error_mm > 0) {  // the cube's half diagonal is the bound
+    const double step_m = options.max_error_mm * 1e-3 * 2 / std::sqrt(3.0) * (1 - 1e-4);
+    box.bits = QuantizationBox::kMinBits;
+    while (box.bits <= QuantizationBox::kMaxBits && step_m * ((1 << box.bits) - 1) < box.range_m) {
+      ++box.bits;  // one too many is refused by Validate
+    }
+    box.range_m = static_cast<float>(step_m * ((1 << box.bits) - 1));
+  }
   box.origin_m = (low + high) / 2 - Eigen::Vector3f::Constant(box.range_m / 2);
   return box;
 }
@@ -95,6 +106,10 @@ absl::Status CheckOptions(const FrameEncoderOptions& options) {
     return absl::InvalidArgumentError(
         absl::StrCat("box_margin is ", options.box_margin, ", allowed are 1 to 100"));
   }
+  if (options.max_error_mm != 0 && !(options.max_error_mm >= 1e-3 && options.max_error_mm <= 1e6)) {
+    return absl::InvalidArgumentError(absl::StrCat("max_error_mm is ", options.max_error_mm,
+                                                   ", allowed are 0 (not used) and 1e-3 to 1e6"));
+  }
   return absl::OkStatus();
 }
 
@@ -105,7 +120,15 @@ struct FrameEncoder::State {
   MeshMethod method = MeshMethod::kEdgebreaker;
   int speed = 5;
   std::unique_ptr<draco::Mesh> mesh;         // for kDracoMesh
-  std::unique_ptr<draco::PointCloud> cloud;  // for kDracoPointCloud
+  std::unique_ptr<draco::PointCloud> cloud;  // for clouds and key frames
+  FrameMark mark;
+
+  // For kDracoDelta:
+  std::optional<DeltaPredictor> predictor;
+  std::unique_ptr<draco::PointCloud> residual_cloud;
+  Eigen::Matrix3Xi last, now, residuals;  // 3 x V, on the grid; `last` is empty before a key frame
+  Eigen::Matrix3Xf placed;
+  size_t key_bytes = 0;  // of the last key frame
 
   // Encodes the mesh with `method` and fills the header; false when a vertex was lost.
   absl::StatusOr<bool> TryTopology() {
@@ -116,6 +139,37 @@ struct FrameEncoder::State {
     int num_shown = 0;
     header.vertex_order = FirstAppearance(decoded.point_vertices, header.num_vertices, &num_shown);
     return num_shown == header.num_vertices;
+  }
+
+  absl::StatusOr<std::string> EncodeKeyframe() {
+    // Of points of the grid Draco makes the same integers again.
+    PlaceOnGrid(now, header.box, &placed);
+    SetDracoPositions(placed, header.vertex_order, cloud.get());
+    PLEAT_ASSIGN_OR_RETURN(std::string bytes, EncodeDracoPointCloud(*cloud, header.box, speed));
+    key_bytes = bytes.size();
+    return bytes;
+  }
+
+  absl::StatusOr<std::string> EncodeDelta(const Eigen::Ref<const Eigen::Matrix3Xf>& positions) {
+    now = SnapToGrid(positions, header.box);
+    mark.checksum = GridChecksum(now);
+    mark.keyframe = last.cols() == 0;
+    std::string bytes;
+    if (!mark.keyframe) {
+      predictor->Residuals(last, now, &residuals);
+      SetDracoResiduals(residuals, residual_cloud.get());
+      PLEAT_ASSIGN_OR_RETURN(bytes, EncodeDracoResiduals(*residual_cloud, speed));
+    }
+    // After a cut a key frame may be smaller.
+    if (mark.keyframe || bytes.size() > key_bytes - key_bytes / 8) {
+      PLEAT_ASSIGN_OR_RETURN(std::string key, EncodeKeyframe());
+      if (mark.keyframe || key.size() <= bytes.size()) {
+        mark.keyframe = true;
+        bytes = std::move(key);
+      }
+    }
+    last.swap(now);
+    return bytes;
   }
 
   // Encodes the reference frame; edgebreaker where it keeps every vertex, else sequential (it drops
@@ -135,6 +189,8 @@ FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
 FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 
 const StreamHeader& FrameEncoder::header() const { return state_->header; }
+const FrameMark& FrameEncoder::mark() const { return state_->mark; }
+void FrameEncoder::RequestKeyframe() { state_->last.resize(3, 0); }
 
 absl::StatusOr<FrameEncoder> FrameEncoder::Create(
     const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
@@ -159,9 +215,15 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(
 
   state->mesh = MakeDracoMesh(topology.num_vertices(), topology.triangles());
   PLEAT_RETURN_IF_ERROR(state->MakeTopology(reference));
-  if (options.encoding == FrameEncoding::kDracoPointCloud) {
+  if (options.encoding != FrameEncoding::kDracoMesh) {
     state->mesh.reset();
     state->cloud = MakeDracoPointCloud(header.num_vertices);
+  }
+  if (options.encoding == FrameEncoding::kDracoDelta) {
+    // From the decoder's view of the header, which may lack degenerate triangles.
+    PLEAT_ASSIGN_OR_RETURN(const FrameDecoder view, FrameDecoder::Create(header));
+    state->predictor.emplace(view.topology(), view.reference(), header.box);
+    state->residual_cloud = MakeDracoResidualCloud(header.num_vertices);
   }
   return FrameEncoder(std::move(state));
 }
@@ -174,6 +236,7 @@ absl::StatusOr<std::string> FrameEncoder::Encode(
                                                    " vertices, the session ", header.num_vertices));
   }
   PLEAT_RETURN_IF_ERROR(CheckPositions(positions, header.box));
+  if (header.encoding == FrameEncoding::kDracoDelta) return state_->EncodeDelta(positions);
   if (header.encoding == FrameEncoding::kDracoPointCloud) {
     SetDracoPositions(positions, header.vertex_order, state_->cloud.get());
     return EncodeDracoPointCloud(*state_->cloud, header.box, state_->speed);

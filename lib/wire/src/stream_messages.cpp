@@ -29,8 +29,15 @@ absl::StatusOr<CharacterQuery> FromProto(const v1::Character& message) {
 }
 
 v1::FrameEncoding ToProto(FrameEncoding encoding) {
-  return encoding == FrameEncoding::kDracoMesh ? v1::FRAME_ENCODING_DRACO_MESH
-                                               : v1::FRAME_ENCODING_DRACO_POINT_CLOUD;
+  switch (encoding) {
+    case FrameEncoding::kDracoMesh:
+      return v1::FRAME_ENCODING_DRACO_MESH;
+    case FrameEncoding::kDracoPointCloud:
+      return v1::FRAME_ENCODING_DRACO_POINT_CLOUD;
+    case FrameEncoding::kDracoDelta:
+      break;
+  }
+  return v1::FRAME_ENCODING_DRACO_DELTA;
 }
 
 absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding) {
@@ -40,6 +47,8 @@ absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding) {
     case v1::FRAME_ENCODING_UNSPECIFIED:
     case v1::FRAME_ENCODING_DRACO_POINT_CLOUD:
       return FrameEncoding::kDracoPointCloud;
+    case v1::FRAME_ENCODING_DRACO_DELTA:
+      return FrameEncoding::kDracoDelta;
     default:
       return absl::InvalidArgumentError(
           absl::StrCat("encoding is ", static_cast<int>(encoding), ", which is unknown"));
@@ -49,7 +58,11 @@ absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding) {
 v1::StreamOptions ToProto(const FrameEncoderOptions& options) {
   v1::StreamOptions message;
   message.set_encoding(ToProto(options.encoding));
-  message.set_position_bits(options.position_bits);
+  if (options.max_error_mm > 0) {
+    message.set_max_error_mm(options.max_error_mm);
+  } else {
+    message.set_position_bits(options.position_bits);
+  }
   message.set_speed(options.speed);
   return message;
 }
@@ -64,12 +77,25 @@ absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message) 
         absl::StrCat("options.position_bits is ", options.position_bits, ", allowed are ",
                      QuantizationBox::kMinBits, " to ", QuantizationBox::kMaxBits));
   }
+  options.max_error_mm = message.max_error_mm();
+  if (options.max_error_mm != 0 && message.position_bits() != 0) {
+    return absl::InvalidArgumentError(
+        "options.max_error_mm and options.position_bits cannot both be given");
+  }
+  if (options.max_error_mm != 0 && !(options.max_error_mm >= 1e-3 && options.max_error_mm <= 1e6)) {
+    return absl::InvalidArgumentError(absl::StrCat("options.max_error_mm is ", options.max_error_mm,
+                                                   ", allowed are 1e-3 to 1e6"));
+  }
   if (message.has_speed()) options.speed = message.speed();
   if (options.speed < 0 || options.speed > 10) {
     return absl::InvalidArgumentError(
         absl::StrCat("options.speed is ", options.speed, ", allowed are 0 to 10"));
   }
   return options;
+}
+
+FrameMark MarkOf(const v1::Frame& frame) {
+  return {.keyframe = !frame.difference(), .checksum = frame.checksum()};
 }
 
 v1::StreamHeader ToProto(const StreamHeader& header) {

@@ -84,6 +84,7 @@ class LiveReactor final
     PLEAT_ASSIGN_OR_RETURN(const Pose pose, FromProto(request.pose()));
     PLEAT_ASSIGN_OR_RETURN(const std::vector<Pose> history,
                            FromProto(request.history(), "pose.history"));
+    if (request.keyframe()) session_->RequestKeyframe();
     absl::StatusOr<EncodedFrame> frame;
     if (history.empty()) {
       frame = session_->ShowNext(pose, request.restart());

@@ -23,6 +23,8 @@ v1::Frame ToProto(uint64_t number, EncodedFrame frame) {
   message.set_number(number);
   *message.mutable_draco() = std::move(frame.draco);
   message.set_confidence(frame.confidence);
+  message.set_difference(!frame.mark.keyframe);
+  message.set_checksum(frame.mark.checksum);
   return message;
 }
 

@@ -34,7 +34,7 @@ absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& p
     PLEAT_RETURN_IF_ERROR(evaluator_.Evaluate(poses, options_.bone_scales, &frame_));
   }
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, encoder_.Encode(frame_.positions));
-  return EncodedFrame{std::move(bytes), frame_.confidence};
+  return EncodedFrame{std::move(bytes), frame_.confidence, encoder_.mark()};
 }
 
 absl::StatusOr<EncodedFrame> PoseSession::ShowNext(const Pose& pose, bool restart) {

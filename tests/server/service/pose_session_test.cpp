@@ -25,7 +25,7 @@ class PoseSessionTest : public testing::Test {
 
 TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
   for (const FrameEncoding encoding :
-       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud}) {
+       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     for (const double fps : {25.0, 60.0}) {
       PoseTrack track = track_;
       track.fps = fps;
@@ -46,7 +46,7 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
         EXPECT_EQ(clip->next_frame(), t);
         PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame frame, clip->Next());
         Eigen::Matrix3Xf positions;
-        ASSERT_THAT(decoder.Decode(frame.draco, &positions), IsOk());
+        ASSERT_THAT(decoder.Decode(frame.draco, frame.mark, &positions), IsOk());
         EXPECT_LE(Steps(positions, truth[t].positions, clip->header().box), .505);
         EXPECT_EQ(frame.confidence, truth[t].confidence);
       }

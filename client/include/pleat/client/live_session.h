@@ -16,6 +16,7 @@ struct LiveFrame {
   Eigen::Matrix3Xf positions;  // 3 x V, metres, the character's vertex order
   double confidence = 0;
   std::string draco;  // what came over the wire
+  FrameMark mark;
 };
 
 // Send and Receive may run on two threads, each on one. The server answers every pose with one
@@ -29,9 +30,11 @@ class LiveSession {
   virtual const FrameDecoder& decoder() const = 0;
 
   // history: the poses 1, 2, ... training-frame intervals earlier; empty = the poses sent before.
-  // restart: forget those (a cut). kUnavailable when the session has ended: Receive says why.
+  // restart: forget those (a cut). keyframe: of kDracoDelta streams, answer with a key frame.
+  // kUnavailable when the session has ended: Receive says why.
   virtual absl::Status Send(uint64_t number, const Pose& pose,
-                            const std::vector<Pose>& history = {}, bool restart = false) = 0;
+                            const std::vector<Pose>& history = {}, bool restart = false,
+                            bool keyframe = false) = 0;
 
   // The next frame. kOutOfRange when the server has ended the session without error.
   virtual absl::Status Receive(LiveFrame* frame) = 0;

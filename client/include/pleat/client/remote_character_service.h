@@ -33,7 +33,9 @@ struct RemoteOptions {
 // What a stream of one clip gives, in this order; an error from either ends the stream.
 struct ClipStreamSink {
   std::function<absl::Status(const StreamHeader&)> on_header;  // may be null
-  std::function<absl::Status(int frame_index, std::string_view draco, double confidence)> on_frame;
+  std::function<absl::Status(int frame_index, std::string_view draco, const FrameMark& mark,
+                             double confidence)>
+      on_frame;
 };
 
 // Thread-safe. Errors of the connection are kUnavailable (nobody answers) or kDeadlineExceeded;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "pleat/mesh/topology.h"
 
 namespace pleat {
+
+class DeltaPredictor;
 
 struct FrameDecoderLimits {
   int max_vertices = 4'000'000;
@@ -32,7 +35,12 @@ class FrameDecoder {
 
   // Fills `positions` (3 x V, metres, character's vertex order). kDataLoss says what is wrong; then
   // `positions` holds nothing useful. Not for two threads at once.
-  absl::Status Decode(std::string_view bytes, Eigen::Matrix3Xf* positions);
+  // `mark` is the frame's own; streams other than kDracoDelta do without. In those a frame that is
+  // a difference needs the frame before: after an error only a key frame is decoded again.
+  absl::Status Decode(std::string_view bytes, const FrameMark& mark, Eigen::Matrix3Xf* positions);
+  absl::Status Decode(std::string_view bytes, Eigen::Matrix3Xf* positions) {
+    return Decode(bytes, FrameMark{}, positions);
+  }
 
  private:
   FrameDecoder(StreamHeader header, Topology topology, Eigen::Matrix3Xf reference);
@@ -42,6 +50,12 @@ class FrameDecoder {
   Eigen::Matrix3Xf reference_;
   Eigen::Matrix3Xf points_;  // 3 x number of points in the last frame
   std::vector<int32_t> point_vertices_;
+  // Of kDracoDelta streams:
+  absl::Status DecodeDelta(std::string_view bytes, const FrameMark& mark,
+                           Eigen::Matrix3Xf* positions);
+  std::shared_ptr<const DeltaPredictor> predictor_;
+  Eigen::Matrix3Xi last_, now_,
+      residuals_;  // 3 x V, on the grid; last_ is empty before a key frame
 };
 
 }  // namespace pleat

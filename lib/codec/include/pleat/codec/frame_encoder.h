@@ -14,6 +14,9 @@ namespace pleat {
 struct FrameEncoderOptions {
   FrameEncoding encoding = FrameEncoding::kDracoPointCloud;
   int position_bits = 12;  // grid: 12 bits are about .5 mm on a person
+  // Where positive: the grid is as fine as this bound on every vertex needs, and position_bits is
+  // not used. 1e-3 mm to 1e6 mm, at most 2^20 steps per box edge.
+  double max_error_mm = 0;
   // Of Draco, 0 = smallest .. 10 = fastest. From 6 on its vertex order no longer follows the
   // surface closely: samba's clouds grow from 23.7 to 28.2 kB and take longer.
   int speed = 5;
@@ -38,7 +41,13 @@ class FrameEncoder {
   // positions: 3 x V, metres. The decoded coordinates differ by at most half of box.step_m() (and
   // the rounding of float32). kInvalidArgument names the first vertex that is not finite,
   // kOutOfRange the first that is too far from the box.
+  // In a kDracoDelta stream the frame is the cheaper of a key frame and a difference to the frame
+  // encoded before: every frame must reach the decoder, in order.
   absl::StatusOr<std::string> Encode(const Eigen::Ref<const Eigen::Matrix3Xf>& positions);
+  // Of the frame encoded last.
+  const FrameMark& mark() const;
+  // The next frame of a kDracoDelta stream will be a key frame (a decoder has lost its state).
+  void RequestKeyframe();
 
  private:
   struct State;

@@ -13,6 +13,17 @@ namespace pleat {
 enum class FrameEncoding {
   kDracoMesh,        // every frame is a Draco mesh that can be read alone
   kDracoPointCloud,  // every frame is a Draco point cloud in the vertex order of the header
+  // Key frames as above; between them Draco point clouds of three int32 attributes, what a
+  // prediction from the last frame leaves (docs/formats/frame_stream.md). Lossless on the grid.
+  kDracoDelta,
+};
+
+// What a reader needs beside the bytes of a frame of a kDracoDelta stream.
+struct FrameMark {
+  bool keyframe = true;   // else a difference to the frame before
+  uint32_t checksum = 0;  // of the frame's integers on the grid; 0 in other streams
+
+  friend bool operator==(const FrameMark&, const FrameMark&) = default;
 };
 
 // One grid for a whole session: a coordinate x of axis a becomes the integer

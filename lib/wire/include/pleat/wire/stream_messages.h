@@ -28,6 +28,8 @@ absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding);  // unspeci
 v1::StreamOptions ToProto(const FrameEncoderOptions& options);  // box_margin is the server's own
 absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message);
 
+FrameMark MarkOf(const v1::Frame& frame);
+
 v1::StreamHeader ToProto(const StreamHeader& header);
 // Checks numbers only: FrameDecoder::Create checks the rest against its limits.
 absl::StatusOr<StreamHeader> FromProto(const v1::StreamHeader& message);

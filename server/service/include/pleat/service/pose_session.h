@@ -21,6 +21,7 @@ struct PoseSessionOptions {
 struct EncodedFrame {
   std::string draco;
   double confidence = 0;
+  FrameMark mark{};
 };
 
 // Keeps the model in use as long as it lives. Not for two threads at once.
@@ -37,6 +38,9 @@ class PoseSession {
   // Shows `pose`; its history are the poses shown by this function before, one training-frame
   // interval apart each, unless `restart` forgets them.
   absl::StatusOr<EncodedFrame> ShowNext(const Pose& pose, bool restart);
+
+  // The next frame of a kDracoDelta session will be a key frame.
+  void RequestKeyframe() { encoder_.RequestKeyframe(); }
 
  private:
   PoseSession(std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
