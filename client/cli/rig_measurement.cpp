@@ -1,5 +1,6 @@
 #include "cli/rig_measurement.h"
 
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
@@ -117,9 +118,11 @@ absl::StatusOr<RigMeasurement> MeasureRig(const std::string& input, const MeshSe
   measurement.mesh = InspectMesh(used.topology(), first);
 
   const double start = MonotonicSeconds();
+  const std::clock_t cpu_start = std::clock();
   absl::StatusOr<Rig> rig =
       AutoRig(used, options.rig, &measurement.summary, progress.Stage("rig", 0, .5));
   measurement.rig_seconds = MonotonicSeconds() - start;
+  measurement.rig_cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   if (absl::IsCancelled(rig.status())) return rig.status();
   measurement.status = rig.status();
   if (!rig.ok()) return measurement;
@@ -146,6 +149,7 @@ nlohmann::ordered_json RigMeasurementJson(const RigMeasurement& measurement) {
   json["mesh_report"] = MeshReportJson(measurement.mesh);
   json["is_refused"] = !measurement.status.ok();
   json["seconds"]["rig"] = measurement.rig_seconds;
+  json["seconds"]["rig_cpu"] = measurement.rig_cpu_seconds;
   if (!measurement.rig) {
     json["message"] = std::string(measurement.status.message());
     return json;

@@ -34,6 +34,7 @@ struct RigMeasurement {
   std::optional<double> fit_rms_percent;       // of the diagonal, with the rig as it was found
   std::optional<double> refined_rms_percent;   // the same with the refined rig
   std::optional<double> refined_joint_mean_m;  // mean joint error of the refined rig
+  double rig_cpu_seconds = 0;                  // of all threads
   double rig_seconds = 0, fit_seconds = 0, refine_seconds = 0;  // wall time
 };
 

@@ -15,13 +15,14 @@
 #include "cli/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
+#include "pleat/formats/rig_file.h"
 
 namespace pleat {
 namespace {
 
 struct RigVerbOptions {
   std::vector<std::string> inputs, truths;
-  std::string report, fps;
+  std::string report, fps, output;
   RigMeasurementOptions measurement;
   bool no_fit = false;
 };
@@ -32,7 +33,7 @@ std::string Cell(const std::optional<double>& value, const char* unit_format, do
 }
 
 std::vector<std::string> TableRow(const RigMeasurement& row) {
-  const std::string seconds = absl::StrFormat("%.2f", row.rig_seconds);
+  const std::string seconds = absl::StrFormat("%.2f", row.rig_cpu_seconds);
   if (!row.rig) {
     return {row.input,
             absl::StrCat(row.num_frames),
@@ -63,7 +64,7 @@ void PrintText(const std::vector<RigMeasurement>& rows, std::ostream& out) {
   std::vector<std::vector<std::string>> cells;
   for (const RigMeasurement& row : rows) cells.push_back(TableRow(row));
   out << FormatTable({"input", "frames", "vertices", "residual", "yaw", "rest frame", "joints mm",
-                      "fit %", "refined %", "rig s"},
+                      "fit %", "refined %", "cpu s"},
                      cells);
   for (const RigMeasurement& row : rows) {
     if (!row.rig) out << row.input << ": refused: " << std::string(row.status.message()) << "\n";
@@ -92,6 +93,9 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
   if (options.truths.size() > options.inputs.size()) {
     return UsageError("there are more --truth than inputs");
   }
+  if (!options.output.empty() && options.inputs.size() != 1) {
+    return UsageError("-o takes one INPUT");
+  }
   options.measurement.fit = !options.no_fit;
   std::vector<RigMeasurement> rows;
   for (size_t i = 0; i < options.inputs.size(); ++i) {
@@ -108,6 +112,11 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
   }
   if (!options.report.empty()) {
     PLEAT_RETURN_IF_ERROR(WriteFile(options.report, report.dump(2) + "\n"));
+  }
+  if (!options.output.empty() && rows[0].rig) {
+    const UserRig rig{rows[0].rig->skeleton, rows[0].rig->weights,
+                      options.measurement.first_frame + rows[0].summary.rest_frame, false};
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.output, EncodeRig(rig) + "\n"));
   }
   if (session.json) {
     *session.out << report.dump(2) << "\n";
@@ -130,6 +139,8 @@ void AddRigVerb(CLI::App& app, Session& session) {
   verb->add_option("INPUT", options->inputs, "sequences or single meshes, one row each")
       ->required();
   verb->add_option("--report", options->report, "JSON report (pleat.rig/1)");
+  verb->add_option("-o,--output", options->output,
+                   "of one INPUT: the rig as a file that `train --rig` takes");
   verb->add_option("--truth", options->truths,
                    "known joints, one JSON file per input ('-' = none) [<stem>_truth.json or "
                    "truth.json beside the input]");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -25,14 +26,16 @@
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/character/train_character.h"
+#include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/formats/rig_file.h"
 
 namespace pleat {
 namespace {
 
 struct TrainVerbOptions {
   std::vector<std::string> inputs;
-  std::string output, report, fps;
+  std::string output, report, fps, rig;
   TrainFlags flags;
   TrainResources resources;
   bool detach = false;
@@ -45,13 +48,16 @@ struct TrainedModel {
   std::map<std::string, double> seconds;  // per stage
 };
 
-absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips,
+// `rig` may be null: found automatically.
+absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips, const UserRig* rig,
                                        const TrainOptions& options, const TrainResources& resources,
                                        const Session& session) {
   TrainedModel trained;
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  PLEAT_ASSIGN_OR_RETURN(trained.model, TrainCharacter(clips, options, resources, nullptr,
-                                                       InterruptibleProgress(&display)));
+  const Progress progress = InterruptibleProgress(&display);
+  PLEAT_ASSIGN_OR_RETURN(
+      trained.model, rig ? TrainCharacterWithRig(clips, *rig, options, resources, nullptr, progress)
+                         : TrainCharacter(clips, options, resources, nullptr, progress));
   display.Finish();
   trained.seconds = display.stage_seconds();
   trained.bytes = EncodeModel(*trained.model);
@@ -153,6 +159,9 @@ absl::Status PrintDetached(const JobInfo& job, const Session& session) {
 absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   const bool here = session.local && session.data_dir.empty();
   if (options.output.empty() && here) return UsageError("--local without --data-dir needs -o FILE");
+  if (!options.rig.empty() && !here) {
+    return UsageError("--rig needs --local without --data-dir: servers do not take a rig yet");
+  }
   if (options.detach && session.local) return UsageError("--detach needs a server");
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions train, ResolveTrainFlags(options.flags));
   const double start_seconds = MonotonicSeconds();
@@ -163,9 +172,16 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   }
   const double read_seconds = MonotonicSeconds() - start_seconds;
 
+  std::optional<UserRig> rig;
+  if (!options.rig.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(const RigFile file, ReadRigFile(options.rig));
+    PLEAT_ASSIGN_OR_RETURN(rig, ResolveRig(file, clips[0]));
+  }
+
   TrainedModel trained;
   if (here) {
-    PLEAT_ASSIGN_OR_RETURN(trained, TrainHere(clips, train, options.resources, session));
+    PLEAT_ASSIGN_OR_RETURN(
+        trained, TrainHere(clips, rig ? &*rig : nullptr, train, options.resources, session));
   } else {
     PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
     PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(*service, clips, train, session));
@@ -206,6 +222,9 @@ void AddTrainVerb(CLI::App& app, Session& session) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   verb->add_flag("--detach", options->detach, "print the job's id and do not wait for it");
+  verb->add_option(
+      "--rig", options->rig,
+      "your own rig instead of the automatic one: .json or .glb (docs/formats/rig.md)");
   AddTrainFlags(verb, &options->flags);
   AddServerFlags(verb, session);
 }

@@ -7,6 +7,7 @@
 
 #include "pleat/base/status.h"
 #include "pleat/character/pose_evaluator.h"
+#include "pleat/character/train_with_rig.h"
 #include "pleat/mesh/bounds.h"
 #include "training_steps.h"
 
@@ -81,17 +82,17 @@ absl::StatusOr<TrainingRecord> MeasureReconstruction(
   return record;
 }
 
-}  // namespace
-
-absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
-    const std::vector<MeshSequence>& clips, const TrainOptions& options,
+// `rig` may be null: found automatically.
+absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
+    const std::vector<MeshSequence>& clips, const UserRig* rig, const TrainOptions& options,
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, JoinClips(clips));
   const double diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
 
-  PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged,
-                         RigFrames(frames, options, resources, progress.Stage("rig", 0, .25)));
+  const Progress rigging = progress.Stage("rig", 0, .25);
+  PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged, rig ? TakeUserRig(frames, *rig, resources, rigging)
+                                                  : RigFrames(frames, options, resources, rigging));
   PoseFitSummary fit;
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitTrainingFrames(options, resources, &rigged, &fit,
                                                                   progress.Stage("fit", .25, .45)));
@@ -120,6 +121,20 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
     summary->num_control_vertices = static_cast<int>(data.control_vertices.size());
   }
   return unmeasured->WithRecord(std::move(record));
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
+    const std::vector<MeshSequence>& clips, const TrainOptions& options,
+    const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
+  return Train(clips, nullptr, options, resources, summary, progress);
+}
+
+absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacterWithRig(
+    const std::vector<MeshSequence>& clips, const UserRig& rig, const TrainOptions& options,
+    const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
+  return Train(clips, &rig, options, resources, summary, progress);
 }
 
 }  // namespace pleat

@@ -131,7 +131,10 @@ absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const Train
   AutoRigSummary summary;
   PLEAT_ASSIGN_OR_RETURN(
       Rig rig, AutoRig(frames.sequence.Subset(rig_frames), rig_options, &summary, progress));
-  return RiggedFrames{frames, std::move(rig), std::move(summary)};
+  return RiggedFrames{.frames = frames,
+                      .rig = std::move(rig),
+                      .rig_summary = std::move(summary),
+                      .joints_are_locked = false};
 }
 
 absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
@@ -163,6 +166,7 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
     refinement.weights = refinement.rest = false;
     refinement.joint_prior = 0.3;
   }
+  if (rigged->joints_are_locked) refinement.joints = false;
   refinement.bend_stiffness = options.bend_stiffness;
   refinement.num_threads = resources.num_threads;
   PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,

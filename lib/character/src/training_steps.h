@@ -16,6 +16,7 @@
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/auto_rig.h"
 #include "pleat/skeleton/pose.h"
+#include "pleat/skinning/user_rig.h"
 
 namespace pleat {
 
@@ -35,7 +36,11 @@ struct RiggedFrames {
   TrainingFrames frames;
   Rig rig;
   AutoRigSummary rig_summary;
+  bool joints_are_locked = false;  // against refinement
 };
+// The user's rig; weights by heat where it has none.
+absl::StatusOr<RiggedFrames> TakeUserRig(const TrainingFrames& frames, const UserRig& rig,
+                                         const TrainResources& resources, const Progress& progress);
 absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const TrainOptions& options,
                                        const TrainResources& resources, const Progress& progress);
 

@@ -1,0 +1,159 @@
+// Khronos, glTF 2.0 specification, sections 3.6 (buffers, accessors) and 4.4 (binary files).
+#include "glb_container.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+using nlohmann::json;
+
+constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
+
+absl::Status Fault(const std::string& what) {
+  return absl::InvalidArgumentError(absl::StrCat("GLB: ", what));
+}
+
+uint32_t ReadU32(std::string_view bytes, size_t at) {
+  uint32_t value;
+  std::memcpy(&value, bytes.data() + at, 4);  // little endian, as the file
+  return value;
+}
+
+template <typename T>
+double Load(const char* data) {
+  T value;
+  std::memcpy(&value, data, sizeof(T));
+  return static_cast<double>(value);
+}
+
+size_t ComponentBytes(int type) {
+  switch (type) {
+    case kByte:
+    case kUnsignedByte:
+      return 1;
+    case kShort:
+    case kUnsignedShort:
+      return 2;
+    case kUnsignedInt:
+    case kFloat:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+// A non-negative whole number of a JSON object, `fallback` when it is missing, nullopt-like -1 when
+// it is something else.
+int64_t Size(const json& object, const char* name, int64_t fallback) {
+  const auto found = object.find(name);
+  if (found == object.end()) return fallback;
+  if (!found->is_number_integer() || *found < 0 || *found > int64_t{1} << 40) return -1;
+  return found->get<int64_t>();
+}
+
+}  // namespace
+
+double GlbAccessor::At(size_t i, int k) const {
+  const char* data = data_ + i * stride_ + k * ComponentBytes(component_type_);
+  switch (component_type_) {
+    case kByte:
+      return is_normalized_ ? std::max(-1.0, Load<int8_t>(data) / 127) : Load<int8_t>(data);
+    case kUnsignedByte:
+      return is_normalized_ ? Load<uint8_t>(data) / 255 : Load<uint8_t>(data);
+    case kShort:
+      return is_normalized_ ? std::max(-1.0, Load<int16_t>(data) / 32767) : Load<int16_t>(data);
+    case kUnsignedShort:
+      return is_normalized_ ? Load<uint16_t>(data) / 65535 : Load<uint16_t>(data);
+    case kUnsignedInt:
+      return Load<uint32_t>(data);
+    default:
+      return Load<float>(data);
+  }
+}
+
+absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes) {
+  if (bytes.size() < 20 || ReadU32(bytes, 0) != kMagic) return Fault("not a binary glTF file");
+  if (ReadU32(bytes, 4) != 2) {
+    return Fault(absl::StrCat("version ", ReadU32(bytes, 4), ", not 2"));
+  }
+  if (ReadU32(bytes, 8) > bytes.size()) {
+    return Fault(absl::StrCat("cut off: ", bytes.size(), " of ", ReadU32(bytes, 8), " bytes"));
+  }
+  GlbContainer glb;
+  bool has_json = false;
+  for (size_t at = 12; at + 8 <= bytes.size();) {
+    const uint64_t size = ReadU32(bytes, at);
+    const uint32_t kind = ReadU32(bytes, at + 4);
+    if (size > bytes.size() - at - 8) return Fault("a chunk reaches beyond the end");
+    const std::string_view chunk = bytes.substr(at + 8, size);
+    if (kind == kJsonChunk && !has_json) {
+      glb.root_ = json::parse(chunk, nullptr, false);
+      has_json = true;
+    } else if (kind == kBinaryChunk && glb.binary_.empty()) {
+      glb.binary_ = chunk;
+    }
+    at += 8 + size;
+  }
+  if (!has_json || !glb.root_.is_object()) return Fault("the JSON chunk is missing or damaged");
+  return glb;
+}
+
+const json& GlbContainer::List(const char* name) const {
+  static const json& empty = *new json(json::array());
+  const auto found = root_.find(name);
+  return found != root_.end() && found->is_array() ? *found : empty;
+}
+
+const json& GlbContainer::Entry(const char* name, const json& index) const {
+  static const json& null = *new json();
+  const json& list = List(name);
+  if (!index.is_number_integer() || index < 0 || index >= list.size()) return null;
+  return list[index.get<size_t>()];
+}
+
+absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_view type) const {
+  const json& accessor = Entry("accessors", index);
+  if (!accessor.is_object() || accessor.value("type", json()) != std::string(type)) {
+    return Fault(absl::StrCat("an accessor of type ", std::string(type), " is missing"));
+  }
+  if (accessor.contains("sparse") || !accessor.contains("bufferView")) {
+    return absl::UnimplementedError("GLB: sparse accessors are not supported");
+  }
+  const json& view = Entry("bufferViews", accessor["bufferView"]);
+  if (!view.is_object()) return Fault("an accessor's buffer view is missing");
+  const json& buffer = Entry("buffers", view.value("buffer", json()));
+  if (view.value("buffer", json()) != 0 || !buffer.is_object() || buffer.contains("uri")) {
+    return absl::UnimplementedError(
+        "GLB: only the file's own binary chunk is read, no other files");
+  }
+  GlbAccessor result;
+  const int64_t component = Size(accessor, "componentType", 0);
+  result.component_type_ = static_cast<int>(std::max<int64_t>(component, 0));
+  result.is_normalized_ = accessor.value("normalized", json()) == true;
+  const size_t num_components = type == "MAT4" ? 16 : type == "VEC4" ? 4 : type == "VEC3" ? 3 : 1;
+  const size_t element = num_components * ComponentBytes(result.component_type_);
+  const int64_t count = Size(accessor, "count", -1), offset = Size(accessor, "byteOffset", 0);
+  const int64_t view_offset = Size(view, "byteOffset", 0), view_size = Size(view, "byteLength", -1);
+  const int64_t stride = Size(view, "byteStride", static_cast<int64_t>(element));
+  if (element == 0 || count < 1 || offset < 0 || view_offset < 0 || view_size < 0 || stride < 1 ||
+      view_offset > static_cast<int64_t>(binary_.size()) ||
+      view_size > static_cast<int64_t>(binary_.size()) - view_offset || offset > view_size ||
+      static_cast<int64_t>(element) > view_size - offset ||
+      (count - 1) > (view_size - offset - static_cast<int64_t>(element)) / stride) {
+    return Fault("an accessor reaches beyond its buffer");
+  }
+  result.data_ = binary_.data() + view_offset + offset;
+  result.count_ = static_cast<size_t>(count);
+  result.stride_ = static_cast<size_t>(stride);
+  return result;
+}
+
+}  // namespace pleat

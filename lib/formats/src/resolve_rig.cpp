@@ -1,0 +1,113 @@
+// From a rig file to the rig of a clip's own vertices.
+#include <cmath>
+#include <nanoflann.hpp>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "pleat/base/status.h"
+#include "pleat/formats/rig_file.h"
+#include "pleat/mesh/bounds.h"
+
+namespace pleat {
+namespace {
+
+constexpr double kMaxVertexDistance = .01;  // of the diagonal: another mesh, pose or unit
+constexpr double kMaxJointDistance = 1;     // of the diagonal, from the mesh's centre
+
+struct PointCloud {
+  const Eigen::Matrix3Xd& points;
+  size_t kdtree_get_point_count() const { return static_cast<size_t>(points.cols()); }
+  double kdtree_get_pt(size_t i, size_t axis) const {
+    return points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i));
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using PointTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
+                                        PointCloud, 3>;
+
+absl::Status CheckJoints(const Skeleton& skeleton, const Eigen::Matrix3Xd& rest, double diagonal) {
+  const Eigen::Vector3d centre = ComputeBounds(rest).center();
+  for (const Joint& joint : skeleton.joints()) {
+    if ((joint.rest_position - centre).norm() <= kMaxJointDistance * diagonal) continue;
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "rig: joint '%s' at (%g, %g, %g) lies far from the mesh, which is %.3g m large around "
+        "(%.3g, %.3g, %.3g): is it in another unit or up axis?",
+        joint.name, joint.rest_position.x(), joint.rest_position.y(), joint.rest_position.z(),
+        diagonal, centre.x(), centre.y(), centre.z()));
+  }
+  return absl::OkStatus();
+}
+
+// The file's influences, carried to the clip's vertices by place.
+absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigFile& file,
+                                                                      const Eigen::Matrix3Xd& rest,
+                                                                      double diagonal) {
+  const PointCloud cloud{file.positions};
+  PointTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  std::vector<std::vector<JointInfluence>> influences(rest.cols());
+  for (Eigen::Index v = 0; v < rest.cols(); ++v) {
+    const Eigen::Vector3d point = rest.col(v);
+    size_t nearest = 0;
+    double squared_distance = 0;
+    nanoflann::KNNResultSet<double> result(1);
+    result.init(&nearest, &squared_distance);
+    tree.findNeighbors(result, point.data(), nanoflann::SearchParams());
+    if (!(std::sqrt(squared_distance) <= kMaxVertexDistance * diagonal)) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "rig: vertex %d of the clip is %.3g m from the nearest vertex of the file: its mesh must "
+          "be the clip's frame %d (rest_frame), in metres, Y up",
+          v, std::sqrt(squared_distance), file.rest_frame));
+    }
+    influences[v] = file.influences[nearest];
+  }
+  return influences;
+}
+
+}  // namespace
+
+absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip) {
+  if (file.rest_frame >= clip.num_frames()) {
+    return absl::InvalidArgumentError(absl::StrCat("rig: rest_frame ", file.rest_frame, " of ",
+                                                   clip.name(), ", which has ", clip.num_frames(),
+                                                   " frames"));
+  }
+  const Eigen::Matrix3Xd rest = clip.FrameAsDouble(file.rest_frame);
+  const double diagonal = BoundsDiagonal(rest);
+  PLEAT_RETURN_IF_ERROR(CheckJoints(file.skeleton, rest, diagonal));
+  UserRig rig{file.skeleton, std::nullopt, file.rest_frame, file.is_locked};
+  if (file.influences.empty()) return rig;
+  const bool by_place = file.positions.cols() > 0;
+  if (!by_place && static_cast<Eigen::Index>(file.influences.size()) != rest.cols()) {
+    return absl::InvalidArgumentError(absl::StrCat("rig: weights of ", file.influences.size(),
+                                                   " vertices; ", clip.name(), " has ",
+                                                   rest.cols()));
+  }
+  RigFile of_clip = file;
+  if (by_place) {
+    PLEAT_ASSIGN_OR_RETURN(of_clip.influences, CarryByPlace(file, rest, diagonal));
+  }
+  if (file.influences_are_of_bones) {
+    of_clip.positions.resize(3, 0);
+    rig.weights = std::nullopt;
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(rest.cols(), file.skeleton.num_joints());
+    for (size_t v = 0; v < of_clip.influences.size(); ++v) {
+      for (const JointInfluence& influence : of_clip.influences[v]) {
+        dense(static_cast<Eigen::Index>(v), influence.joint) += influence.weight;
+      }
+    }
+    PLEAT_ASSIGN_OR_RETURN(rig.weights, SkinWeights::FromDense(dense));
+    return rig;
+  }
+  PLEAT_ASSIGN_OR_RETURN(UserRig converted,
+                         RigFromJointWeights(file.skeleton, of_clip.influences, rest));
+  converted.rest_frame = file.rest_frame;
+  converted.is_locked = file.is_locked;
+  return converted;
+}
+
+}  // namespace pleat

@@ -1,0 +1,245 @@
+#include "pleat/formats/rig_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kSchema = "pleat.rig_file/1";
+constexpr int kMaxFrame = 100'000;
+constexpr int kMaxListed = 64;  // influences of one vertex
+
+absl::Status Fault(const std::string& what) {
+  return absl::InvalidArgumentError(absl::StrCat("rig: ", what));
+}
+
+class RigParser {
+ public:
+  RigParser(const json& root, const RigFileLimits& limits) : root_(root), limits_(limits) {}
+
+  absl::StatusOr<RigFile> Parse() {
+    if (!root_.is_object()) return Fault("the file is not a JSON object");
+    if (root_.value("schema", json()) != kSchema) {
+      return Fault(absl::StrCat("field 'schema' must be \"", kSchema, "\""));
+    }
+    PLEAT_RETURN_IF_ERROR(ParseJoints());
+    PLEAT_RETURN_IF_ERROR(ParseWeights());
+    if (const auto frame = root_.find("rest_frame"); frame != root_.end()) {
+      if (!frame->is_number_integer() || *frame < 0 || *frame > kMaxFrame) {
+        return Fault("'rest_frame' must be a frame number of the first clip");
+      }
+      file_.rest_frame = frame->get<int>();
+    }
+    if (const auto locked = root_.find("locked"); locked != root_.end()) {
+      if (!locked->is_boolean()) return Fault("'locked' must be true or false");
+      file_.is_locked = locked->get<bool>();
+    }
+    return std::move(file_);
+  }
+
+ private:
+  absl::Status ParseJoints() {
+    const auto list = root_.find("joints");
+    if (list == root_.end() || !list->is_array() || list->size() < 2 ||
+        list->size() > kMaxUserJoints) {
+      return Fault(absl::StrCat("'joints' must list 2 to ", kMaxUserJoints, " joints"));
+    }
+    std::vector<Joint> joints;
+    for (const json& entry : *list) {
+      PLEAT_ASSIGN_OR_RETURN(Joint joint, ParseJoint(entry, joints));
+      joints.push_back(std::move(joint));
+    }
+    absl::StatusOr<Skeleton> skeleton = Skeleton::Create(std::move(joints));
+    if (!skeleton.ok()) return Fault(std::string(skeleton.status().message()));
+    file_.skeleton = *std::move(skeleton);
+    return absl::OkStatus();
+  }
+
+  static absl::StatusOr<Joint> ParseJoint(const json& entry, const std::vector<Joint>& before) {
+    const std::string where = absl::StrCat("joint ", before.size());
+    const auto name = entry.is_object() ? entry.find("name") : entry.end();
+    if (!entry.is_object() || name == entry.end() || !name->is_string()) {
+      return Fault(absl::StrCat(where, " has no name"));
+    }
+    Joint joint;
+    joint.name = name->get<std::string>();
+    const auto parent = entry.find("parent");
+    if (parent == entry.end() || parent->is_null()) {
+      joint.parent = -1;
+    } else if (parent->is_string()) {
+      const auto found = std::ranges::find(before, parent->get<std::string>(), &Joint::name);
+      if (found == before.end()) {
+        return Fault(absl::StrCat(where, " ('", joint.name, "'): its parent '",
+                                  parent->get<std::string>(), "' is not listed before it"));
+      }
+      joint.parent = static_cast<int>(found - before.begin());
+    } else if (parent->is_number_integer() && *parent >= -1 &&
+               *parent < static_cast<int64_t>(before.size())) {
+      joint.parent = parent->get<int>();
+    } else {
+      return Fault(absl::StrCat(where, " ('", joint.name,
+                                "'): 'parent' must name a joint listed before it, by name or "
+                                "index; -1 or nothing for the root"));
+    }
+    const auto position = entry.find("position_m");
+    if (position == entry.end() || !position->is_array() || position->size() != 3) {
+      return Fault(absl::StrCat(where, " ('", joint.name, "') needs a position_m [x, y, z]"));
+    }
+    for (int k = 0; k < 3; ++k) {
+      const json& value = (*position)[k];
+      joint.rest_position[k] = value.is_number() ? value.get<double>() : std::nan("");
+      if (!std::isfinite(joint.rest_position[k])) {
+        return Fault(absl::StrCat(where, " ('", joint.name, "'): position_m is not finite"));
+      }
+    }
+    return joint;
+  }
+
+  absl::Status ParseWeights() {
+    const auto weights = root_.find("weights");
+    if (weights == root_.end()) return absl::OkStatus();
+    if (!weights->is_object()) return Fault("'weights' must be an object");
+    const json of = weights->value("of", json("joints"));
+    if (of != "joints" && of != "bones") {
+      return Fault("'weights.of' must be \"joints\" or \"bones\"");
+    }
+    file_.influences_are_of_bones = of == "bones";
+    const auto vertices = weights->find("vertices");
+    if (vertices == weights->end() || !vertices->is_array() || vertices->empty()) {
+      return Fault("'weights.vertices' must hold one list for every vertex");
+    }
+    if (static_cast<int64_t>(vertices->size()) > limits_.max_vertices) {
+      return absl::ResourceExhaustedError(absl::StrCat(
+          "rig: weights of ", vertices->size(), " vertices; the limit is ", limits_.max_vertices));
+    }
+    file_.influences.reserve(vertices->size());
+    for (const json& vertex : *vertices) {
+      PLEAT_ASSIGN_OR_RETURN(std::vector<JointInfluence> influences, ParseVertex(vertex));
+      file_.influences.push_back(std::move(influences));
+    }
+    return absl::OkStatus();
+  }
+
+  // [joint, weight, joint, weight, ...]
+  absl::StatusOr<std::vector<JointInfluence>> ParseVertex(const json& vertex) const {
+    const size_t v = file_.influences.size();
+    if (!vertex.is_array() || vertex.size() % 2 != 0 || vertex.size() > 2 * kMaxListed) {
+      return Fault(absl::StrCat("vertex ", v,
+                                ": its weights must be a list joint, weight, ... of "
+                                "at most ",
+                                kMaxListed, " pairs"));
+    }
+    std::vector<JointInfluence> influences;
+    for (size_t k = 0; k < vertex.size(); k += 2) {
+      const json &joint = vertex[k], &weight = vertex[k + 1];
+      if (!joint.is_number_integer() || joint < 0 || joint >= file_.skeleton.num_joints() ||
+          !weight.is_number() || !(weight.get<double>() >= 0) ||
+          !std::isfinite(weight.get<double>())) {
+        return Fault(absl::StrCat("vertex ", v, ", pair ", k / 2,
+                                  ": must be the index of a joint and a weight of at least 0"));
+      }
+      influences.push_back({joint.get<int>(), weight.get<double>()});
+    }
+    return influences;
+  }
+
+  const json& root_;
+  const RigFileLimits& limits_;
+  RigFile file_;
+};
+
+// Weights that are of bones already.
+absl::StatusOr<SkinWeights> BoneWeights(const RigFile& file) {
+  std::vector<VertexInfluences> vertices(file.influences.size());
+  for (size_t v = 0; v < vertices.size(); ++v) {
+    const std::vector<JointInfluence>& influences = file.influences[v];
+    if (influences.size() > kMaxInfluences) {
+      return Fault(absl::StrCat("vertex ", v, " has ", influences.size(), " bones, the limit is ",
+                                kMaxInfluences));
+    }
+    for (size_t k = 0; k < influences.size(); ++k) {
+      vertices[v].bones[k] = static_cast<uint16_t>(influences[k].joint);
+      vertices[v].weights[k] = static_cast<float>(influences[k].weight);
+    }
+  }
+  absl::StatusOr<SkinWeights> weights =
+      SkinWeights::Create(file.skeleton.num_joints(), std::move(vertices));
+  if (!weights.ok()) return Fault(std::string(weights.status().message()));
+  return weights;
+}
+
+absl::StatusOr<RigFile> ParseText(std::string_view text, const RigFileLimits& limits) {
+  if (text.size() > limits.max_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_bytes));
+  }
+  const json root = json::parse(text, nullptr, false);
+  if (root.is_discarded()) return Fault("the file is not JSON");
+  return RigParser(root, limits).Parse();
+}
+
+}  // namespace
+
+absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const RigFileLimits& limits) {
+  return ParseText(text, limits);
+}
+
+absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const RigFileLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_bytes));
+  const bool is_glb = absl::EndsWith(absl::AsciiStrToLower(path), ".glb");
+  absl::StatusOr<RigFile> file =
+      is_glb ? DecodeRigGlb(bytes, limits) : DecodeRigJson(bytes, limits);
+  if (!file.ok()) {
+    return absl::Status(file.status().code(), absl::StrCat(path, ": ", file.status().message()));
+  }
+  return file;
+}
+
+absl::StatusOr<UserRig> DecodeRig(std::string_view text, const RigFileLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(RigFile file, ParseText(text, limits));
+  UserRig rig{std::move(file.skeleton), std::nullopt, file.rest_frame, file.is_locked};
+  if (file.influences.empty()) return rig;
+  if (!file.influences_are_of_bones) return Fault("'weights.of' must be \"bones\" here");
+  file.skeleton = rig.skeleton;
+  PLEAT_ASSIGN_OR_RETURN(rig.weights, BoneWeights(file));
+  return rig;
+}
+
+std::string EncodeRig(const UserRig& rig) {
+  nlohmann::ordered_json root;
+  root["schema"] = kSchema;
+  root["rest_frame"] = rig.rest_frame;
+  root["locked"] = rig.is_locked;
+  for (const Joint& joint : rig.skeleton.joints()) {
+    const Eigen::Vector3d& p = joint.rest_position;
+    root["joints"].push_back(
+        {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
+  }
+  if (rig.weights) {
+    root["weights"]["of"] = "bones";
+    nlohmann::ordered_json& vertices = root["weights"]["vertices"];
+    vertices = nlohmann::ordered_json::array();
+    for (const VertexInfluences& vertex : rig.weights->influences()) {
+      nlohmann::ordered_json list = nlohmann::ordered_json::array();
+      for (int k = 0; k < kMaxInfluences && vertex.weights[k] > 0; ++k) {
+        list.push_back(vertex.bones[k]);
+        list.push_back(vertex.weights[k]);
+      }
+      vertices.push_back(std::move(list));
+    }
+  }
+  return root.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace pleat
