@@ -46,6 +46,14 @@ if [ ${#inputs[@]} -eq 0 ]; then
   inputs=("$out/performer/performer.pc2")
 fi
 
+echo "== compress_curves (PNGs in build/bench)"
+curves=("${inputs[@]}")
+for name in chicken_crossing horse_gallop; do
+  [ -f "$data/$name.pc2" ] && curves+=("$data/$name.pc2")
+done
+mkdir -p build/bench
+build/bin/compress_curves build/bench "${curves[@]}"
+
 for input in "${inputs[@]}"; do
   echo "== train $input"
   "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --report "$out/train.json"
