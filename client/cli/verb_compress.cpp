@@ -22,11 +22,13 @@ struct CompressVerbOptions {
   double max_error_mm = 0, kg_percent = 0;  // 0: not given
   int grid_bits = 0;
   int num_threads = 0;
+  bool any_face_order = false;
 };
 
 absl::StatusOr<CompressOptions> ChooseGoal(const CompressVerbOptions& flags) {
   CompressOptions options;
   options.num_threads = flags.num_threads;
+  options.keep_face_order = !flags.any_face_order;
   const int given = (flags.max_error_mm != 0) + (flags.kg_percent != 0) + (flags.grid_bits != 0);
   if (given != 1) {
     return UsageError("say one of --max-error-mm E, --kg PERCENT and --lossless-at-bits B");
@@ -119,6 +121,8 @@ void AddCompressVerb(CLI::App& app, Session& session) {
           "--lossless-at-bits", options->grid_bits,
           "positions are exact on a grid of 2^B points along the longest side of the bounds")
       ->check(CLI::Range(8, 20));
+  verb->add_flag("--any-face-order", options->any_face_order,
+                 "faces may change their order (vertices never do): about 1.5 bytes less per face");
   verb->add_option("--report", options->report, "JSON report (pleat.compress/1)");
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
   verb->add_option("--threads", options->num_threads, "0 = one per core")

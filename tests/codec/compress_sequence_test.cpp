@@ -149,6 +149,62 @@ TEST(CompressSequenceTest, AppearanceIsKept) {
   EXPECT_EQ(decoded.appearance().material_library, "a.mtl");
 }
 
+// Corners of one face from its lowest vertex on, each with its texture coordinate, then the
+// material.
+std::vector<std::vector<float>> FaceTexts(const MeshSequence& sequence) {
+  const Topology& topology = sequence.topology();
+  const MeshAppearance& appearance = sequence.appearance();
+  std::vector<std::vector<float>> faces;
+  for (int f = 0; f < topology.num_faces(); ++f) {
+    const auto face = topology.face(f);
+    const auto lowest = std::min_element(face.begin(), face.end()) - face.begin();
+    std::vector<float> text{static_cast<float>(appearance.face_materials[f])};
+    for (size_t i = 0; i < face.size(); ++i) {
+      const size_t corner = (i + static_cast<size_t>(lowest)) % face.size();
+      text.push_back(static_cast<float>(face[corner]));
+      const size_t at = static_cast<size_t>(topology.face_start(f)) + corner;
+      text.push_back(static_cast<float>(appearance.corner_texcoords[at]));
+    }
+    faces.push_back(text);
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+TEST(CompressSequenceTest, FacesInAnyOrderAreTheSameFacesForLess) {
+  const TestMesh mesh = MakeTorus(24, 12, 5);
+  Random random(2);
+  MeshSequenceOptions options;
+  options.appearance.texcoords = {{0, 0}, {1, 0}, {0, 1}};
+  options.appearance.material_names = {"a", "b"};
+  for (int i = 0; i < mesh.topology.num_corners(); ++i) {
+    options.appearance.corner_texcoords.push_back(random.UniformInt(3));
+  }
+  std::vector<int32_t> corners, sizes;  // the torus with its faces shuffled
+  std::vector<int> order(mesh.topology.num_faces());
+  for (int f = 0; f < mesh.topology.num_faces(); ++f) order[f] = f;
+  for (int f = mesh.topology.num_faces() - 1; f > 0; --f) {
+    std::swap(order[f], order[random.UniformInt(f + 1)]);
+  }
+  for (const int f : order) {
+    const auto face = mesh.topology.face(f);
+    corners.insert(corners.end(), face.begin(), face.end());
+    sizes.push_back(static_cast<int32_t>(face.size()));
+    options.appearance.face_materials.push_back(random.UniformInt(2));
+  }
+  const MeshSequence sequence =
+      *MeshSequence::Create(*Topology::Create(mesh.topology.num_vertices(), corners, sizes),
+                            {mesh.positions, Bend(mesh.positions, 1)}, options);
+  CompressSummary kept, any;
+  ASSERT_THAT(CompressSequence(sequence, {}, &kept), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
+                             CompressSequence(sequence, {.keep_face_order = false}, &any));
+  const MeshSequence decoded = Decoded(bytes);
+  EXPECT_LE(LargestErrorMm(sequence, decoded), 1);
+  EXPECT_EQ(FaceTexts(decoded), FaceTexts(sequence));
+  EXPECT_LT(any.num_topology_bytes + 280, kept.num_topology_bytes);  // a byte per face
+}
+
 TEST(CompressSequenceTest, RefusesWhatItCannotPromise) {
   const MeshSequence sequence = MakeWavingTorus(8, 6, 4);
   EXPECT_THAT(CompressSequence(sequence, {.max_error_mm = 1e-9}, nullptr),

@@ -212,7 +212,8 @@ absl::StatusOr<std::string> CompressSequence(const MeshSequence& sequence,
   PLEAT_ASSIGN_OR_RETURN(
       SequenceAnalysis analysis,
       AnalyzeSequence(sequence, options.num_threads, progress.Stage("analyse", 0, 0.2)));
-  const SequenceEncoder encoder(sequence, std::move(analysis), options.num_threads);
+  const SequenceEncoder encoder(sequence, std::move(analysis), options.keep_face_order,
+                                options.num_threads);
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, EncodeForGoal(encoder, sequence, extent, options,
                                                           progress.Stage("encode", 0.2, 0.95)));
   PLEAT_ASSIGN_OR_RETURN(const Measured measured,

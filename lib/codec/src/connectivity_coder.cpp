@@ -72,6 +72,7 @@ class ConnectivityWalk {
   }
 
   const std::vector<std::vector<int32_t>>& faces() const { return faces_; }
+  const std::vector<FaceVisit>& visits() const { return visits_; }
 
  private:
   absl::Status Damaged() const { return absl::DataLossError("the connectivity is damaged"); }
@@ -111,6 +112,7 @@ class ConnectivityWalk {
       PLEAT_RETURN_IF_ERROR(
           CodeCorner(i == 0 ? last_vertex_ : corners[i - 1], -1, last_vertex_, &corners[i]));
     }
+    visits_.push_back({free_faces_.Select(0), 0});
     return Finish(free_faces_.Select(0), 0, std::move(corners));
   }
 
@@ -222,6 +224,7 @@ class ConnectivityWalk {
                                               {std::min(lowest, 7), last_first_}, 0);
     if (first >= size) return Damaged();
     last_first_ = std::min(first, 7);
+    visits_.push_back({face, (size - first) % size});
     return Finish(face, first, std::move(corners));
   }
 
@@ -311,6 +314,7 @@ class ConnectivityWalk {
   std::vector<std::vector<int32_t>> faces_;  // by number
   std::vector<bool> done_;
   std::deque<Gate> gates_;
+  std::vector<FaceVisit> visits_;
   int num_done_ = 0, last_vertex_ = 0, last_border_ = 0, last_first_ = 0, history_ = 0;
 
   IntegerModel<1> sizes_{{1}, 1}, others_{{1}, 1};
@@ -320,6 +324,14 @@ class ConnectivityWalk {
 };
 
 }  // namespace
+
+std::vector<FaceVisit> VisitOrder(const Topology& topology) {
+  BinaryCoder ignored = BinaryCoder::ForEncoding();
+  ConnectivityWalk walk(topology.num_vertices(), topology.num_faces(), topology.num_corners(),
+                        &topology, &ignored);
+  walk.Run().IgnoreError();  // only damaged code fails
+  return walk.visits();
+}
 
 void EncodeTopology(const Topology& topology, BinaryCoder* coder) {
   ConnectivityWalk walk(topology.num_vertices(), topology.num_faces(), topology.num_corners(),

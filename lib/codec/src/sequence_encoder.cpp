@@ -87,6 +87,40 @@ FieldMatrix FitFields(const MeshSequence& sequence, const Eigen::Matrix3Xf& rest
   return fields;
 }
 
+// Faces, and what an appearance says about them, in the order of the visits.
+struct Faces {
+  Topology topology;
+  MeshAppearance appearance;
+};
+
+Faces Reordered(const MeshSequence& sequence) {
+  const Topology& topology = sequence.topology();
+  const MeshAppearance& appearance = sequence.appearance();
+  std::vector<int32_t> corners, sizes;
+  Faces faces;
+  faces.appearance = appearance;
+  faces.appearance.corner_texcoords.clear();
+  faces.appearance.face_materials.clear();
+  for (const FaceVisit& visit : VisitOrder(topology)) {
+    const auto face = topology.face(visit.face);
+    const int size = static_cast<int>(face.size());
+    sizes.push_back(size);
+    for (int i = 0; i < size; ++i) {
+      const int corner = (visit.first_corner + i) % size;
+      corners.push_back(face[corner]);
+      if (appearance.corner_texcoords.empty()) continue;
+      const int at = topology.face_start(visit.face) + corner;
+      faces.appearance.corner_texcoords.push_back(appearance.corner_texcoords[at]);
+    }
+    if (appearance.face_materials.empty()) continue;
+    faces.appearance.face_materials.push_back(appearance.face_materials[visit.face]);
+  }
+  absl::StatusOr<Topology> reordered =
+      Topology::Create(topology.num_vertices(), std::move(corners), std::move(sizes));
+  faces.topology = reordered.ok() ? *std::move(reordered) : topology;  // it is valid as before
+  return faces;
+}
+
 }  // namespace
 
 // What all segments of one encoding share.
@@ -98,12 +132,14 @@ struct SequenceEncoder::Shared {
 };
 
 SequenceEncoder::SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis,
-                                 int num_threads)
+                                 bool keep_face_order, int num_threads)
     : sequence_(sequence), analysis_(std::move(analysis)), num_threads_(num_threads) {
   BinaryCoder coder = BinaryCoder::ForEncoding();
-  EncodeTopology(sequence.topology(), &coder);
+  const Faces faces =
+      keep_face_order ? Faces{sequence.topology(), sequence.appearance()} : Reordered(sequence);
+  EncodeTopology(faces.topology, &coder);
   topology_ = coder.Finish();
-  appearance_ = EncodeAppearance(sequence.appearance(), sequence.topology());
+  appearance_ = EncodeAppearance(faces.appearance, faces.topology);
 }
 
 int SequenceEncoder::NumComponents(const SegmentAnalysis& segment, double step_m) const {

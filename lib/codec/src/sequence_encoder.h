@@ -15,7 +15,8 @@ namespace pleat {
 class SequenceEncoder {
  public:
   // Codes what does not depend on the rate. num_threads: 0 = one per core.
-  SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis, int num_threads);
+  SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis, bool keep_face_order,
+                  int num_threads);
 
   // The whole file. step_m: of the fields, the one number that sets the rate; grid: of the residual
   // layer. Errors: see CompressSequence.
