@@ -2,6 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_format.h"
@@ -21,7 +22,8 @@ namespace pleat {
 namespace {
 
 struct EvaluateVerbOptions {
-  std::string input, test_input, protocol = "blocks10", report, fps;
+  std::vector<std::string> inputs;
+  std::string test_input, protocol = "blocks10", report, fps;
   TrainFlags flags;
   EvaluateOptions evaluate;
 };
@@ -50,12 +52,19 @@ absl::Status RunEvaluate(EvaluateVerbOptions options, const Session& session) {
     return UsageError(cross ? "protocol cross needs --test INPUT2"
                             : "--test goes with --protocol cross only");
   }
+  if (!cross && options.inputs.size() > 1) {
+    return UsageError("several training clips go with --protocol cross only");
+  }
   PLEAT_ASSIGN_OR_RETURN(options.evaluate.train, ResolveTrainFlags(options.flags));
   options.evaluate.clock_seconds = MonotonicSeconds;
 
   const double start_seconds = MonotonicSeconds();
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
-                         ReadInput(session, options.input, options.fps));
+                         ReadInput(session, options.inputs.front(), options.fps));
+  for (size_t i = 1; i < options.inputs.size(); ++i) {
+    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, options.inputs[i], options.fps));
+    options.evaluate.more_training_clips.push_back(std::move(clip));
+  }
   std::optional<MeshSequence> test_sequence;
   if (cross) {
     PLEAT_ASSIGN_OR_RETURN(test_sequence, ReadInput(session, options.test_input, options.fps));
@@ -87,7 +96,9 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
   CLI::App* verb =
       AddVerb(app, session, "evaluate", "train on some frames and measure the error on others",
               [options, &session] { return RunEvaluate(*options, session); });
-  verb->add_option("INPUT", options->input, "folder, glob, .pc2 or .pseq")->required();
+  verb->add_option("INPUT", options->inputs,
+                   "folder, glob, .pc2 or .pseq; several are the training clips of protocol cross")
+      ->required();
   verb->add_option("--protocol", options->protocol,
                    "reconstruct, every5th, blocks10, last30 or cross")
       ->capture_default_str();

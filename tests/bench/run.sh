@@ -54,10 +54,25 @@ done
 mkdir -p build/bench
 build/bin/compress_curves build/bench "${curves[@]}"
 
+echo "== refinement"
+build/bin/refine_table "${inputs[@]}"
+
 for input in "${inputs[@]}"; do
   echo "== train $input"
   "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --report "$out/train.json"
   python3 tests/bench/summarize.py "$out/train.json"
+  for smoothness in .001 .01 .1; do
+    "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --smooth $smoothness \
+      --report "$out/train.json"
+    python3 tests/bench/summarize.py "$out/train.json"
+  done
+  for refine in none joints; do
+    for protocol in every5th blocks10 last30; do
+      "$pleat" evaluate "$input" --protocol $protocol --refine $refine --learner gp --measure gp \
+        --quiet --report "$out/e.json" >/dev/null
+      python3 tests/bench/summarize.py "$out/e.json" "$protocol --refine $refine"
+    done
+  done
   for protocol in reconstruct every5th blocks10 last30; do
     for variant in "--resolution 100" "--resolution 5" "--resolution 5 --upsampling rbf" "--preset paper"; do
       # shellcheck disable=SC2086  # a variant is several words
@@ -68,7 +83,9 @@ for input in "${inputs[@]}"; do
 done
 
 if [ -f "$data/skirt/walk_a.pc2" ]; then
-  "$pleat" evaluate "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2" \
-    --quiet --report "$out/e.json" >/dev/null
-  python3 tests/bench/summarize.py "$out/e.json" "skirt walk_a -> walk_b"
+  for refine in none joints full; do
+    "$pleat" evaluate "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2" \
+      --refine $refine --quiet --report "$out/e.json" >/dev/null
+    python3 tests/bench/summarize.py "$out/e.json" "skirt walk_a -> walk_b --refine $refine"
+  done
 fi

@@ -10,6 +10,11 @@ if report["schema"].startswith("pleat.train"):
           f"{report['reconstruction']['mean_percent']:.4f} %  learner {report['learner']}  "
           f"total {report['seconds']['total']:.1f} s  peak {report['peak_memory_bytes'] / 1e6:.0f} MB  "
           f"model {report['model_bytes'] / 1e6:.1f} MB")
+    poses = report["poses"]
+    if report["options"]["smoothness"] > 0:
+        print(f"  smoothness {report['options']['smoothness']}: jitter {poses['unsmoothed_jitter_degrees']:.3f} -> "
+              f"{poses['jitter_degrees']:.3f} degrees, fit rms {poses['unsmoothed_rms_percent']:.3f} -> "
+              f"{report['fit']['rms_percent']:.3f} %")
 else:
     errors = {"skinned": report["skinned"], **report["baselines"], **report["learners"]}
     errors.pop("zero", None)

@@ -80,6 +80,25 @@ TEST(EvaluateTest, CrossNeedsASecondClipOfTheSameMesh) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("connectivity")));
 }
 
+TEST(EvaluateTest, SeveralClipsTeachMoreThanOne) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Performer more,
+                             GeneratePerformer({.seed = 5, .num_frames = 60, .num_vertices = 900}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Performer test,
+                             GeneratePerformer({.seed = 9, .num_frames = 25, .num_vertices = 900}));
+  EvaluateOptions options = Options(EvaluationProtocol::kCross);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport one,
+                             EvaluateCharacter(SmallPerformer().sequence, test.sequence, options));
+  options.more_training_clips = {more.sequence};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport two,
+                             EvaluateCharacter(SmallPerformer().sequence, test.sequence, options));
+  EXPECT_EQ(two.num_train_frames, 120);
+  EXPECT_EQ(two.num_test_frames, 25);
+  EXPECT_LT(two.hybrid.mean_percent, one.hybrid.mean_percent);
+  options.protocol = EvaluationProtocol::kBlocks10;
+  EXPECT_THAT(EvaluateCharacter(SmallPerformer().sequence, std::nullopt, options),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("protocol cross")));
+}
+
 TEST(EvaluateTest, CrossTestsEveryFrameOfTheSecondClip) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Performer other,
                              GeneratePerformer({.seed = 9, .num_frames = 25, .num_vertices = 900}));

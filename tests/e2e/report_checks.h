@@ -49,6 +49,12 @@ inline void ExpectTrainReport(const nlohmann::json& report) {
   EXPECT_EQ(rig["joints"][0]["parent"], -1);
   ExpectErrorFields(report.at("fit"), "fit");
   ExpectErrorFields(report.at("reconstruction"), "reconstruction");
+  ExpectNumbers(report.at("poses"),
+                {"jitter_degrees", "unsmoothed_jitter_degrees", "unsmoothed_rms_percent"});
+  ASSERT_FALSE(report.at("worst_frames").empty());
+  ExpectNumbers(report.at("worst_frames")[0], {"clip", "frame", "mean_percent"});
+  ASSERT_EQ(report.at("worst_joints").size(), 17u);
+  ExpectNumbers(report.at("worst_joints")[0], {"mean_percent"});
   EXPECT_TRUE(report.at("learner") == "gp" || report.at("learner") == "sgplvm");
   EXPECT_TRUE(report.at("options").is_object());
   EXPECT_EQ(report["options"].at("seed"), 1);

@@ -55,6 +55,45 @@ TEST(Server, TrainsToTheSameBytesAsLocalAndStreamsEditedFrames) {
   EXPECT_EQ(server.Stop().exit_code, 0) << server.log();
 }
 
+TEST(Server, SeveralClipsTrainOneCharacterHereAndThere) {
+  PleatProgram pleat;
+  const auto generate = [&](const std::string& folder, int frames, const std::string& seed_flag) {
+    const ProcessResult result =
+        pleat.Run({"generate", "performer", "-o", pleat.File(folder), "--frames",
+                   std::to_string(frames), "--vertices", "800", seed_flag, "2", "--quiet"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return pleat.File(folder + "/performer.pc2");
+  };
+  const std::string first = pleat.GeneratePerformer(25, 800);
+  const std::string second = generate("second", 20, "--seed");
+  const std::string stranger = generate("stranger", 5, "--character-seed");
+  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  const std::string address = server.WaitForAddress();
+  ASSERT_NE(address, "") << server.log();
+
+  const std::string remote = pleat.File("remote.pleat"), local = pleat.File("local.pleat");
+  ProcessResult result =
+      pleat.Run({"train", first, second, "--server", address, "-o", remote, "--learner", "gp"});
+  ASSERT_EQ(result.exit_code, 0) << result.err << server.log();
+  result = pleat.Run({"train", first, second, "--local", "-o", local, "--learner", "gp", "--report",
+                      pleat.File("train.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(Bytes(local).empty());
+  EXPECT_TRUE(Bytes(local) == Bytes(remote));
+  EXPECT_EQ(ParseJson(Bytes(pleat.File("train.json")))["num_frames"], 45);
+
+  // A clip of another mesh is named, on both sides.
+  for (const std::vector<std::string>& where :
+       {std::vector<std::string>{"--server", address}, std::vector<std::string>{"--local"}}) {
+    std::vector<std::string> command = {"train", first, stranger, "-o", pleat.File("none.pleat")};
+    command.insert(command.end(), where.begin(), where.end());
+    result = pleat.Run(command);
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_THAT(result.err, HasSubstr("all clips of a character share one connectivity"));
+  }
+  EXPECT_EQ(server.Stop().exit_code, 0) << server.log();
+}
+
 TEST(Server, KeepsWhatItHasOverARestart) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(20, 800);

@@ -16,9 +16,16 @@
 namespace pleat {
 namespace {
 
-// The training side of the split: the frames, with a clip start wherever one is missing before.
+// The training side of the split: the frames, with a clip start wherever one is missing before;
+// or all frames of several clips.
 absl::StatusOr<TrainingFrames> TrainingSide(const MeshSequence& sequence,
-                                            const std::vector<int>& frames) {
+                                            const std::vector<int>& frames,
+                                            const std::vector<MeshSequence>& more_clips) {
+  if (!more_clips.empty()) {
+    std::vector<MeshSequence> clips = {sequence};
+    clips.insert(clips.end(), more_clips.begin(), more_clips.end());
+    return JoinClips(clips);
+  }
   std::vector<int> clip_starts;
   for (size_t i = 0; i < frames.size(); ++i) {
     if (i == 0 || frames[i] != frames[i - 1] + 1) clip_starts.push_back(static_cast<int>(i));
@@ -124,7 +131,13 @@ std::vector<std::string> LearnersToMeasure(const EvaluateOptions& options,
 
 absl::Status CheckTestSequence(const MeshSequence& sequence,
                                const std::optional<MeshSequence>& test_sequence,
-                               EvaluationProtocol protocol) {
+                               const EvaluateOptions& options) {
+  const EvaluationProtocol protocol = options.protocol;
+  if (protocol != EvaluationProtocol::kCross && !options.more_training_clips.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("protocol ", EvaluationProtocolName(protocol),
+                     " splits one clip; several training clips are for protocol cross"));
+  }
   if ((protocol == EvaluationProtocol::kCross) != test_sequence.has_value()) {
     return absl::InvalidArgumentError(
         protocol == EvaluationProtocol::kCross
@@ -184,7 +197,7 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
                                                  const EvaluateOptions& options,
                                                  const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options.train));
-  PLEAT_RETURN_IF_ERROR(CheckTestSequence(sequence, test_sequence, options.protocol));
+  PLEAT_RETURN_IF_ERROR(CheckTestSequence(sequence, test_sequence, options));
   PLEAT_ASSIGN_OR_RETURN(FrameSplit split, SplitFrames(options.protocol, sequence.num_frames()));
   EvaluateReport report;
   report.protocol = EvaluationProtocolName(options.protocol);
@@ -192,7 +205,8 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
   report.diagonal_m = BoundsDiagonal(sequence.FrameAsDouble(0));
   LapTimer timer(options.clock_seconds);
 
-  PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, TrainingSide(sequence, split.train));
+  PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames,
+                         TrainingSide(sequence, split.train, options.more_training_clips));
   PLEAT_ASSIGN_OR_RETURN(RiggedFrames rigged, RigFrames(frames, options.train, options.resources,
                                                         progress.Stage("rig", 0, .15)));
   report.seconds["rig"] = timer.Lap();

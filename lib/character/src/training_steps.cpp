@@ -161,11 +161,8 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack first,
                          FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options,
                                    resources, nullptr, progress.Stage("fit", 0, .2)));
-  RigRefinementOptions refinement;
-  if (options.refine == "joints") {
-    refinement.weights = refinement.rest = false;
-    refinement.joint_prior = 0.3;
-  }
+  RigRefinementOptions refinement =
+      options.refine == "joints" ? RigRefinementOptions::JointsOnly() : RigRefinementOptions();
   if (rigged->joints_are_locked) refinement.joints = false;
   refinement.bend_stiffness = options.bend_stiffness;
   refinement.num_threads = resources.num_threads;

@@ -19,16 +19,29 @@ void FixSigns(Eigen::MatrixXd& basis, Eigen::MatrixXd& partner) {
   }
 }
 
+// (X - 1 m^T)(X - 1 m^T)^T from X X^T: no centred copy of a matrix that may be the largest thing in
+// memory.
+Eigen::MatrixXd CentredGram(const Eigen::Ref<const Eigen::MatrixXd>& data) {
+  Eigen::MatrixXd gram = data * data.transpose();
+  const Eigen::VectorXd row_means = gram.rowwise().mean();
+  const double mean = row_means.mean();
+  gram.colwise() -= row_means;
+  gram.rowwise() -= row_means.transpose();
+  gram.array() += mean;
+  return gram;
+}
+
 }  // namespace
 
 PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
                                const PcaOptions& options) {
   PrincipalComponents pca;
   pca.mean = data.colwise().mean().transpose();
-  const Eigen::MatrixXd centred = data.rowwise() - pca.mean.transpose();
   const bool by_rows = data.rows() <= data.cols();
-  const Eigen::MatrixXd gram = by_rows ? Eigen::MatrixXd(centred * centred.transpose())
-                                       : Eigen::MatrixXd(centred.transpose() * centred);
+  Eigen::MatrixXd centred;  // of tall matrices only
+  if (!by_rows) centred = data.rowwise() - pca.mean.transpose();
+  const Eigen::MatrixXd gram =
+      by_rows ? CentredGram(data) : Eigen::MatrixXd(centred.transpose() * centred);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   const Eigen::VectorXd values = solver.eigenvalues().reverse().cwiseMax(0);
   const double total = values.sum();
@@ -44,7 +57,9 @@ PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
   const Eigen::VectorXd lengths = values.head(rank).cwiseSqrt();
   if (by_rows) {  // left singular vectors: basis = centred^T U / sigma
     pca.scores = vectors * lengths.asDiagonal();
-    pca.basis = centred.transpose() * vectors * lengths.cwiseInverse().asDiagonal();
+    pca.basis = data.transpose() * vectors;
+    pca.basis -= pca.mean * vectors.colwise().sum();
+    pca.basis *= lengths.cwiseInverse().asDiagonal();
   } else {
     pca.basis = vectors;
     pca.scores = centred * vectors;

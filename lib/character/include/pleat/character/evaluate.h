@@ -37,6 +37,8 @@ struct EvaluateOptions {
   TrainResources resources;
   // Which learners are measured; the chosen one is always among them.
   std::vector<std::string> learners = {"sgplvm", "gp"};
+  // Protocol cross: further clips to train on, of the connectivity of the first.
+  std::vector<MeshSequence> more_training_clips;
   std::function<double()> clock_seconds;  // for EvaluateReport::seconds; absent = zeros
 };
 

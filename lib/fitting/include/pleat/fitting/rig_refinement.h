@@ -19,8 +19,7 @@ struct RigRefinementOptions {
 
   // Pull of every joint to its place in the first rig, as a share of the mean curvature of the
   // error per joint. Without it joints that the motion hardly shows run away (knees under a skirt
-  // by 26-32 cm); .05 to .2 keeps nearly all of the gain. Joints alone need more: they are all that
-  // can follow cloth.
+  // by 26-32 cm); .05 to .2 keeps nearly all of the gain.
   double joint_prior = 0.1;
   // Pulls of a vertex's weights to the mean of its neighbours' and to the first rig's, in units of
   // the body's mean squared size.
@@ -36,6 +35,11 @@ struct RigRefinementOptions {
   int max_iterations = 20;       // of the pose solver, per frame and step
   double bend_stiffness = 1e-6;  // of the pose solver, see PoseFitOptions
   int num_threads = 0;           // 0 = one per core; the result does not depend on it
+
+  // Joints alone: held harder, since they are all that can follow cloth.
+  static RigRefinementOptions JointsOnly() {
+    return {.weights = false, .rest = false, .joint_prior = 0.3};
+  }
 };
 
 struct RigRefinementSummary {
