@@ -80,10 +80,14 @@ std::unique_ptr<draco::PointCloud> MakeDracoResidualCloud(int num_points) {
 }
 
 void SetDracoResiduals(const Eigen::Matrix3Xi& residuals, draco::PointCloud* cloud) {
+  int32_t* values[3];
   for (int c = 0; c < 3; ++c) {
-    draco::PointAttribute* attribute = cloud->attribute(c);
-    auto* values = reinterpret_cast<int32_t*>(attribute->GetAddress(draco::AttributeValueIndex(0)));
-    for (Eigen::Index i = 0; i < residuals.cols(); ++i) values[i] = residuals(c, i);
+    values[c] =
+        reinterpret_cast<int32_t*>(cloud->attribute(c)->GetAddress(draco::AttributeValueIndex(0)));
+  }
+  const int* column = residuals.data();
+  for (Eigen::Index i = 0; i < residuals.cols(); ++i, column += 3) {
+    for (int c = 0; c < 3; ++c) values[c][i] = column[c];
   }
 }
 

@@ -41,6 +41,12 @@ absl::Status CheckPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                             const QuantizationBox& box) {
   const Eigen::Array3f center = box.origin_m.array() + box.range_m / 2;
   const float limit = box.range_m * (0.5f + QuantizationBox::kMaxEdgesOutside);
+  int num_inside = 0;  // without branches; coordinates that are not finite are not inside
+  for (Eigen::Index v = 0; v < positions.cols(); ++v) {
+    const float* position = &positions.coeffRef(0, v);
+    for (int c = 0; c < 3; ++c) num_inside += std::fabs(position[c] - center[c]) <= limit;
+  }
+  if (num_inside == positions.size()) return absl::OkStatus();
   for (int v = 0; v < positions.cols(); ++v) {
     if (!positions.col(v).allFinite()) {
       return absl::InvalidArgumentError(
