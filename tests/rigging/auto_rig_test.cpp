@@ -61,6 +61,25 @@ TEST(AutoRigTest, LooksForABetterRestFrame) {
               HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("another rest frame")));
 }
 
+// A figure squeezed to a third fits doubtfully and would pass with a warning; not as one frame
+// among others that do not fit at all.
+TEST(AutoRigTest, OneLuckyFrameIsNotEnough) {
+  const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .04});
+  Eigen::Matrix3Xf squat = figure.mesh.positions.cast<float>(), flat = squat;
+  squat.row(1) *= .34f;
+  flat.row(1) *= .15f;
+  const Topology topology = MakeTopology(figure.mesh);
+  AutoRigOptions options;
+  options.any_orientation = false;
+  AutoRigSummary summary;
+  ASSERT_THAT(AutoRig(*MeshSequence::Create(topology, {squat}), options, &summary), IsOk());
+  EXPECT_GT(summary.residual, .1);
+  std::vector<Eigen::Matrix3Xf> frames(8, flat);
+  frames[0] = squat;
+  EXPECT_THAT(AutoRig(*MeshSequence::Create(topology, frames), options),
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("most of the 8 frames")));
+}
+
 TEST(AutoRigTest, ThreadsDoNotChangeIt) {
   const MeshSequence sequence = MakeStillSequence(MakeCapsuleFigure({.cell_m = .03}).mesh);
   AutoRigOptions one, four;

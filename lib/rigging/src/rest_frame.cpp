@@ -16,6 +16,9 @@ namespace {
 
 constexpr int kMaxFullFrames = 2;    // of the probed ones, looked at again on the full grid
 constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
+// Of the trusted residual: a frame that fits so well as it stands is not lying.
+constexpr double kStandingRatio = 1.5;
+constexpr double kDoubtfulResidual = .1;
 
 // The frames to look at; the first one first.
 std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
@@ -66,7 +69,8 @@ class RestFrameSearch {
       *num_frames_tried = static_cast<int>(frames.size());
       PLEAT_RETURN_IF_ERROR(ProbeOthers(frames));
     }
-    if (best_.embedding.residual >= options_.trusted_residual && options_.any_orientation) {
+    if (best_.embedding.residual >= kStandingRatio * options_.trusted_residual &&
+        options_.any_orientation) {
       PLEAT_RETURN_IF_ERROR(TurnOver(frames[0]));
     }
     PLEAT_RETURN_IF_ERROR(Judge(*num_frames_tried));
@@ -135,6 +139,8 @@ class RestFrameSearch {
       const absl::StatusOr<FrameEmbedding> probe =
           Embed(frames[k], options_.probe_resolution, Eigen::Matrix3d::Identity());
       if (absl::IsCancelled(probe.status())) return probe.status();
+      probe_residuals_.push_back(probe.ok() ? probe->embedding.residual
+                                            : std::numeric_limits<double>::infinity());
       if (probe.ok()) ranked.push_back({Score(probe->embedding), frames[k]});
     }
     std::sort(ranked.begin(), ranked.end());
@@ -194,6 +200,14 @@ class RestFrameSearch {
     return best;
   }
 
+  // A doubtful rig whose other frames do not fit at all is a pose in which a beast looks human.
+  bool IsLuckyFrame() const {
+    if (probe_residuals_.empty() || best_.embedding.residual < kDoubtfulResidual) return false;
+    std::vector<double> sorted = probe_residuals_;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[sorted.size() / 2] > options_.refused_residual;
+  }
+
   absl::Status Judge(int num_frames_tried) const {
     if (best_.frame < 0) {
       return absl::FailedPreconditionError(
@@ -208,6 +222,13 @@ class RestFrameSearch {
           sequence_.name(), num_frames_tried, best_.frame, best_.embedding.residual,
           options_.refused_residual, 100 * best_.embedding.uncovered_share, kRigAdvice));
     }
+    if (IsLuckyFrame()) {
+      return absl::FailedPreconditionError(absl::StrFormat(
+          "%s does not look like one standing human: frame %d fits the skeleton with a residual of "
+          "%.3f, but most of the %d frames tried are above %.3f; %s",
+          sequence_.name(), best_.frame, best_.embedding.residual, num_frames_tried,
+          options_.refused_residual, kRigAdvice));
+    }
     return absl::OkStatus();
   }
 
@@ -215,8 +236,9 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  std::vector<int> probed_;  // best first
-  absl::Status failure_;     // of the first frame that could not be embedded
+  std::vector<int> probed_;              // best first
+  std::vector<double> probe_residuals_;  // infinite where nothing fits
+  absl::Status failure_;                 // of the first frame that could not be embedded
 };
 
 }  // namespace

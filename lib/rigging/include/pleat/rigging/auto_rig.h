@@ -21,7 +21,7 @@ struct AutoRigOptions {
   int rest_frame = -1;  // -1 = automatic: frame 0 when it is trusted, else the best of a few
   // Where the character faces, degrees about +y from +z towards +x. Unset: the best of four.
   std::optional<double> yaw_degrees;
-  int max_frames_tried = 12;
+  int max_frames_tried = 8;
   // Grid of the frames that are only compared with each other; the chosen one is looked at again on
   // volume.resolution.
   int probe_resolution = 64;
