@@ -15,7 +15,8 @@ struct FlagText {
 const std::map<std::string, FlagText>& FlagTexts() {
   static const auto& texts = *new std::map<std::string, FlagText>{
       {"learner",
-       {nullptr, "auto (chosen on held-out training frames), gp or sgplvm (the paper's)"}},
+       {nullptr,
+        "auto (chosen on held-out training frames), regional, gp or sgplvm (the paper's)"}},
       {"fit",
        {nullptr, "pose fit: all-joints (all at once) or walk (the paper's, root to leaves)"}},
       {"refine",

@@ -92,6 +92,7 @@ size_t DetailModelBytes(const DetailModel& detail) {
         static_cast<size_t>(parameters.inputs.size() + parameters.alpha.size()) * sizeof(double) +
         static_cast<size_t>(parameters.whitener.size()) * sizeof(float);
   }
+  if (detail.regional()) bytes += detail.regional()->memory_bytes();
   return bytes;
 }
 

@@ -66,7 +66,10 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
                                                                 const TrainOptions& options,
                                                                 const Progress& progress) {
   DetailModelOptions detail_options;
-  detail_options.learner = learner == "sgplvm" ? Learner::kSgplvm : Learner::kGp;
+  detail_options.learner = learner == "sgplvm" ? Learner::kSgplvm
+                           : learner == "gp"   ? Learner::kGp
+                                               : Learner::kRegional;
+  detail_options.regions = data.regions;
   detail_options.sgplvm = SharedGplvmOptions::Paper();
   detail_options.sgplvm.latent_dimension = options.latent_dimensions;
   detail_options.sgplvm.max_iterations = options.iterations;
@@ -91,7 +94,8 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
   part.features = data.features(split.train, Eigen::all);
   part.details = data.details(split.train, Eigen::all);
   part.clip_starts = split.train_clip_starts;
-  const std::vector<std::string> candidates = {"gp", "sgplvm"};
+  part.regions = data.regions;
+  const std::vector<std::string> candidates = {"regional", "gp", "sgplvm"};
   std::string best;
   double best_error = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < candidates.size(); ++i) {

@@ -78,7 +78,8 @@ TrainOptions TrainOptions::Paper() {
 }
 
 absl::Status ValidateTrainOptions(const TrainOptions& options) {
-  PLEAT_RETURN_IF_ERROR(CheckChoice("learner", options.learner, {"auto", "gp", "sgplvm"}));
+  PLEAT_RETURN_IF_ERROR(
+      CheckChoice("learner", options.learner, {"auto", "regional", "gp", "sgplvm"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("fit", options.fit, {"all-joints", "walk"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("refine", options.refine, {"none", "joints", "full"}));
   PLEAT_RETURN_IF_ERROR(

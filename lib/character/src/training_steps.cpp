@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "detail_regions.h"
 #include "option_values.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/rig_refinement.h"
@@ -190,6 +191,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   data.features =
       PoseFeatures(feature_options, rigged.rig.skeleton.num_joints(), data.feature_reference)
           .ComputeTrack(filled.track)(filled.rows, Eigen::all);
+  data.regions = DetailRegions(rigged.rig, data.control_vertices, options);
   return data;
 }
 

@@ -64,13 +64,14 @@ struct LearningData {
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
   std::optional<RbfUpsampler> upsampler;
+  std::vector<DetailRegion> regions;  // one for each bone that moves a control vertex
 };
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
                                                  const TrainOptions& options,
                                                  const TrainResources& resources,
                                                  const Progress& progress);
 
-// Trains the learner named `learner` ("gp" or "sgplvm").
+// Trains the learner named `learner` ("regional", "gp" or "sgplvm").
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 const std::string& learner,
                                                                 const TrainOptions& options,

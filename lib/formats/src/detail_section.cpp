@@ -95,8 +95,68 @@ absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint64_t ma
   return stage;
 }
 
+void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(regional.inputs.rows()));
+  writer->Write(static_cast<uint32_t>(regional.inputs.cols()));
+  writer->Write(static_cast<uint32_t>(regional.output_mean.size()));
+  writer->Write(static_cast<uint32_t>(regional.regions.size()));
+  writer->Write(regional.input_scale);
+  WriteMatrix(regional.input_mean, writer);
+  WriteMatrix(regional.inputs, writer);
+  WriteMatrix(regional.output_mean, writer);
+  for (const RegionalGpParameters::Region& region : regional.regions) {
+    writer->Write(region.bias);
+    writer->Write(static_cast<uint32_t>(region.scales.size()));
+    for (const RegionalGpParameters::Scale& scale : region.scales) {
+      const std::array<double, 3> numbers = {scale.inverse_width, scale.amplitude, scale.linear};
+      writer->WriteArray(std::span<const double>(numbers));
+      const std::vector<int32_t> columns(scale.columns.begin(), scale.columns.end());
+      writer->Write(static_cast<uint32_t>(columns.size()));
+      writer->WriteArray(std::span<const int32_t>(columns));
+    }
+    WriteMatrix(region.alpha, writer);
+  }
+}
+
+absl::StatusOr<RegionalGpParameters::Scale> ReadScale(ByteReader* reader) {
+  RegionalGpParameters::Scale scale;
+  std::array<double, 3> numbers;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<double>(numbers), "scale"));
+  scale.inverse_width = numbers[0];
+  scale.amplitude = numbers[1];
+  scale.linear = numbers[2];
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_columns, reader->Read<uint32_t>("column count"));
+  std::vector<int32_t> columns;
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_columns, "columns of a scale", &columns));
+  scale.columns.assign(columns.begin(), columns.end());
+  return scale;
+}
+
+absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader) {
+  RegionalGpParameters regional;
+  std::array<uint32_t, 4> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of the regions"));
+  const auto [num_rows, num_inputs, num_outputs, num_regions] = counts;
+  PLEAT_ASSIGN_OR_RETURN(regional.input_scale, reader->Read<double>("input scale"));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_inputs, 1, "input mean", &regional.input_mean));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_inputs, "inputs", &regional.inputs));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &regional.output_mean));
+  for (uint32_t r = 0; r < num_regions; ++r) {
+    RegionalGpParameters::Region region;
+    PLEAT_ASSIGN_OR_RETURN(region.bias, reader->Read<double>("bias of a region"));
+    PLEAT_ASSIGN_OR_RETURN(const uint32_t num_scales, reader->Read<uint32_t>("scale count"));
+    for (uint32_t s = 0; s < num_scales; ++s) {
+      PLEAT_ASSIGN_OR_RETURN(RegionalGpParameters::Scale scale, ReadScale(reader));
+      region.scales.push_back(std::move(scale));
+    }
+    PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_outputs, "alpha", &region.alpha));
+    regional.regions.push_back(std::move(region));
+  }
+  return regional;
+}
+
 absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
-  for (const Learner learner : {Learner::kGp, Learner::kSgplvm}) {
+  for (const Learner learner : {Learner::kGp, Learner::kSgplvm, Learner::kRegional}) {
     if (LearnerName(learner) == name) return learner;
   }
   return absl::InvalidArgumentError(absl::StrCat("unknown learner '", name, "'"));
@@ -113,6 +173,10 @@ void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer) {
   WriteMatrix(parameters.basis, writer);
   writer->Write(static_cast<uint32_t>(parameters.stages.size()));
   for (const GpRegressionParameters& stage : parameters.stages) WriteStage(stage, writer);
+  if (parameters.regional) {
+    writer->Write(parameters.regional_share);
+    WriteRegional(*parameters.regional, writer);
+  }
 }
 
 absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint64_t max_unfolded_bytes) {
@@ -133,6 +197,10 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint64_t ma
   for (uint32_t s = 0; s < num_stages; ++s) {
     PLEAT_ASSIGN_OR_RETURN(GpRegressionParameters stage, ReadStage(reader, max_unfolded_bytes));
     parameters.stages.push_back(std::move(stage));
+  }
+  if (parameters.learner == Learner::kRegional) {
+    PLEAT_ASSIGN_OR_RETURN(parameters.regional_share, reader->Read<double>("share of the regions"));
+    PLEAT_ASSIGN_OR_RETURN(parameters.regional, ReadRegional(reader));
   }
   return parameters;
 }

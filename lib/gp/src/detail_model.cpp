@@ -30,10 +30,20 @@ double Fade(double confidence, double full) {
 
 }  // namespace
 
-std::string LearnerName(Learner learner) { return learner == Learner::kGp ? "gp" : "sgplvm"; }
+std::string LearnerName(Learner learner) {
+  switch (learner) {
+    case Learner::kGp:
+      return "gp";
+    case Learner::kSgplvm:
+      return "sgplvm";
+    case Learner::kRegional:
+      return "regional";
+  }
+  return "unknown";
+}
 
 absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters parameters) {
-  const size_t expected = parameters.learner == Learner::kGp ? 1 : 2;
+  const size_t expected = parameters.learner == Learner::kSgplvm ? 2 : 1;
   if (parameters.stages.size() != expected) {
     return Refuse(absl::StrCat("the learner ", LearnerName(parameters.learner), " has ", expected,
                                " stages, got ", parameters.stages.size()));
@@ -59,6 +69,19 @@ absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters pa
   if (!(parameters.fade_confidence >= 0 && parameters.fade_confidence <= 1)) {
     return Refuse("the fading confidence is not between 0 and 1");
   }
+  if (parameters.regional.has_value() != (parameters.learner == Learner::kRegional) ||
+      !(parameters.regional_share >= 0 && parameters.regional_share <= 1)) {
+    return Refuse("regions and learner do not belong together, or their share is not in 0 to 1");
+  }
+  if (parameters.regional) {
+    PLEAT_ASSIGN_OR_RETURN(model.regional_,
+                           RegionalGp::FromParameters(*std::move(parameters.regional)));
+    if (model.regional_->num_inputs() != model.stages_[0].num_inputs() ||
+        model.regional_->num_outputs() != model.stages_[0].num_outputs()) {
+      return Refuse("the regions have other inputs or outputs than the first stage");
+    }
+  }
+  model.regional_share_ = parameters.regional_share;
   model.learner_ = parameters.learner;
   model.mean_ = std::move(parameters.mean);
   model.basis_ = std::move(parameters.basis);
@@ -73,6 +96,8 @@ DetailModelParameters DetailModel::parameters() const {
   p.mean = mean_;
   p.basis = basis_;
   p.fade_confidence = fade_confidence_;
+  p.regional_share = regional_share_;
+  if (regional_) p.regional = regional_->parameters();
   return p;
 }
 
@@ -88,6 +113,11 @@ double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>&
   if (stages_.size() == 1) {
     stages_[0].Predict(features, 0, &w.stages[0], w.coefficients, &variance);
     fade_confidence = Confidence(variance, stages_[0]);
+    if (regional_) {
+      w.regional_coefficients.resize(num_components());
+      regional_->Predict(features, &w.regional, w.regional_coefficients);
+      w.coefficients += regional_share_ * (w.regional_coefficients - w.coefficients);
+    }
   } else {
     w.latent.resize(stages_[0].num_outputs());
     double latent_variance = 0;

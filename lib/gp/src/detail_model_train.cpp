@@ -29,6 +29,15 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
         "a detail model needs at least one component, an energy in (0, 1] and a fading confidence "
         "in [0, 1]");
   }
+  if (options.learner == Learner::kRegional && options.regions.empty()) {
+    return absl::InvalidArgumentError("the regional learner needs regions");
+  }
+  for (const DetailRegion& region : options.regions) {
+    if (region.weights.size() != details.cols()) {
+      return absl::InvalidArgumentError(absl::StrCat("a region has ", region.weights.size(),
+                                                     " weights for ", details.cols(), " details"));
+    }
+  }
   return CheckClipStarts(clip_starts, features.rows());
 }
 
@@ -80,8 +89,12 @@ class DetailModelTrainer {
     model_.fade_confidence_ = options_.fade_confidence;
     summary_.num_components = static_cast<int>(pca.basis.cols());
     summary_.kept_energy = pca.kept_energy;
-    PLEAT_RETURN_IF_ERROR(options_.learner == Learner::kGp ? TrainGp(pca.scores)
-                                                           : TrainSgplvm(pca.scores));
+    if (options_.learner == Learner::kSgplvm) {
+      PLEAT_RETURN_IF_ERROR(TrainSgplvm(pca.scores));
+    } else {
+      PLEAT_RETURN_IF_ERROR(TrainGp(pca.scores));
+    }
+    if (options_.learner == Learner::kRegional) PLEAT_RETURN_IF_ERROR(TrainRegional(pca));
     PLEAT_RETURN_IF_ERROR(MeasureTraining(pca));
     PLEAT_RETURN_IF_ERROR(progress_.Stage("done", 0, 1).Report(1));
     return std::move(model_);
@@ -89,10 +102,26 @@ class DetailModelTrainer {
 
  private:
   absl::Status TrainGp(const Eigen::MatrixXd& scores) {
+    const double end = options_.learner == Learner::kRegional ? .3 : .95;
     PLEAT_ASSIGN_OR_RETURN(GpRegression stage,
                            GpRegression::Train(features_, scores, options_.gp, &summary_.gp,
-                                               progress_.Stage("gp", .1, .95)));
+                                               progress_.Stage("gp", .1, end)));
     model_.stages_.push_back(std::move(stage));
+    return absl::OkStatus();
+  }
+
+  // A region's outputs are its share of the details in the common basis, so that the regions add up
+  // to coefficients and a query expands them once.
+  absl::Status TrainRegional(const PrincipalComponents& pca) {
+    const Eigen::MatrixXd centred = details_.rowwise() - pca.mean.transpose();
+    std::vector<GpRegion> regions;
+    for (const DetailRegion& region : options_.regions) {
+      regions.push_back({region.feature_sets, centred * (region.weights.asDiagonal() * pca.basis)});
+    }
+    PLEAT_ASSIGN_OR_RETURN(model_.regional_,
+                           RegionalGp::Train(features_, regions, options_.regional,
+                                             progress_.Stage("regions", .3, .95)));
+    model_.regional_share_ = options_.regional_share;
     return absl::OkStatus();
   }
 

@@ -29,15 +29,6 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
   return absl::OkStatus();
 }
 
-// At most `count` of `num_rows` rows, spread evenly.
-std::vector<Eigen::Index> SpreadRows(Eigen::Index num_rows, Eigen::Index count) {
-  std::vector<Eigen::Index> rows(std::min(num_rows, std::max<Eigen::Index>(count, 1)));
-  for (size_t i = 0; i < rows.size(); ++i) {
-    rows[i] = static_cast<Eigen::Index>(i) * num_rows / static_cast<Eigen::Index>(rows.size());
-  }
-  return rows;
-}
-
 // The negative log marginal likelihood, and the prior, over the kernel's logs.
 class MarginalLikelihood : public Objective {
  public:

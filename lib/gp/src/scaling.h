@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace pleat {
 
@@ -14,5 +15,8 @@ void ScaleColumns(Eigen::MatrixXd* centred);
 // Median of the entries below the diagonal of a matrix of squared distances (N x N, lower),
 // positive entries only; 1 when there are none.
 double MedianSquaredDistance(const Eigen::MatrixXd& distances);
+
+// At most `count` (at least one) of `num_rows` rows, spread evenly, ascending.
+std::vector<Eigen::Index> SpreadRows(Eigen::Index num_rows, Eigen::Index count);
 
 }  // namespace pleat

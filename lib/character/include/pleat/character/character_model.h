@@ -27,7 +27,7 @@ struct FrameError {
 
 // What training found out about its own result; kept in the model file.
 struct TrainingRecord {
-  std::string learner;  // the learner that was chosen: "gp" or "sgplvm"
+  std::string learner;  // the learner that was chosen: "regional", "gp", "sgplvm"
   int num_frames = 0;   // training frames
   int rest_frame = 0;
   double yaw_degrees = 0;       // facing that was found

@@ -36,7 +36,7 @@ struct EvaluateOptions {
   TrainOptions train;  // learner "auto" chooses by validation inside the training frames
   TrainResources resources;
   // Which learners are measured; the chosen one is always among them.
-  std::vector<std::string> learners = {"sgplvm", "gp"};
+  std::vector<std::string> learners = {"sgplvm", "gp", "regional"};
   // Protocol cross: further clips to train on, of the connectivity of the first.
   std::vector<MeshSequence> more_training_clips;
   std::function<double()> clock_seconds;  // for EvaluateReport::seconds; absent = zeros
@@ -49,7 +49,7 @@ struct EvaluateReport {
   std::string learner;  // the one behind `hybrid`
   ErrorSummary skinned, hybrid;
   std::map<std::string, ErrorSummary> baselines;  // "zero", "mean", "nearest", "ridge"
-  std::map<std::string, ErrorSummary> learners;   // "sgplvm", "gp"
+  std::map<std::string, ErrorSummary> learners;   // "sgplvm", "gp", "regional"
   std::map<std::string, double> seconds;          // "read", "rig", "fit", "learn", "predict"
   TrainOptions options;
   std::vector<int> test_frames;

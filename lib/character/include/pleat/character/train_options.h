@@ -11,7 +11,8 @@
 namespace pleat {
 
 struct TrainOptions {
-  std::string learner = "auto";    // "auto" (validated on held-out training frames), "gp", "sgplvm"
+  // "auto" (validated on held-out training frames), "regional", "gp", "sgplvm" (the paper's)
+  std::string learner = "auto";
   std::string fit = "all-joints";  // "all-joints" (Levenberg-Marquardt) or "walk" (the paper's)
   std::string refine = "full";     // rig on the training frames: "none" (paper), "joints", "full"
   std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
@@ -28,7 +29,7 @@ struct TrainOptions {
   int iterations = 100;            // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
   double dynamics_weight = 1;      // lambda on the GPDM term, 0..1e6 (paper: 1)
   double detail_energy = 0.99999;  // share of the details' energy that the PCA basis keeps, 0..1
-  int max_components = 96;         // upper bound of the PCA basis, 1..1024
+  int max_components = 128;        // upper bound of the PCA basis, 1..1024
   uint64_t seed = 1;               // of everything random
 
   // The published settings: sgplvm on a 5 % control mesh, walk, world axes (paper, section IV).

@@ -1,35 +1,48 @@
 // What turns a pose into a detail: a chain of Gaussian processes and a basis of details.
 //
-//   gp      features -> coefficients
-//   sgplvm  features -> latent point (the paper's back-map) -> coefficients
+//   gp        features -> coefficients
+//   sgplvm    features -> latent point (the paper's back-map) -> coefficients
+//   regional  features -> coefficients, a sum over body regions, mixed with a share of gp
 //   detail  = mean + basis * coefficients
 //
 // Source: the paper, section IV-B (prediction); method.md 5.5, 5.6 (confidence and fading).
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/gp/gp_regression.h"
+#include "pleat/gp/regional_gp.h"
 #include "pleat/gp/shared_gplvm.h"
 
 namespace pleat {
 
 enum class Learner {
-  kGp,      // direct regression with an RBF + linear kernel
-  kSgplvm,  // the paper's shared GPLVM
+  kGp,        // direct regression with an RBF + linear kernel
+  kSgplvm,    // the paper's shared GPLVM
+  kRegional,  // regression per body region, additive over near and far joints
 };
 
-// "gp", "sgplvm".
+// A part of the body that the regional learner predicts by itself.
+struct DetailRegion {
+  // D_M: the share of every entry of Y_M that belongs to the region; over all regions the sum is 1.
+  Eigen::VectorXd weights;
+  std::vector<std::vector<int>> feature_sets;  // columns of Y_S, as in GpRegion
+};
+
+// "gp", "sgplvm", "regional".
 std::string LearnerName(Learner learner);
 
 struct DetailModelOptions {
   Learner learner = Learner::kGp;
-  GpRegressionOptions gp{};     // of the direct learner
-  SharedGplvmOptions sgplvm{};  // of the shared GPLVM
+  GpRegressionOptions gp{};             // of the direct learner
+  SharedGplvmOptions sgplvm{};          // of the shared GPLVM
+  RegionalGpOptions regional{};         // of the regional learner
+  std::vector<DetailRegion> regions{};  // what it needs; may be empty for the others
   // Of Y_S -> X, after training. With back-constraints the constraint itself is the map.
   GpRegressionOptions back_map{.kernel = {.bias = true, .linear = false}};
 
@@ -37,6 +50,10 @@ struct DetailModelOptions {
   // the energy needs, up to a cap.
   double pca_energy = .9999;
   int max_components = 96;
+
+  // Of the regional learner, the rest is the direct GP's: the mean of two models errs less than
+  // either, and the direct GP is what knows how far a pose is from training.
+  double regional_share = .75;
 
   // Below this confidence the prediction fades smoothly to the mean detail. The mean of a Gaussian
   // process falls back by itself; this stops what its linear part could do far away.
@@ -58,6 +75,8 @@ struct DetailModelParameters {
   Eigen::VectorXf mean;                        // D_M, unit of Y_M
   Eigen::MatrixXf basis;                       // D_M x r, orthonormal columns
   double fade_confidence = .02;
+  double regional_share = 0;                     // of `regional` in the prediction, 0..1
+  std::optional<RegionalGpParameters> regional;  // with Learner::kRegional only
 };
 
 // Immutable: queries share it without locks.
@@ -69,6 +88,8 @@ class DetailModel {
     Eigen::VectorXd latent;        // q
     Eigen::VectorXd coefficients;  // r
     Eigen::VectorXf single;        // r
+    RegionalGp::Workspace regional;
+    Eigen::VectorXd regional_coefficients;  // r
   };
 
   // kInvalidArgument when sizes do not fit together or a number is not finite.
@@ -83,6 +104,7 @@ class DetailModel {
   const Eigen::MatrixXf& basis() const { return basis_; }
   const std::vector<GpRegression>& stages() const { return stages_; }
   double fade_confidence() const { return fade_confidence_; }
+  const std::optional<RegionalGp>& regional() const { return regional_; }
 
   // Coefficients (r) of the detail at a feature row (D_S), faded; returns the confidence: 1 at the
   // training poses, 0 where they say nothing. No allocation after the first call.
@@ -101,6 +123,8 @@ class DetailModel {
   Eigen::VectorXf mean_;
   Eigen::MatrixXf basis_;
   double fade_confidence_ = 0;
+  double regional_share_ = 0;
+  std::optional<RegionalGp> regional_;
 
   friend class DetailModelTrainer;
 };

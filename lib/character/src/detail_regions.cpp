@@ -1,0 +1,75 @@
+#include "detail_regions.h"
+
+#include <set>
+#include <utility>
+
+#include "option_values.h"
+
+namespace pleat {
+namespace {
+
+// Bones that share a joint: parent and child, and children of one parent.
+bool AreNeighbours(const Skeleton& skeleton, int a, int b) {
+  return skeleton.parent(a) == b || skeleton.parent(b) == a ||
+         skeleton.parent(a) == skeleton.parent(b);
+}
+
+// `bones` and their neighbours.
+std::set<int> Grown(const Skeleton& skeleton, const std::set<int>& bones) {
+  std::set<int> grown = bones;
+  for (int candidate = 1; candidate < skeleton.num_joints(); ++candidate) {
+    for (const int bone : bones) {
+      if (AreNeighbours(skeleton, bone, candidate)) grown.insert(candidate);
+    }
+  }
+  return grown;
+}
+
+// The columns of the feature row that belong to `bones`, in every pose of the history.
+std::vector<int> ColumnsOf(const std::set<int>& bones, int num_joints,
+                           const TrainOptions& options) {
+  const int values = options.rotations == "quaternion" ? 4 : 3;
+  std::vector<int> columns;
+  for (int h = 0; h < options.history; ++h) {
+    for (const int bone : bones) {
+      for (int i = 0; i < values; ++i) {
+        columns.push_back((h * (num_joints - 1) + bone - 1) * values + i);
+      }
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& control_vertices,
+                                        const TrainOptions& options) {
+  const Skeleton& skeleton = rig.skeleton;
+  const int num_joints = skeleton.num_joints();
+  std::vector<Eigen::VectorXd> weights(num_joints,
+                                       Eigen::VectorXd::Zero(3 * control_vertices.size()));
+  for (size_t c = 0; c < control_vertices.size(); ++c) {
+    const VertexInfluences& influences = rig.weights.vertex(control_vertices[c]);
+    for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
+      weights[influences.bones[k]].segment<3>(3 * c).array() += influences.weights[k];
+    }
+  }
+  std::set<int> all;
+  for (int bone = 1; bone < num_joints; ++bone) all.insert(bone);
+  std::vector<DetailRegion> regions;
+  for (int bone = 0; bone < num_joints; ++bone) {
+    if (weights[bone].isZero(0)) continue;
+    const std::set<int> near = Grown(skeleton, {bone});
+    const std::set<int> wider = Grown(skeleton, near);
+    DetailRegion region{std::move(weights[bone]), {}};
+    for (std::set<int> moving : {all, wider, near}) {
+      moving.erase(0);  // the root has no features
+      if (moving.empty()) continue;
+      region.feature_sets.push_back(ColumnsOf(moving, num_joints, options));
+    }
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+}  // namespace pleat

@@ -1,0 +1,18 @@
+// The body regions of the regional learner: one for each bone (method.md, 5.7).
+#pragma once
+
+#include <vector>
+
+#include "pleat/character/train_options.h"
+#include "pleat/gp/detail_model.h"
+#include "pleat/skinning/rig.h"
+
+namespace pleat {
+
+// One region for each bone that moves a vertex of `control_vertices` (C): its weights are the
+// skinning weights, its feature sets all features, those of the bones within two bones of it, and
+// those within one.
+std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& control_vertices,
+                                        const TrainOptions& options);
+
+}  // namespace pleat

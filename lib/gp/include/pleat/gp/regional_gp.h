@@ -1,0 +1,99 @@
+// A sum of Gaussian processes, one for each region of the body, every one additive over scales.
+//
+//   f(x) = sum_regions f_R(x),   k_R(x, x') = b + sum_sets a exp(-g/2 |x_set - x'_set|^2) + c
+//   x_set.x'_set
+//
+// The sets of a region are all features, those of the joints near it, those of the nearest: what
+// the near joints explain carries over to poses whose far joints were never seen together with
+// them, and close to the training frames the set of all features explains the rest. Source:
+// method.md 5.7 (regions); D. Duvenaud, H. Nickisch, C. E. Rasmussen, "Additive Gaussian
+// Processes", NIPS 2011 (sums of kernels over subsets of the inputs).
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+
+namespace pleat {
+
+// What one region is to learn.
+struct GpRegion {
+  std::vector<std::vector<int>> feature_sets;  // columns of the features, each set ascending
+  Eigen::MatrixXd outputs;                     // N x r: this region's share of the outputs
+};
+
+struct RegionalGpOptions {
+  int max_iterations = 60;  // of L-BFGS on the marginal likelihood, per region
+  // As in GpRegressionOptions, for every set of features.
+  double prior_precision = .003;
+  // Hyperparameters are learnt on at most this many rows and predictions made from at most
+  // `max_rows`, both spread evenly: cost grows with the cube.
+  int max_hyperparameter_rows = 400;
+  int max_rows = 2000;
+  int num_threads = 0;  // 0 = one per core; the result does not depend on it
+};
+
+// Everything a prediction needs; what a model file holds.
+struct RegionalGpParameters {
+  struct Scale {
+    std::vector<int> columns;  // ascending
+    double inverse_width = 1;  // g, 1 / (normalised input unit)^2
+    double amplitude = 1;      // a, (normalised output unit)^2
+    double linear = 0;         // c
+  };
+  struct Region {
+    std::vector<Scale> scales;
+    double bias = 0;        // b
+    Eigen::MatrixXf alpha;  // N x r, K^-1 (y - mean), output unit
+  };
+  Eigen::VectorXd input_mean;   // D
+  double input_scale = 1;       // unit of the inputs
+  Eigen::MatrixXd inputs;       // N x D, normalised: (x - mean) / scale
+  Eigen::VectorXd output_mean;  // r
+  std::vector<Region> regions;
+};
+
+// Immutable after training: queries share it without locks.
+class RegionalGp {
+ public:
+  // What one thread needs for its queries. Sized by the first query, reused without allocation.
+  struct Workspace {
+    Eigen::VectorXd row;                  // D, normalised
+    Eigen::MatrixXd distances;            // N x atoms
+    Eigen::MatrixXd products;             // N x atoms
+    Eigen::VectorXd rbf, linear, kernel;  // N
+    Eigen::VectorXf kernel_f;             // N
+    Eigen::VectorXf sum;                  // r
+  };
+
+  // inputs: N x D, rows are samples. kInvalidArgument when sizes differ, a column is out of range
+  // or a number is not finite; kCancelled.
+  static absl::StatusOr<RegionalGp> Train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                          const std::vector<GpRegion>& regions,
+                                          const RegionalGpOptions& options = {},
+                                          const Progress& progress = {});
+
+  // From a file: checks sizes, columns and that every number is finite (kInvalidArgument).
+  static absl::StatusOr<RegionalGp> FromParameters(RegionalGpParameters parameters);
+
+  const RegionalGpParameters& parameters() const { return parameters_; }
+  int num_inputs() const { return static_cast<int>(parameters_.inputs.cols()); }
+  int num_outputs() const { return static_cast<int>(parameters_.output_mean.size()); }
+  size_t memory_bytes() const;
+
+  // Mean (r entries) of the outputs at `row` (D entries).
+  void Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
+               Eigen::Ref<Eigen::VectorXd> mean) const;
+
+ private:
+  explicit RegionalGp(RegionalGpParameters parameters);
+
+  RegionalGpParameters parameters_;
+  // Columns that belong to the same sets are one atom: distances are summed over them only once.
+  std::vector<std::vector<int>> atoms_;                     // columns
+  std::vector<std::vector<std::vector<int>>> scale_atoms_;  // [region][scale]: atoms
+};
+
+}  // namespace pleat
