@@ -30,7 +30,7 @@ TEST(EvaluateTest, HeldOutFramesAreBetterThanSkinningAndTheMean) {
   EXPECT_LT(report.hybrid.mean_percent, report.baselines.at("mean").mean_percent);
   EXPECT_THAT(report.baselines,
               UnorderedElementsAre(Key("zero"), Key("mean"), Key("nearest"), Key("ridge")));
-  EXPECT_THAT(report.learners, UnorderedElementsAre(Key("gp"), Key("sgplvm")));
+  EXPECT_THAT(report.learners, UnorderedElementsAre(Key("gp"), Key("sgplvm"), Key("regional")));
   EXPECT_EQ(report.hybrid.mean_percent, report.learners.at("gp").mean_percent);
   EXPECT_NEAR(report.baselines.at("zero").mean_percent, report.skinned.mean_percent, 1e-4);
   EXPECT_EQ(report.hybrid.frame_mean_percent.size(), 12u);

@@ -55,7 +55,8 @@ inline void ExpectTrainReport(const nlohmann::json& report) {
   ExpectNumbers(report.at("worst_frames")[0], {"clip", "frame", "mean_percent"});
   ASSERT_EQ(report.at("worst_joints").size(), 17u);
   ExpectNumbers(report.at("worst_joints")[0], {"mean_percent"});
-  EXPECT_TRUE(report.at("learner") == "gp" || report.at("learner") == "sgplvm");
+  EXPECT_TRUE(report.at("learner") == "gp" || report.at("learner") == "sgplvm" ||
+              report.at("learner") == "regional");
   EXPECT_TRUE(report.at("options").is_object());
   EXPECT_EQ(report["options"].at("seed"), 1);
   ExpectNumbers(report.at("seconds"), {"read", "rig", "fit", "learn", "total"});
@@ -68,14 +69,15 @@ inline void ExpectEvaluateReport(const nlohmann::json& report, const std::string
   EXPECT_EQ(report.value("schema", ""), "pleat.evaluate/1");
   EXPECT_EQ(report.at("protocol"), protocol);
   EXPECT_GT(report.at("diagonal_m").get<double>(), 0);
-  EXPECT_TRUE(report.at("learner") == "gp" || report.at("learner") == "sgplvm");
+  EXPECT_TRUE(report.at("learner") == "gp" || report.at("learner") == "sgplvm" ||
+              report.at("learner") == "regional");
   ExpectErrorFields(report.at("skinned"), "skinned");
   ExpectErrorFields(report.at("hybrid"), "hybrid");
   for (const char* baseline : {"zero", "mean", "nearest", "ridge"}) {
     ASSERT_TRUE(report.at("baselines").contains(baseline)) << baseline;
     ExpectErrorFields(report["baselines"][baseline], baseline);
   }
-  for (const char* learner : {"sgplvm", "gp"}) {
+  for (const char* learner : {"sgplvm", "gp", "regional"}) {
     ASSERT_TRUE(report.at("learners").contains(learner)) << learner;
     ExpectErrorFields(report["learners"][learner], learner);
   }

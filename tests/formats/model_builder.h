@@ -11,11 +11,11 @@
 
 namespace pleat {
 
-// Three joints, a box, one training row per stage. `sgplvm`: two stages, a control mesh of four
-// vertices and an upsampler; else one stage at full resolution.
+// Three joints, a box, one training row per stage. kSgplvm: two stages, a control mesh of four
+// vertices and an upsampler; else one stage at full resolution, with two regions for kRegional.
 class SmallModelBuilder {
  public:
-  explicit SmallModelBuilder(bool sgplvm) : sgplvm_(sgplvm), random_(7) {}
+  explicit SmallModelBuilder(Learner learner) : learner_(learner), random_(7) {}
 
   CharacterModel::Parts Parts() {
     const MeshShape box = MakeBox({0.4, 1.6, 0.2});
@@ -32,8 +32,8 @@ class SmallModelBuilder {
     std::vector<VertexInfluences> influences(8);
     for (size_t v = 0; v < 8; ++v) influences[v] = {{1, 2, 0, 0}, {0.75f, 0.25f, 0, 0}};
     parts.rig.weights = *SkinWeights::Create(3, influences);
-    parts.options.learner = sgplvm_ ? "sgplvm" : "gp";
-    parts.options.resolution_percent = sgplvm_ ? 50 : 100;
+    parts.options.learner = LearnerName(learner_);
+    parts.options.resolution_percent = learner_ == Learner::kSgplvm ? 50 : 100;
     parts.feature_reference = Vector(6);
     AddControl(&parts);
     parts.detail_model = std::make_shared<const DetailModel>(
@@ -63,7 +63,7 @@ class SmallModelBuilder {
   Eigen::VectorXd Vector(int size) { return Matrix(size, 1).col(0); }
 
   void AddControl(CharacterModel::Parts* parts) {
-    if (!sgplvm_) {
+    if (learner_ != Learner::kSgplvm) {
       parts->control_vertices = {0, 1, 2, 3, 4, 5, 6, 7};
       return;
     }
@@ -92,18 +92,40 @@ class SmallModelBuilder {
     return stage;
   }
 
+  RegionalGpParameters Regional(int num_inputs, int num_outputs) {
+    constexpr int kRows = 3;
+    RegionalGpParameters regional;
+    regional.input_mean = Vector(num_inputs);
+    regional.input_scale = 2;
+    regional.inputs = Matrix(kRows, num_inputs);
+    regional.output_mean = Vector(num_outputs);
+    for (const std::vector<int>& columns : {std::vector<int>{0, 1, 2}, {1, 4}}) {
+      RegionalGpParameters::Region region;
+      region.scales = {{columns, 0.5, 1.5, 0.25}, {{2, 3, 5}, 2, 0.5, 0}};
+      region.bias = 0.125;
+      region.alpha = Matrix(kRows, num_outputs).cast<float>();
+      regional.regions.push_back(std::move(region));
+    }
+    return regional;
+  }
+
   DetailModelParameters Detail(int num_control) {
     constexpr int kComponents = 2, kLatent = 2, kFeatures = 12;
     DetailModelParameters detail;
-    detail.learner = sgplvm_ ? Learner::kSgplvm : Learner::kGp;
-    if (sgplvm_) detail.stages.push_back(Stage(kFeatures, kLatent));
-    detail.stages.push_back(Stage(sgplvm_ ? kLatent : kFeatures, kComponents));
+    const bool sgplvm = learner_ == Learner::kSgplvm;
+    detail.learner = learner_;
+    if (sgplvm) detail.stages.push_back(Stage(kFeatures, kLatent));
+    detail.stages.push_back(Stage(sgplvm ? kLatent : kFeatures, kComponents));
+    if (learner_ == Learner::kRegional) {
+      detail.regional_share = 0.5;
+      detail.regional = Regional(kFeatures, kComponents);
+    }
     detail.mean = Vector(3 * num_control).cast<float>() * 0.01f;
     detail.basis = Matrix(3 * num_control, kComponents).cast<float>();
     return detail;
   }
 
-  bool sgplvm_;
+  Learner learner_;
   Random random_;
 };
 

@@ -13,14 +13,15 @@ namespace {
 
 using testing::HasSubstr;
 
-class ModelFileTest : public testing::TestWithParam<bool> {
+class ModelFileTest : public testing::TestWithParam<Learner> {
  protected:
   const std::shared_ptr<const CharacterModel> model_ = SmallModelBuilder(GetParam()).Build();
   const std::string bytes_ = EncodeModel(*model_);
 };
 
-INSTANTIATE_TEST_SUITE_P(Learners, ModelFileTest, testing::Bool(),
-                         [](const auto& info) { return info.param ? "Sgplvm" : "Gp"; });
+INSTANTIATE_TEST_SUITE_P(Learners, ModelFileTest,
+                         testing::Values(Learner::kGp, Learner::kSgplvm, Learner::kRegional),
+                         [](const auto& info) { return LearnerName(info.param); });
 
 TEST_P(ModelFileTest, EverythingRoundTrips) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(bytes_));
@@ -132,12 +133,12 @@ TEST_P(ModelFileTest, FilesRoundTripAndErrorsNameThem) {
 }
 
 TEST_P(ModelFileTest, GoldenFileOfVersion1StaysReadable) {
-  const std::string path = std::string(PLEAT_SOURCE_DIR "/tests/golden/model_v1_") +
-                           (GetParam() ? "sgplvm" : "gp") + ".pleat";
+  const std::string path =
+      std::string(PLEAT_SOURCE_DIR "/tests/golden/model_v1_") + LearnerName(GetParam()) + ".pleat";
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string golden, ReadFile(path));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(golden));
   EXPECT_EQ(read->name(), "small");
-  EXPECT_EQ(read->record().learner, GetParam() ? "sgplvm" : "gp");
+  EXPECT_EQ(read->record().learner, LearnerName(GetParam()));
   EXPECT_EQ(read->rig().rest_positions, model_->rig().rest_positions);
 }
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "allocation_counter.h"
 #include "gplvm_data.h"
@@ -21,6 +23,20 @@ DetailModelOptions SmallOptions(Learner learner, bool back_constraints = true) {
   options.sgplvm.latent_dimension = 4;
   options.sgplvm.max_iterations = 40;
   options.sgplvm.back_constraints = back_constraints;
+  return options;
+}
+
+// With two regions: the first half of features and details, and the second.
+DetailModelOptions WithRegions(DetailModelOptions options, const SyntheticMotion& motion) {
+  const int num_features = static_cast<int>(motion.features.cols());
+  const Eigen::Index num_details = motion.details.cols();
+  std::vector<int> all(num_features);
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> first(all.begin(), all.begin() + num_features / 2);
+  const std::vector<int> second(all.begin() + num_features / 2, all.end());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(num_details);
+  weights.head(num_details / 2).setOnes();
+  options.regions = {{weights, {all, first}}, {weights.array() * -1 + 1, {all, second}}};
   return options;
 }
 
@@ -46,8 +62,8 @@ struct Variant {
 
 class DetailModelTest : public ::testing::TestWithParam<Variant> {
  protected:
-  DetailModelOptions Options() const {
-    return SmallOptions(GetParam().learner, GetParam().back_constraints);
+  DetailModelOptions Options(const SyntheticMotion& motion) const {
+    return WithRegions(SmallOptions(GetParam().learner, GetParam().back_constraints), motion);
   }
 };
 
@@ -57,7 +73,7 @@ TEST_P(DetailModelTest, PredictsFramesItHasNotSeen) {
   DetailModelSummary summary;
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const DetailModel model,
-      TrainDetailModel(seen.features, seen.details, {0, 60}, Options(), &summary));
+      TrainDetailModel(seen.features, seen.details, {0, 60}, Options(seen), &summary));
   const double scale =
       std::sqrt((next.details.rowwise() - seen.details.colwise().mean()).squaredNorm() /
                 double(next.details.size()));
@@ -73,7 +89,7 @@ TEST_P(DetailModelTest, PredictsFramesItHasNotSeen) {
 TEST_P(DetailModelTest, FadesToTheMeanFarAway) {
   const SyntheticMotion seen = MakeSyntheticMotion(80, 10, 30, 1);
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
-                             TrainDetailModel(seen.features, seen.details, {0}, Options()));
+                             TrainDetailModel(seen.features, seen.details, {0}, Options(seen)));
   DetailModel::Workspace workspace;
   Eigen::VectorXf detail(30);
   for (const double distance : {1e3, 1e8, 1e200}) {
@@ -97,9 +113,9 @@ TEST_P(DetailModelTest, FadesToTheMeanFarAway) {
 TEST_P(DetailModelTest, IsDeterministicAndRestorable) {
   const SyntheticMotion seen = MakeSyntheticMotion(60, 10, 30, 1);
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel first,
-                             TrainDetailModel(seen.features, seen.details, {0, 30}, Options()));
+                             TrainDetailModel(seen.features, seen.details, {0, 30}, Options(seen)));
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel second,
-                             TrainDetailModel(seen.features, seen.details, {0, 30}, Options()));
+                             TrainDetailModel(seen.features, seen.details, {0, 30}, Options(seen)));
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel restored,
                              DetailModel::FromParameters(first.parameters()));
   DetailModel::Workspace workspace;
@@ -117,7 +133,7 @@ TEST_P(DetailModelTest, IsDeterministicAndRestorable) {
 TEST_P(DetailModelTest, PredictDoesNotAllocate) {
   if (NumAllocations() < 0) GTEST_SKIP() << "allocations cannot be counted in this build";
   const SyntheticMotion seen = MakeSyntheticMotion(150, 10, 300, 1);
-  DetailModelOptions options = Options();
+  DetailModelOptions options = Options(seen);
   options.sgplvm.max_iterations = options.gp.max_iterations = 3;
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
                              TrainDetailModel(seen.features, seen.details, {0}, options));
@@ -132,9 +148,9 @@ TEST_P(DetailModelTest, PredictDoesNotAllocate) {
 
 TEST_P(DetailModelTest, StopsWhenCancelled) {
   const SyntheticMotion seen = MakeSyntheticMotion(60, 10, 30, 1);
-  int num_tests = 0;
+  std::atomic<int> num_tests = 0;  // asked by several threads
   const Progress progress(nullptr, [&] { return ++num_tests > 30; });
-  EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(), nullptr, progress),
+  EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(seen), nullptr, progress),
               HasStatus(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
 }
 
@@ -149,7 +165,7 @@ TEST_P(DetailModelTest, ReportsRisingProgress) {
         ++num_updates;
       },
       nullptr);
-  ASSERT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(), nullptr, progress),
+  ASSERT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(seen), nullptr, progress),
               IsOk());
   EXPECT_EQ(last, 1);
   EXPECT_GT(num_updates, 5);
@@ -158,7 +174,8 @@ TEST_P(DetailModelTest, ReportsRisingProgress) {
 INSTANTIATE_TEST_SUITE_P(Learners, DetailModelTest,
                          ::testing::Values(Variant{"Gp", Learner::kGp, false},
                                            Variant{"Sgplvm", Learner::kSgplvm, false},
-                                           Variant{"BackConstrained", Learner::kSgplvm, true}),
+                                           Variant{"BackConstrained", Learner::kSgplvm, true},
+                                           Variant{"Regional", Learner::kRegional, false}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {
@@ -182,6 +199,7 @@ TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {
   refused([](auto& p) { p.mean[2] = std::numeric_limits<float>::quiet_NaN(); }, "not finite");
   refused([](auto& p) { p.basis(2, 1) = std::numeric_limits<float>::infinity(); }, "not finite");
   refused([](auto& p) { p.fade_confidence = 2; }, "fading");
+  refused([](auto& p) { p.regional = RegionalGpParameters{}; }, "regions");
   refused([](auto& p) { p.stages[1].alpha(0, 0) = std::nan(""); }, "alpha");
 }
 
@@ -202,10 +220,10 @@ TEST(TrainDetailModelTest, RefusesWrongDataWithWords) {
 TEST(TrainDetailModelTest, ConstantDetailsAreThePredictedMean) {
   SyntheticMotion seen = MakeSyntheticMotion(20, 6, 12, 1);
   seen.details.setConstant(2.5);
-  for (const Learner learner : {Learner::kGp, Learner::kSgplvm}) {
-    PLEAT_ASSERT_OK_AND_ASSIGN(
-        const DetailModel model,
-        TrainDetailModel(seen.features, seen.details, {0}, SmallOptions(learner)));
+  for (const Learner learner : {Learner::kGp, Learner::kSgplvm, Learner::kRegional}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
+                               TrainDetailModel(seen.features, seen.details, {0},
+                                                WithRegions(SmallOptions(learner), seen)));
     EXPECT_LT(HeldOutRms(model, seen), 1e-6);
   }
 }

@@ -49,7 +49,7 @@ struct DetailModelOptions {
   // Details are predicted in the basis of their principal components: as many as this share of
   // the energy needs, up to a cap.
   double pca_energy = .9999;
-  int max_components = 96;
+  int max_components = 128;
 
   // Of the regional learner, the rest is the direct GP's: the mean of two models errs less than
   // either, and the direct GP is what knows how far a pose is from training.
