@@ -25,7 +25,7 @@ struct TrainOptions {
   double yaw_degrees = -1;             // facing of the character about +y from +z, -1 = automatic
   double bend_stiffness = 0.0001;      // pose fit: pull of a bone to its parent, 0..1
   double smoothness = 0;           // pose fit: pull to the poses before and after, 0..1; 0 = none
-  int latent_dimensions = 12;      // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
+  int latent_dimensions = 13;      // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
   int iterations = 100;            // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
   double dynamics_weight = 1;      // lambda on the GPDM term, 0..1e6 (paper: 1)
   double detail_energy = 0.99999;  // share of the details' energy that the PCA basis keeps, 0..1
