@@ -56,6 +56,7 @@ void EvaluatePose(benchmark::State& state, const std::string& learner) {
 }
 BENCHMARK_CAPTURE(EvaluatePose, gp, "gp")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(EvaluatePose, sgplvm, "sgplvm")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(EvaluatePose, regional, "regional")->Unit(benchmark::kMicrosecond);
 
 void SkinPose(benchmark::State& state) {
   const std::shared_ptr<const CharacterModel> model = BenchCharacter("gp");
