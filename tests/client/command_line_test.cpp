@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include "run_pleat.h"
 
 namespace pleat {
 namespace {
@@ -11,20 +11,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
-
-struct Outcome {
-  ExitCode code;
-  std::string out, err;
-};
-
-Outcome RunPleat(const std::vector<std::string>& arguments) {
-  std::ostringstream out, err;
-  Session session;
-  session.out = &out;
-  session.err = &err;
-  const ExitCode code = RunCommandLine(arguments, session);
-  return {code, out.str(), err.str()};
-}
 
 TEST(CommandLine, NothingAndNonsenseAreUsageErrors) {
   EXPECT_EQ(RunPleat({}).code, ExitCode::kUsage);

@@ -3,11 +3,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
-#include "cli/command_line.h"
 #include "pleat/base/file.h"
 #include "pleat/formats/sequence_file.h"
+#include "run_pleat.h"
 #include "support/capsule_figure.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -16,20 +15,6 @@ namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-
-struct Outcome {
-  ExitCode code;
-  std::string out, err;
-};
-
-Outcome RunPleat(const std::vector<std::string>& arguments) {
-  std::ostringstream out, err;
-  Session session;
-  session.out = &out;
-  session.err = &err;
-  const ExitCode code = RunCommandLine(arguments, session);
-  return {code, out.str(), err.str()};
-}
 
 // A figure that rises by a centimetre per frame, and where its joints are in frame 0.
 void WriteFigure(const TemporaryFolder& folder, int num_frames) {

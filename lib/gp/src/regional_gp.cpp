@@ -1,12 +1,12 @@
 #include "pleat/gp/regional_gp.h"
 
-#include <algorithm>
 #include <cassert>
 #include <map>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "dense.h"
+#include "feature_sets.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -19,9 +19,7 @@ absl::Status Refuse(const std::string& what) {
 bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false for not a number
 
 absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index num_inputs) {
-  const std::vector<int>& columns = scale.columns;
-  if (columns.empty() || columns.front() < 0 || columns.back() >= num_inputs ||
-      !std::is_sorted(columns.begin(), columns.end(), std::less_equal<>())) {
+  if (!IsFeatureSet(scale.columns, num_inputs)) {
     return Refuse(absl::StrCat("the columns of a scale do not ascend below ", num_inputs));
   }
   if (!IsPositive(scale.inverse_width) || !IsPositive(scale.amplitude) || !(scale.linear >= 0) ||

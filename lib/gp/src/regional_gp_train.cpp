@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "additive_likelihood.h"
+#include "feature_sets.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/regional_gp.h"
@@ -33,8 +33,7 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
       return absl::InvalidArgumentError(absl::StrCat("region ", i, " has no feature sets"));
     }
     for (const std::vector<int>& set : region.feature_sets) {
-      if (set.empty() || set.front() < 0 || set.back() >= inputs.cols() ||
-          !std::is_sorted(set.begin(), set.end(), std::less_equal<>())) {
+      if (!IsFeatureSet(set, inputs.cols())) {
         return absl::InvalidArgumentError(
             absl::StrCat("a feature set of region ", i, " does not ascend below ", inputs.cols()));
       }

@@ -1,7 +1,7 @@
 // A sum of Gaussian processes, one for each region of the body, every one additive over scales.
 //
-//   f(x) = sum_regions f_R(x),   k_R(x, x') = b + sum_sets a exp(-g/2 |x_set - x'_set|^2) + c
-//   x_set.x'_set
+//   f(x) = sum_regions f_R(x)
+//   k_R(x, x') = b + sum_sets [ a exp(-g/2 |x_set - x'_set|^2) + c x_set.x'_set ]
 //
 // The sets of a region are all features, those of the joints near it, those of the nearest: what
 // the near joints explain carries over to poses whose far joints were never seen together with
