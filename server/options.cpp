@@ -15,13 +15,17 @@ struct TlsPaths {
 void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
   app->add_option("--data-dir", service->data_dir, "Folder that keeps sequences, jobs and models")
       ->required();
-  app->add_option("--workers", service->num_workers, "Training jobs that run at the same time")
+  app->add_option("--workers", service->num_workers, "Jobs that run at the same time")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
   app->add_option("--threads-per-job", service->num_threads_per_job, "0 = one per core")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app->add_option("--cache-bytes", service->cache_bytes, "Memory for models (e.g. 2GB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app->add_option("--decode-bytes", service->decode_bytes,
+                  "Memory for decoding compressed sequences, all calls together")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   app->add_option("--reserve-bytes", service->reserve_bytes, "Kept free on the disk")

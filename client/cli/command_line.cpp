@@ -32,6 +32,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddSequencesVerb(*app, session);
   AddJobsVerb(*app, session);
   AddModelsVerb(*app, session);
+  AddCompressedVerb(*app, session);
   AddVersionVerb(*app, session);
   return app;
 }

@@ -18,22 +18,29 @@ ordered_json SequenceJson(const SequenceInfo& info) {
           {"size_bytes", info.size_bytes}};
 }
 
+const char* JobKindName(const JobInfo& info) {
+  return std::holds_alternative<TrainOptions>(info.options) ? "training" : "compression";
+}
+
 ordered_json JobJson(const JobInfo& info) {
-  ordered_json json = {{"id", info.id},
-                       {"state", JobStateName(info.state)},
-                       {"sequence_ids", info.sequence_ids},
-                       {"model_name", info.model_name},
-                       {"stage", info.stage},
-                       {"fraction", info.fraction},
-                       {"warnings", info.warnings},
-                       {"options", OptionsJson(info.options)}};
+  ordered_json json = {
+      {"id", info.id},
+      {"state", JobStateName(info.state)},
+      {"sequence_ids", info.sequence_ids},
+      {"kind", JobKindName(info)},
+      {"name", info.name},
+      {"stage", info.stage},
+      {"fraction", info.fraction},
+      {"warnings", info.warnings},
+      {"options",
+       std::visit([](const auto& options) { return OptionsJson(options); }, info.options)}};
   if (info.objective) json["objective"] = *info.objective;
   if (info.eta_seconds) json["eta_seconds"] = *info.eta_seconds;
   if (!info.error.ok()) {
     json["error"] = {{"code", absl::StatusCodeToString(info.error.code())},
                      {"message", std::string(info.error.message())}};
   }
-  if (!info.model_id.empty()) json["model_id"] = info.model_id;
+  if (!info.result_id.empty()) json["result_id"] = info.result_id;
   return json;
 }
 
@@ -61,6 +68,22 @@ ordered_json ModelJson(const ModelInfo& info) {
           {"joints", joints},
           {"warnings", info.record.warnings},
           {"options", OptionsJson(info.options)}};
+}
+
+ordered_json CompressedSequenceJson(const CompressedSequenceInfo& info) {
+  ordered_json json = {{"id", info.id},
+                       {"name", info.name},
+                       {"num_frames", info.num_frames},
+                       {"num_vertices", info.num_vertices},
+                       {"num_faces", info.num_faces},
+                       {"fps", info.frame_rate.fps()},
+                       {"size_bytes", info.size_bytes}};
+  if (info.record) {
+    json["sequence_id"] = info.record->sequence_id;
+    json["options"] = OptionsJson(info.record->options);
+    json["report"] = CompressReportJson(*info.record, info.num_frames, info.num_vertices);
+  }
+  return json;
 }
 
 }  // namespace pleat

@@ -8,7 +8,10 @@
 namespace pleat {
 
 nlohmann::ordered_json SequenceJson(const SequenceInfo& info);
+// "training" or "compression".
+const char* JobKindName(const JobInfo& info);
 nlohmann::ordered_json JobJson(const JobInfo& info);
 nlohmann::ordered_json ModelJson(const ModelInfo& info);
+nlohmann::ordered_json CompressedSequenceJson(const CompressedSequenceInfo& info);
 
 }  // namespace pleat

@@ -56,6 +56,37 @@ ordered_json OptionsJson(const TrainOptions& options) {
   return json;
 }
 
+ordered_json OptionsJson(const CompressOptions& options) {
+  ordered_json json = {{"any_face_order", !options.keep_face_order}};
+  switch (options.goal) {
+    case CompressionGoal::kMaxError:
+      json["max_error_mm"] = options.max_error_mm;
+      break;
+    case CompressionGoal::kKg:
+      json["kg_percent"] = options.kg_percent;
+      break;
+    case CompressionGoal::kGrid:
+      json["lossless_at_bits"] = options.grid_bits;
+      break;
+  }
+  return json;
+}
+
+ordered_json CompressReportJson(const CompressionRecord& record, int num_frames, int num_vertices) {
+  const CompressSummary& summary = record.summary;
+  return {{"schema", "pleat.compress/1"},
+          {"bytes", summary.num_bytes},
+          {"bpvf", summary.bpvf},
+          {"kg_percent", summary.kg_percent},
+          {"max_error_mm", summary.max_error_mm},
+          {"encode_seconds", record.encode_seconds},
+          {"decode_seconds", record.decode_seconds},
+          {"topology_bytes", summary.num_topology_bytes},
+          {"bpvf_without_topology", summary.bpvf_without_topology},
+          {"num_frames", num_frames},
+          {"num_vertices", num_vertices}};
+}
+
 ordered_json TrainReportJson(const CharacterModel& model, const TrainCosts& costs) {
   const TrainingRecord& record = model.record();
   ordered_json json;

@@ -1,4 +1,4 @@
-// The JSON reports of `train` and `evaluate` (client/README.md).
+// The JSON reports of `train`, `evaluate` and `compress` (client/README.md).
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "pleat/character/character_model.h"
+#include "pleat/character/character_service.h"
 #include "pleat/character/evaluate.h"
 #include "pleat/character/train_options.h"
 #include "pleat/mesh/error_metrics.h"
@@ -22,6 +23,7 @@ nlohmann::ordered_json ErrorJson(const ErrorSummary& error);
 
 // Every option by name, numbers as numbers.
 nlohmann::ordered_json OptionsJson(const TrainOptions& options);
+nlohmann::ordered_json OptionsJson(const CompressOptions& options);
 
 // What the computation cost, beside what the model itself knows.
 struct TrainCosts {
@@ -33,6 +35,10 @@ struct TrainCosts {
 
 // "pleat.train/1"
 nlohmann::ordered_json TrainReportJson(const CharacterModel& model, const TrainCosts& costs);
+
+// "pleat.compress/1"
+nlohmann::ordered_json CompressReportJson(const CompressionRecord& record, int num_frames,
+                                          int num_vertices);
 
 // "pleat.evaluate/1"
 nlohmann::ordered_json EvaluateReportJson(const EvaluateReport& report);

@@ -46,9 +46,7 @@ absl::StatusOr<std::string> CompleteId(const std::vector<std::string>& ids,
 
 absl::StatusOr<std::string> FindModel(CharacterService& service, const std::string& prefix) {
   PLEAT_ASSIGN_OR_RETURN(const std::vector<ModelInfo> models, service.ListModels());
-  std::vector<std::string> ids;
-  for (const ModelInfo& model : models) ids.push_back(model.id);
-  return CompleteId(ids, prefix, "model");
+  return CompleteId(models, prefix, "model");
 }
 
 absl::StatusOr<SequenceInfo> UploadWithProgress(CharacterService& service,

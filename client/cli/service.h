@@ -21,6 +21,15 @@ absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& ses
 absl::StatusOr<std::string> CompleteId(const std::vector<std::string>& ids,
                                        const std::string& prefix, const std::string& kind);
 
+// The same among things that have an id.
+template <typename Info>
+absl::StatusOr<std::string> CompleteId(const std::vector<Info>& infos, const std::string& prefix,
+                                       const std::string& kind) {
+  std::vector<std::string> ids;
+  for (const Info& info : infos) ids.push_back(info.id);
+  return CompleteId(ids, prefix, kind);
+}
+
 // The id of the only model whose id begins with `prefix`.
 absl::StatusOr<std::string> FindModel(CharacterService& service, const std::string& prefix);
 

@@ -37,6 +37,18 @@ void AddServerFlags(CLI::App* verb, Session& session) {
       ->needs(local);
 }
 
+void AddOptionalServerFlags(CLI::App* verb, Session& session) {
+  AddServerFlags(verb, session);
+  verb->get_option("--server")
+      ->description("address of pleatd: compute there instead of in this process");
+  verb->get_option("--data-dir")
+      ->description("with --local: go through the store in this folder, as a server would");
+}
+
+bool RunsOnService(const Session& session) {
+  return !session.server.empty() || !session.data_dir.empty();
+}
+
 void AddInProcessFlag(CLI::App* verb, Session& session) {
   verb->add_flag("--local", session.local, "accepted: this verb always runs in this process");
 }

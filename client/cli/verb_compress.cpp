@@ -2,17 +2,20 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
 #include "cli/progress_display.h"
+#include "cli/report_json.h"
+#include "cli/service.h"
 #include "cli/text_table.h"
 #include "cli/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/codec/compress_sequence.h"
-#include "pleat/codec/sequence_decoder.h"
+#include "pleat/service/compression.h"
 
 namespace pleat {
 namespace {
@@ -46,57 +49,67 @@ absl::StatusOr<CompressOptions> ChooseGoal(const CompressVerbOptions& flags) {
   return options;
 }
 
-// Seconds to open the bytes and decode all frames, on this thread.
-absl::StatusOr<double> TimeDecoding(const std::string& bytes) {
-  const double start_seconds = MonotonicSeconds();
-  PLEAT_ASSIGN_OR_RETURN(SequenceDecoder decoder, SequenceDecoder::Open(bytes));
-  PLEAT_RETURN_IF_ERROR(decoder.Decode(
-      0, decoder.num_frames(), [](int, const Eigen::Matrix3Xf&) { return absl::OkStatus(); }));
-  return MonotonicSeconds() - start_seconds;
+struct Compressed {
+  std::string bytes;
+  CompressionRecord record;
+};
+
+absl::StatusOr<Compressed> CompressHere(const MeshSequence& sequence,
+                                        const CompressOptions& options, const Session& session) {
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  PLEAT_ASSIGN_OR_RETURN(MeasuredCompression result,
+                         CompressMeasured(sequence, options, InterruptibleProgress(&display)));
+  return Compressed{std::move(result.bytes), std::move(result.record)};
 }
 
-nlohmann::ordered_json ReportJson(const MeshSequence& sequence, const CompressSummary& summary,
-                                  double encode_seconds, double decode_seconds) {
-  return {{"schema", "pleat.compress/1"},
-          {"bytes", summary.num_bytes},
-          {"bpvf", summary.bpvf},
-          {"kg_percent", summary.kg_percent},
-          {"max_error_mm", summary.max_error_mm},
-          {"encode_seconds", encode_seconds},
-          {"decode_seconds", decode_seconds},
-          {"topology_bytes", summary.num_topology_bytes},
-          {"bpvf_without_topology", summary.bpvf_without_topology},
-          {"num_frames", sequence.num_frames()},
-          {"num_vertices", sequence.num_vertices()}};
+absl::StatusOr<Compressed> CompressOnService(const MeshSequence& sequence,
+                                             const CompressOptions& options,
+                                             const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo uploaded,
+                         UploadWithProgress(*service, sequence, session));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->CreateCompressionJob(uploaded.id, options));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
+                         WatchJobToEnd(*service, job.id, session, true, nullptr));
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  PLEAT_ASSIGN_OR_RETURN(
+      std::string bytes,
+      service->DownloadCompressedSequence(done.result_id,
+                                          InterruptibleProgress(&display).Stage("download", 0, 1)));
+  PLEAT_ASSIGN_OR_RETURN(CompressedSequenceInfo info,
+                         service->GetCompressedSequence(done.result_id));
+  if (!info.record) return absl::InternalError("the service kept no report of the compression");
+  return Compressed{std::move(bytes), *std::move(info.record)};
+}
+
+void PrintText(const CompressVerbOptions& flags, const MeshSequence& sequence,
+               const CompressionRecord& record, std::ostream& out) {
+  const CompressSummary& summary = record.summary;
+  const double raw_bytes = 12.0 * sequence.num_vertices() * sequence.num_frames();
+  out << absl::StrFormat(
+      "%s: %s, 1/%.0f of its positions as float32; %.3f bits per vertex and frame\n"
+      "error: KG %.4g %%, largest %.4g mm; encoded in %.1f s, decodes at %.0f frames/s\n",
+      flags.output, FormatBytes(static_cast<double>(summary.num_bytes)),
+      raw_bytes / static_cast<double>(summary.num_bytes), summary.bpvf, summary.kg_percent,
+      summary.max_error_mm, record.encode_seconds, sequence.num_frames() / record.decode_seconds);
 }
 
 absl::Status RunCompress(const CompressVerbOptions& flags, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, ChooseGoal(flags));
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, flags.input, flags.fps));
-  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  const double start_seconds = MonotonicSeconds();
-  CompressSummary summary;
-  PLEAT_ASSIGN_OR_RETURN(
-      const std::string bytes,
-      CompressSequence(sequence, options, &summary, InterruptibleProgress(&display)));
-  const double encode_seconds = MonotonicSeconds() - start_seconds;
-  display.Finish();
-  PLEAT_RETURN_IF_ERROR(WriteFile(flags.output, bytes));
-  PLEAT_ASSIGN_OR_RETURN(const double decode_seconds, TimeDecoding(bytes));
-  const nlohmann::ordered_json json = ReportJson(sequence, summary, encode_seconds, decode_seconds);
+  PLEAT_ASSIGN_OR_RETURN(const Compressed compressed,
+                         RunsOnService(session) ? CompressOnService(sequence, options, session)
+                                                : CompressHere(sequence, options, session));
+  PLEAT_RETURN_IF_ERROR(WriteFile(flags.output, compressed.bytes));
+  const nlohmann::ordered_json json =
+      CompressReportJson(compressed.record, sequence.num_frames(), sequence.num_vertices());
   if (!flags.report.empty()) {
     PLEAT_RETURN_IF_ERROR(WriteFile(flags.report, json.dump(2) + "\n"));
   }
   if (session.json) {
     *session.out << json.dump(2) << "\n";
   } else if (!session.quiet) {
-    const double raw_bytes = 12.0 * sequence.num_vertices() * sequence.num_frames();
-    *session.out << absl::StrFormat(
-        "%s: %s, 1/%.0f of its positions as float32; %.3f bits per vertex and frame\n"
-        "error: KG %.4g %%, largest %.4g mm; encoded in %.1f s, decodes at %.0f frames/s\n",
-        flags.output, FormatBytes(static_cast<double>(summary.num_bytes)),
-        raw_bytes / static_cast<double>(summary.num_bytes), summary.bpvf, summary.kg_percent,
-        summary.max_error_mm, encode_seconds, sequence.num_frames() / decode_seconds);
+    PrintText(flags, sequence, compressed.record, *session.out);
   }
   return absl::OkStatus();
 }
@@ -125,10 +138,11 @@ void AddCompressVerb(CLI::App& app, Session& session) {
                  "faces may change their order (vertices never do): about 1.5 bytes less per face");
   verb->add_option("--report", options->report, "JSON report (pleat.compress/1)");
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
-  verb->add_option("--threads", options->num_threads, "0 = one per core")
+  verb->add_option("--threads", options->num_threads,
+                   "in this process: 0 = one per core; the result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  AddInProcessFlag(verb, session);
+  AddOptionalServerFlags(verb, session);
 }
 
 }  // namespace pleat

@@ -1,4 +1,4 @@
-// jobs: training jobs of a service.
+// jobs: training and compression jobs of a service.
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -23,16 +23,16 @@ void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
   std::vector<std::vector<std::string>> rows;
   for (const JobInfo& job : jobs) {
     rows.push_back({job.id, JobStateName(job.state), job.stage,
-                    absl::StrFormat("%.0f %%", 100 * job.fraction), job.model_name,
-                    job.model_id.substr(0, 12)});
+                    absl::StrFormat("%.0f %%", 100 * job.fraction), JobKindName(job), job.name,
+                    job.result_id.substr(0, 12)});
   }
-  out << FormatTable({"id", "state", "stage", "done", "name", "model"}, rows);
+  out << FormatTable({"id", "state", "stage", "done", "kind", "name", "result"}, rows);
 }
 
 absl::Status WatchJob(CharacterService& service, const std::string& id, const Session& session) {
   ExitOnInterrupt();  // watching stops, the job goes on
   PLEAT_ASSIGN_OR_RETURN(const JobInfo job, WatchJobToEnd(service, id, session, false, nullptr));
-  *session.out << (session.json ? JobJson(job).dump(2) : job.model_id) << "\n";
+  *session.out << (session.json ? JobJson(job).dump(2) : job.result_id) << "\n";
   return absl::OkStatus();
 }
 
@@ -49,9 +49,7 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
     return absl::OkStatus();
   }
   if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
-  std::vector<std::string> ids;
-  for (const JobInfo& job : jobs) ids.push_back(job.id);
-  PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(ids, options.id, "job"));
+  PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(jobs, options.id, "job"));
   if (options.action == "cancel") return service->CancelJob(id);
   if (options.action == "watch") return WatchJob(*service, id, session);
   PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->GetJob(id));
@@ -63,8 +61,9 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
 
 void AddJobsVerb(CLI::App& app, Session& session) {
   auto options = std::make_shared<JobsOptions>();
-  CLI::App* verb = AddVerb(app, session, "jobs", "list, show, cancel or watch training jobs",
-                           [options, &session] { return RunJobs(*options, session); });
+  CLI::App* verb =
+      AddVerb(app, session, "jobs", "list, show, cancel or watch training and compression jobs",
+              [options, &session] { return RunJobs(*options, session); });
   verb->add_option("ACTION", options->action, "list, show, cancel or watch")
       ->check(CLI::IsMember({"list", "show", "cancel", "watch"}))
       ->capture_default_str();

@@ -80,11 +80,11 @@ absl::StatusOr<TrainedModel> TrainOnService(CharacterService& service, const Job
   TrainedModel trained;
   PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
                          WatchJobToEnd(service, job.id, session, true, &trained.seconds));
-  trained.id = done.model_id;
+  trained.id = done.result_id;
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   PLEAT_ASSIGN_OR_RETURN(
       trained.bytes, service.DownloadModel(
-                         done.model_id, InterruptibleProgress(&display).Stage("download", 0, 1)));
+                         done.result_id, InterruptibleProgress(&display).Stage("download", 0, 1)));
   PLEAT_ASSIGN_OR_RETURN(trained.model, DecodeModel(trained.bytes));
   return trained;
 }

@@ -18,6 +18,10 @@ CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
 
 // --server, --local, --data-dir: for verbs that can run on a server.
 void AddServerFlags(CLI::App* verb, Session& session);
+// The same for verbs that run in this process unless --server or --data-dir is given, which is what
+// RunsOnService says.
+void AddOptionalServerFlags(CLI::App* verb, Session& session);
+bool RunsOnService(const Session& session);
 // --local alone, for verbs that always run in this process.
 void AddInProcessFlag(CLI::App* verb, Session& session);
 
@@ -36,6 +40,7 @@ void AddUploadVerb(CLI::App& app, Session& session);
 void AddSequencesVerb(CLI::App& app, Session& session);
 void AddJobsVerb(CLI::App& app, Session& session);
 void AddModelsVerb(CLI::App& app, Session& session);
+void AddCompressedVerb(CLI::App& app, Session& session);
 void AddVersionVerb(CLI::App& app, Session& session);
 
 }  // namespace pleat

@@ -20,7 +20,8 @@ constexpr auto kPoll = std::chrono::milliseconds(50);
 // most once.
 constexpr char kServiceConfig[] = R"({"methodConfig":[{"name":[
   {"service":"pleat.v1.SequenceService"},{"service":"pleat.v1.ModelService"},
-  {"service":"pleat.v1.PoseService"},{"service":"pleat.v1.JobService","method":"GetJob"},
+  {"service":"pleat.v1.PoseService"},{"service":"pleat.v1.CompressedSequenceService"},
+  {"service":"pleat.v1.JobService","method":"GetJob"},
   {"service":"pleat.v1.JobService","method":"ListJobs"}],
   "retryPolicy":{"maxAttempts":4,"initialBackoff":"0.1s","maxBackoff":"2s",
   "backoffMultiplier":2,"retryableStatusCodes":["UNAVAILABLE"]}}]})";

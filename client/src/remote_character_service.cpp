@@ -4,29 +4,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pages.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/training_messages.h"
 #include "state.h"
 
 namespace pleat {
-namespace {
-
-// All pages of a list. Response: has next_page_token; `take` moves its items out.
-template <typename Request, typename Response, typename Call, typename Take>
-absl::Status ReadPages(Call call, Take take) {
-  Request request;
-  do {
-    Response response;
-    PLEAT_RETURN_IF_ERROR(call(request, &response));
-    PLEAT_RETURN_IF_ERROR(take(response));
-    if (response.next_page_token() == request.page_token()) break;  // a server that repeats itself
-    request.set_page_token(response.next_page_token());
-  } while (!request.page_token().empty());
-  return absl::OkStatus();
-}
-
-}  // namespace
 
 absl::StatusOr<std::unique_ptr<RemoteCharacterService>> RemoteCharacterService::Connect(
     const std::string& address, RemoteOptions options) {
@@ -96,6 +80,17 @@ absl::StatusOr<JobInfo> RemoteCharacterService::CreateTrainingJob(
   request.set_model_name(model_name);
   PLEAT_RETURN_IF_ERROR(state_->Call(state_->jobs.get(), &v1::JobService::Stub::CreateTrainingJob,
                                      request, &response));
+  return FromProto(response.job());
+}
+
+absl::StatusOr<JobInfo> RemoteCharacterService::CreateCompressionJob(
+    const std::string& sequence_id, const CompressOptions& options) {
+  v1::CreateCompressionJobRequest request;
+  v1::CreateCompressionJobResponse response;
+  request.set_sequence_id(sequence_id);
+  *request.mutable_options() = ToProto(options);
+  PLEAT_RETURN_IF_ERROR(state_->Call(
+      state_->jobs.get(), &v1::JobService::Stub::CreateCompressionJob, request, &response));
   return FromProto(response.job());
 }
 

@@ -94,38 +94,60 @@ class WatchReader {
 
 }  // namespace
 
-absl::StatusOr<SequenceInfo> RemoteCharacterService::UploadSequence(const MeshSequence& sequence,
-                                                                    const Progress& progress) {
-  const std::string bytes = EncodeSequence(sequence);
-  const std::string id = SequenceId(bytes);
+template <typename Response>
+absl::StatusOr<Response> RemoteCharacterService::State::Upload(
+    const std::string& id, const std::string& bytes, const Progress& progress,
+    const std::function<std::unique_ptr<grpc::ClientWriter<v1::UploadSequenceRequest>>(
+        grpc::ClientContext*, Response*)>& start) const {
   uint64_t farthest = 0;
   for (int attempt = 1;; ++attempt) {
     v1::QueryUploadRequest query;
     v1::QueryUploadResponse known;
     query.set_id(id);
-    absl::Status status = state_->Call(state_->sequences.get(),
-                                       &v1::SequenceService::Stub::QueryUpload, query, &known);
-    if (status.ok() && known.complete()) {
-      PLEAT_RETURN_IF_ERROR(progress.Report(1));
-      return GetSequence(id);
-    }
-    v1::UploadSequenceResponse response;
+    absl::Status status =
+        Call(sequences.get(), &v1::SequenceService::Stub::QueryUpload, query, &known);
+    Response response;
     if (status.ok()) {
       if (known.received_bytes() > farthest) attempt = 1;  // it moves: do not give up
       farthest = std::max<uint64_t>(farthest, known.received_bytes());
       grpc::ClientContext context;
       const CancelWatcher watcher(&context, progress);
-      auto writer = state_->sequences->UploadSequence(&context, &response);
+      auto writer = start(&context, &response);
       const uint64_t offset = known.received_bytes() <= bytes.size() ? known.received_bytes() : 0;
       WriteUpload(writer.get(), id, bytes, offset, progress);
       status = FromGrpcStatus(writer->Finish());
     }
-    if (status.ok()) return FromProto(response.sequence());
-    PLEAT_RETURN_IF_ERROR(progress.Report(0));  // says that it was cancelled
+    PLEAT_RETURN_IF_ERROR(progress.Report(status.ok() ? 1 : 0));  // says that it was cancelled
+    if (status.ok()) return response;
     const bool again = IsTransient(status) || status.code() == absl::StatusCode::kOutOfRange;
-    if (!again || attempt >= state_->options.max_attempts) return status;
+    if (!again || attempt >= options.max_attempts) return status;
     if (!BackOff(attempt, progress)) return absl::CancelledError("the upload was cancelled");
   }
+}
+
+absl::StatusOr<SequenceInfo> RemoteCharacterService::UploadSequence(const MeshSequence& sequence,
+                                                                    const Progress& progress) {
+  const std::string bytes = EncodeSequence(sequence);
+  PLEAT_ASSIGN_OR_RETURN(
+      const v1::UploadSequenceResponse response,
+      state_->Upload<v1::UploadSequenceResponse>(
+          SequenceId(bytes), bytes, progress,
+          [this](grpc::ClientContext* context, v1::UploadSequenceResponse* reply) {
+            return state_->sequences->UploadSequence(context, reply);
+          }));
+  return FromProto(response.sequence());
+}
+
+absl::StatusOr<CompressedSequenceInfo> RemoteCharacterService::UploadCompressedSequence(
+    const std::string& file, const Progress& progress) {
+  PLEAT_ASSIGN_OR_RETURN(
+      const v1::UploadCompressedSequenceResponse response,
+      state_->Upload<v1::UploadCompressedSequenceResponse>(
+          ToHex(ComputeSha256(file)), file, progress,
+          [this](grpc::ClientContext* context, v1::UploadCompressedSequenceResponse* reply) {
+            return state_->compressed->UploadCompressedSequence(context, reply);
+          }));
+  return FromProto(response.compressed_sequence());
 }
 
 absl::Status RemoteCharacterService::WatchJob(const std::string& id,
@@ -150,22 +172,25 @@ absl::Status RemoteCharacterService::WatchJob(const std::string& id,
   }
 }
 
-absl::StatusOr<std::string> RemoteCharacterService::DownloadModel(const std::string& id,
-                                                                  const Progress& progress) {
+template <typename Request, typename Response>
+absl::StatusOr<std::string> RemoteCharacterService::State::Download(
+    const std::string& id, const Progress& progress,
+    const std::function<std::unique_ptr<grpc::ClientReader<Response>>(
+        grpc::ClientContext*, const Request&)>& start) const {
   std::string bytes;
   for (int attempt = 1;; ++attempt) {
     grpc::ClientContext context;
     const CancelWatcher watcher(&context, progress);
-    v1::DownloadModelRequest request;
+    Request request;
     request.set_id(id);
     request.set_offset_bytes(bytes.size());
-    auto reader = state_->models->DownloadModel(&context, request);
-    v1::DownloadModelResponse part;
+    auto reader = start(&context, request);
+    Response part;
     while (reader->Read(&part)) {
       if (part.offset_bytes() != bytes.size() || part.data().size() > part.size_bytes() ||
           part.offset_bytes() > part.size_bytes() - part.data().size()) {
         context.TryCancel();
-        return absl::DataLossError("the server sent a part of the model that does not follow");
+        return absl::DataLossError("the server sent a part of the file that does not follow");
       }
       bytes += part.data();
       attempt = 1;
@@ -175,14 +200,33 @@ absl::StatusOr<std::string> RemoteCharacterService::DownloadModel(const std::str
     const absl::Status status = FromGrpcStatus(reader->Finish());
     if (status.ok()) break;
     PLEAT_RETURN_IF_ERROR(progress.Report(0));
-    if (!IsTransient(status) || attempt >= state_->options.max_attempts) return status;
+    if (!IsTransient(status) || attempt >= options.max_attempts) return status;
     if (!BackOff(attempt, progress)) return absl::CancelledError("the download was cancelled");
   }
   if (ToHex(ComputeSha256(bytes)) != id) {
     return absl::DataLossError(
-        absl::StrCat("the downloaded model does not have the SHA-256 ", id, "; download it again"));
+        absl::StrCat("the downloaded file does not have the SHA-256 ", id, "; download it again"));
   }
   return bytes;
+}
+
+absl::StatusOr<std::string> RemoteCharacterService::DownloadModel(const std::string& id,
+                                                                  const Progress& progress) {
+  return state_->Download<v1::DownloadModelRequest, v1::DownloadModelResponse>(
+      id, progress, [this](grpc::ClientContext* context, const v1::DownloadModelRequest& request) {
+        return state_->models->DownloadModel(context, request);
+      });
+}
+
+absl::StatusOr<std::string> RemoteCharacterService::DownloadCompressedSequence(
+    const std::string& id, const Progress& progress) {
+  return state_
+      ->Download<v1::DownloadCompressedSequenceRequest, v1::DownloadCompressedSequenceResponse>(
+          id, progress,
+          [this](grpc::ClientContext* context,
+                 const v1::DownloadCompressedSequenceRequest& request) {
+            return state_->compressed->DownloadCompressedSequence(context, request);
+          });
 }
 
 }  // namespace pleat

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "channel.h"
+#include "pleat/v1/compressed_sequence_service.grpc.pb.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/model_service.grpc.pb.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
@@ -20,6 +22,7 @@ struct RemoteCharacterService::State {
   std::unique_ptr<v1::SequenceService::Stub> sequences;
   std::unique_ptr<v1::JobService::Stub> jobs;
   std::unique_ptr<v1::ModelService::Stub> models;
+  std::unique_ptr<v1::CompressedSequenceService::Stub> compressed;
   std::unique_ptr<v1::PoseService::Stub> poses;
 
   State(std::string server_address, std::shared_ptr<grpc::Channel> server_channel,
@@ -30,6 +33,7 @@ struct RemoteCharacterService::State {
         sequences(v1::SequenceService::NewStub(channel)),
         jobs(v1::JobService::NewStub(channel)),
         models(v1::ModelService::NewStub(channel)),
+        compressed(v1::CompressedSequenceService::NewStub(channel)),
         poses(v1::PoseService::NewStub(channel)) {}
 
   void SetDeadline(grpc::ClientContext* context) const {
@@ -37,6 +41,19 @@ struct RemoteCharacterService::State {
         std::chrono::system_clock::now() +
         std::chrono::milliseconds(static_cast<int64_t>(options.deadline_seconds * 1000)));
   }
+
+  // Uploads and downloads in chunks; both go on where a broken call stopped (remote_transfer.cpp).
+  // start: opens the stream. The bytes of a download have the SHA-256 `id`.
+  template <typename Response>
+  absl::StatusOr<Response> Upload(
+      const std::string& id, const std::string& bytes, const Progress& progress,
+      const std::function<std::unique_ptr<grpc::ClientWriter<v1::UploadSequenceRequest>>(
+          grpc::ClientContext*, Response*)>& start) const;
+  template <typename Request, typename Response>
+  absl::StatusOr<std::string> Download(
+      const std::string& id, const Progress& progress,
+      const std::function<std::unique_ptr<grpc::ClientReader<Response>>(
+          grpc::ClientContext*, const Request&)>& start) const;
 
   // Makes one unary call.
   template <typename Stub, typename Request, typename Response>

@@ -33,7 +33,7 @@ struct Setup {
     const std::string sequence_id = client->UploadSequence(performer.sequence, {})->id;
     const std::string job_id = client->CreateTrainingJob({sequence_id}, options, "")->id;
     const absl::Status watched = client->WatchJob(job_id, [&](const JobInfo& job) {
-      query.model_id = job.model_id;
+      query.model_id = job.result_id;
       return true;
     });
     if (watched.ok()) model = service->AcquireModel(query.model_id).value();

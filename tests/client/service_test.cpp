@@ -35,6 +35,10 @@ class ScriptedService : public CharacterService {
                                             const std::string&) override {
     return absl::UnimplementedError("");
   }
+  absl::StatusOr<JobInfo> CreateCompressionJob(const std::string&,
+                                               const CompressOptions&) override {
+    return absl::UnimplementedError("");
+  }
   absl::StatusOr<JobInfo> GetJob(const std::string&) override {
     return absl::UnimplementedError("");
   }
@@ -56,6 +60,26 @@ class ScriptedService : public CharacterService {
   }
   absl::Status DeleteModel(const std::string&) override { return absl::UnimplementedError(""); }
   absl::StatusOr<std::string> DownloadModel(const std::string&, const Progress&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<CompressedSequenceInfo> UploadCompressedSequence(const std::string&,
+                                                                  const Progress&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<CompressedSequenceInfo> GetCompressedSequence(const std::string&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<std::vector<CompressedSequenceInfo>> ListCompressedSequences() override {
+    return absl::UnimplementedError("");
+  }
+  absl::Status DeleteCompressedSequence(const std::string&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::StatusOr<std::string> DownloadCompressedSequence(const std::string&,
+                                                         const Progress&) override {
+    return absl::UnimplementedError("");
+  }
+  absl::Status DecodeFrames(const std::string&, FrameRange, const DecodedFramesSink&) override {
     return absl::UnimplementedError("");
   }
   absl::Status EvaluateClip(
@@ -98,13 +122,13 @@ TEST(Service, CompletesIdsFromTheirFirstDigits) {
 
 TEST(Service, WatchingEndsWithTheModel) {
   JobInfo done = Job(JobState::kSucceeded, "", 1);
-  done.model_id = "m1";
+  done.result_id = "m1";
   std::map<std::string, double> seconds;
   PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo job,
                              Watch({Job(JobState::kQueued), Job(JobState::kRunning, "rig", .1),
                                     Job(JobState::kRunning, "fit", .5), done},
                                    &seconds));
-  EXPECT_EQ(job.model_id, "m1");
+  EXPECT_EQ(job.result_id, "m1");
   EXPECT_EQ(seconds.count("rig"), 1u);
   EXPECT_EQ(seconds.count("fit"), 1u);
 }

@@ -43,6 +43,11 @@ TEST(SequenceDecoderTest, AnyRangeGivesTheFramesOfTheWhole) {
                 IsOk());
     EXPECT_EQ(next, end);
   }
+  for (const int t : {529, 0, 1, 15, 16, 511, 512, 300, 300, 17}) {
+    EXPECT_EQ(**decoder.DecodeFrame(t), all.frame(t)) << t;
+  }
+  EXPECT_THAT(decoder.DecodeFrame(530), HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
+  EXPECT_THAT(decoder.DecodeFrame(-1), HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
 }
 
 TEST(SequenceDecoderTest, RangesOutsideAndErrorsOfTheSinkAreTold) {

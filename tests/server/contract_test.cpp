@@ -81,17 +81,17 @@ TEST_P(ContractTest, AJobRunsToItsModel) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo created,
                              service_.CreateTrainingJob({id}, options, "swaying"));
   EXPECT_EQ(created.state, JobState::kQueued);
-  EXPECT_EQ(created.options, options);
+  EXPECT_EQ(created.options, JobOptions(options));
   const JobInfo job = WatchToEnd(created.id);
   ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
   EXPECT_EQ(job.fraction, 1);
-  EXPECT_EQ(job.model_name, "swaying");
+  EXPECT_EQ(job.name, "swaying");
   EXPECT_EQ(job.warnings, std::vector<std::string>{"made by a test"});
   EXPECT_EQ(job.sequence_ids, std::vector<std::string>{id});
-  EXPECT_EQ(service_.GetJob(created.id)->model_id, job.model_id);
+  EXPECT_EQ(service_.GetJob(created.id)->result_id, job.result_id);
   EXPECT_EQ(service_.ListJobs()->size(), 1u);
 
-  PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo model, service_.GetModel(job.model_id));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo model, service_.GetModel(job.result_id));
   EXPECT_EQ(model.name, "swaying");
   EXPECT_EQ(model.options.seed, 7u);
   EXPECT_EQ(model.skeleton.joint(1).name, "chest");

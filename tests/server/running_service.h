@@ -52,7 +52,7 @@ class RunningService {
     const std::string job_id = service().CreateTrainingJob({sequence_id}, {}, "")->id;
     std::string model_id;
     const absl::Status status = service().WatchJob(job_id, [&](const JobInfo& info) {
-      model_id = info.model_id;
+      model_id = info.result_id;
       return true;
     });
     return status.ok() ? model_id : status.ToString();

@@ -44,10 +44,10 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
                                }),
               IsOk());
   ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, client->DownloadModel(job.model_id, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, client->DownloadModel(job.result_id, {}));
   EXPECT_TRUE(bytes == EncodeModel(*model)) << "the model bytes differ";
 
-  ClipQuery query{.model_id = job.model_id, .track = performer.truth.track, .bone_scales = {}};
+  ClipQuery query{.model_id = job.result_id, .track = performer.truth.track, .bone_scales = {}};
   query.track.poses.resize(10);
   std::vector<EvaluatedFrame> truth;
   ASSERT_THAT(PoseEvaluator(model).EvaluateClip(query.track, {},

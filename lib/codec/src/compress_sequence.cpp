@@ -22,18 +22,6 @@ absl::Status CheckRange(const char* name, double value, double low, double high)
       absl::StrCat(name, " is ", value, ", allowed are ", low, " to ", high));
 }
 
-absl::Status CheckOptions(const CompressOptions& options) {
-  switch (options.goal) {
-    case CompressionGoal::kMaxError:
-      return CheckRange("max_error_mm", options.max_error_mm, 1e-3, 1e6);
-    case CompressionGoal::kKg:
-      return CheckRange("kg_percent", options.kg_percent, 1e-4, 50);
-    case CompressionGoal::kGrid:
-      return CheckRange("grid_bits", options.grid_bits, 8, 20);
-  }
-  return absl::InvalidArgumentError("unknown goal of compression");
-}
-
 // The extent of all frames.
 struct Extent {
   Eigen::Vector3d low, high;
@@ -204,10 +192,22 @@ absl::Status CheckPromise(const CompressOptions& options, const Measured& measur
 
 }  // namespace
 
+absl::Status ValidateCompressOptions(const CompressOptions& options) {
+  switch (options.goal) {
+    case CompressionGoal::kMaxError:
+      return CheckRange("max_error_mm", options.max_error_mm, 1e-3, 1e6);
+    case CompressionGoal::kKg:
+      return CheckRange("kg_percent", options.kg_percent, 1e-4, 50);
+    case CompressionGoal::kGrid:
+      return CheckRange("grid_bits", options.grid_bits, 8, 20);
+  }
+  return absl::InvalidArgumentError("unknown goal of compression");
+}
+
 absl::StatusOr<std::string> CompressSequence(const MeshSequence& sequence,
                                              const CompressOptions& options,
                                              CompressSummary* summary, const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(CheckOptions(options));
+  PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
   const Extent extent(sequence);
   PLEAT_ASSIGN_OR_RETURN(
       SequenceAnalysis analysis,

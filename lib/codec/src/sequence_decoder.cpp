@@ -61,9 +61,10 @@ struct SequenceDecoder::State {
   std::optional<SurfaceHierarchy> hierarchy;
   std::vector<SegmentPlace> places;
 
-  int loaded = -1;  // which segment is in memory
+  int loaded = -1;        // which segment is in memory
+  int loaded_group = -1;  // which group of it
   MotionSegment segment;
-  std::vector<Eigen::Matrix3Xf> frames;  // of one group
+  std::vector<Eigen::Matrix3Xf> frames;  // of that group
 
   absl::Status ReadShared(SectionReader* reader) {
     PLEAT_ASSIGN_OR_RETURN(std::string_view payload, reader->Next(SectionKind::kHeader, "header"));
@@ -108,7 +109,7 @@ struct SequenceDecoder::State {
 
   absl::Status LoadSegment(int index) {
     if (loaded == index) return absl::OkStatus();
-    loaded = -1;
+    loaded = loaded_group = -1;
     const SegmentPlace& place = places[index];
     ByteReader reader(place.motion);
     PLEAT_ASSIGN_OR_RETURN(const uint16_t num_components, reader.Read<uint16_t>("components"));
@@ -137,8 +138,11 @@ struct SequenceDecoder::State {
     return absl::OkStatus();
   }
 
-  // Fills `frames` with the group.
-  absl::Status DecodeGroup(int index, int group) {
+  // Fills `frames` with the group of the loaded segment.
+  absl::Status LoadGroup(int group) {
+    if (loaded_group == group) return absl::OkStatus();
+    loaded_group = -1;
+    const int index = loaded;
     ByteReader reader(places[index].groups[group]);
     PLEAT_ASSIGN_OR_RETURN(const uint32_t checksum, reader.Read<uint32_t>("checksum of frames"));
     const std::string_view code = places[index].groups[group].substr(reader.offset());
@@ -153,6 +157,7 @@ struct SequenceDecoder::State {
     for (const Eigen::Matrix3Xf& frame : frames) {
       if (!frame.allFinite()) return absl::DataLossError("a decoded position is not finite");
     }
+    loaded_group = group;
     return absl::OkStatus();
   }
 };
@@ -176,6 +181,18 @@ CompressionPromise SequenceDecoder::promise() const {
   if (grid.kind == ResidualKind::kCorrection) promise.max_error_mm = grid.bound_m * 1e3;
   if (grid.kind == ResidualKind::kGrid) promise.grid_step_mm = grid.step_m * 1e3;
   return promise;
+}
+
+uint64_t SequenceDecoder::memory_bytes() const {
+  constexpr uint64_t kSharedBytesPerVertex = 300;  // topology, hierarchy, rest shape
+  uint64_t num_components = 0;
+  for (const SegmentPlace& place : state_->places) {
+    const absl::StatusOr<uint16_t> count = ByteReader(place.motion).Read<uint16_t>("components");
+    num_components = std::max<uint64_t>(num_components, count.value_or(0));
+  }
+  const uint64_t bytes_per_vertex =
+      kSharedBytesPerVertex + (num_components + kGroupFrames) * 3 * sizeof(float);
+  return state_->bytes.size() + bytes_per_vertex * state_->header.num_vertices;
 }
 
 absl::StatusOr<SequenceDecoder> SequenceDecoder::Open(std::string bytes,
@@ -203,7 +220,7 @@ absl::Status SequenceDecoder::Decode(int begin, int end, const FrameSink& sink,
     if (low >= high) continue;
     PLEAT_RETURN_IF_ERROR(state_->LoadSegment(static_cast<int>(s)));
     for (int group = low / kGroupFrames; group * kGroupFrames < high; ++group) {
-      PLEAT_RETURN_IF_ERROR(state_->DecodeGroup(static_cast<int>(s), group));
+      PLEAT_RETURN_IF_ERROR(state_->LoadGroup(group));
       for (int i = 0; i < static_cast<int>(state_->frames.size()); ++i) {
         const int t = place.first_frame + group * kGroupFrames + i;
         if (t < begin || t >= end) continue;
@@ -214,6 +231,19 @@ absl::Status SequenceDecoder::Decode(int begin, int end, const FrameSink& sink,
     }
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<const Eigen::Matrix3Xf*> SequenceDecoder::DecodeFrame(int t) {
+  if (t < 0 || t >= num_frames()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frame ", t, " is not in the sequence, which has ", num_frames()));
+  }
+  int index = 0;
+  while (t >= state_->places[index].first_frame + state_->places[index].num_frames) ++index;
+  PLEAT_RETURN_IF_ERROR(state_->LoadSegment(index));
+  const int in_segment = t - state_->places[index].first_frame;
+  PLEAT_RETURN_IF_ERROR(state_->LoadGroup(in_segment / kGroupFrames));
+  return &state_->frames[in_segment % kGroupFrames];
 }
 
 absl::StatusOr<MeshSequence> SequenceDecoder::DecodeAll(const Progress& progress) {

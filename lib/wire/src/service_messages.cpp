@@ -4,21 +4,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "check_count.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
 #include "pleat/wire/utf8.h"
 
 namespace pleat {
-namespace {
-
-absl::Status CheckCount(int64_t count, absl::string_view what) {
-  if (count >= 0) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(what, " is ", count, ", not a count"));
-}
-
-}  // namespace
-
 v1::Sequence ToProto(const SequenceInfo& info) {
   v1::Sequence message;
   message.set_id(info.id);
@@ -86,8 +78,12 @@ v1::Job ToProto(const JobInfo& info) {
   message.set_id(info.id);
   message.set_state(ToProto(info.state));
   for (const std::string& id : info.sequence_ids) message.add_sequence_ids(id);
-  *message.mutable_options() = ToProto(info.options);
-  message.set_model_name(ToValidUtf8(info.model_name));
+  if (const auto* training = std::get_if<TrainOptions>(&info.options)) {
+    *message.mutable_training() = ToProto(*training);
+  } else {
+    *message.mutable_compression() = ToProto(std::get<CompressOptions>(info.options));
+  }
+  message.set_name(ToValidUtf8(info.name));
   message.set_stage(ToValidUtf8(info.stage));
   message.set_fraction(info.fraction);
   if (info.objective) message.set_objective(*info.objective);
@@ -97,7 +93,7 @@ v1::Job ToProto(const JobInfo& info) {
     message.mutable_error()->set_code(static_cast<int>(info.error.code()));
     message.mutable_error()->set_message(ToValidUtf8(std::string(info.error.message())));
   }
-  message.set_model_id(info.model_id);
+  message.set_result_id(info.result_id);
   return message;
 }
 
@@ -116,8 +112,12 @@ absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
   for (const std::string& id : info.sequence_ids) {
     PLEAT_RETURN_IF_ERROR(CheckContentId(id, "job.sequence_ids"));
   }
-  PLEAT_ASSIGN_OR_RETURN(info.options, FromProto(message.options()));
-  info.model_name = message.model_name();
+  if (message.has_compression()) {
+    PLEAT_ASSIGN_OR_RETURN(info.options, FromProto(message.compression()));
+  } else {
+    PLEAT_ASSIGN_OR_RETURN(info.options, FromProto(message.training()));
+  }
+  info.name = message.name();
   info.stage = message.stage();
   info.fraction = message.fraction();
   if (message.has_objective()) info.objective = message.objective();
@@ -131,9 +131,9 @@ absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
         absl::Status(known ? static_cast<absl::StatusCode>(code) : absl::StatusCode::kUnknown,
                      message.error().message());
   }
-  info.model_id = message.model_id();
-  if (!info.model_id.empty()) {
-    PLEAT_RETURN_IF_ERROR(CheckContentId(info.model_id, "job.model_id"));
+  info.result_id = message.result_id();
+  if (!info.result_id.empty()) {
+    PLEAT_RETURN_IF_ERROR(CheckContentId(info.result_id, "job.result_id"));
   }
   return info;
 }

@@ -25,6 +25,9 @@ absl::StatusOr<Info> Decode(const std::string& bytes, absl::string_view what) {
 std::string EncodeRecord(const SequenceInfo& info) { return ToProto(info).SerializeAsString(); }
 std::string EncodeRecord(const JobInfo& info) { return ToProto(info).SerializeAsString(); }
 std::string EncodeRecord(const ModelInfo& info) { return ToProto(info).SerializeAsString(); }
+std::string EncodeRecord(const CompressedSequenceInfo& info) {
+  return ToProto(info).SerializeAsString();
+}
 
 absl::StatusOr<SequenceInfo> DecodeSequenceRecord(const std::string& bytes) {
   return Decode<SequenceInfo, v1::Sequence>(bytes, "sequence");
@@ -34,6 +37,9 @@ absl::StatusOr<JobInfo> DecodeJobRecord(const std::string& bytes) {
 }
 absl::StatusOr<ModelInfo> DecodeModelRecord(const std::string& bytes) {
   return Decode<ModelInfo, v1::Model>(bytes, "model");
+}
+absl::StatusOr<CompressedSequenceInfo> DecodeCompressedSequenceRecord(const std::string& bytes) {
+  return Decode<CompressedSequenceInfo, v1::CompressedSequence>(bytes, "compressed sequence");
 }
 
 }  // namespace pleat

@@ -66,6 +66,7 @@ class GrpcServerImpl final : public GrpcServer {
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
     services_.push_back(MakeModelService(&context_));
+    services_.push_back(MakeCompressedSequenceService(&context_));
     services_.push_back(MakePoseService(&context_));
   }
   ~GrpcServerImpl() override { Shutdown(0); }

@@ -1,5 +1,6 @@
 #include "services.h"
 
+#include "pleat/v1/compressed_sequence_service.grpc.pb.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/model_service.grpc.pb.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
@@ -40,6 +41,7 @@ class JobServiceImpl final : public v1::JobService::CallbackService {
  public:
   explicit JobServiceImpl(HandlerContext* context) : context_(context) {}
   PLEAT_UNARY(CreateTrainingJob, storage_executor)
+  PLEAT_UNARY(CreateCompressionJob, storage_executor)
   PLEAT_UNARY(GetJob, storage_executor)
   PLEAT_UNARY(ListJobs, storage_executor)
   PLEAT_UNARY(CancelJob, storage_executor)
@@ -61,6 +63,29 @@ class ModelServiceImpl final : public v1::ModelService::CallbackService {
   grpc::ServerWriteReactor<v1::DownloadModelResponse>* DownloadModel(
       grpc::CallbackServerContext*, const v1::DownloadModelRequest* request) override {
     return pleat::DownloadModel(context_, *request);
+  }
+
+ private:
+  HandlerContext* context_;
+};
+
+class CompressedSequenceServiceImpl final : public v1::CompressedSequenceService::CallbackService {
+ public:
+  explicit CompressedSequenceServiceImpl(HandlerContext* context) : context_(context) {}
+  PLEAT_UNARY(GetCompressedSequence, storage_executor)
+  PLEAT_UNARY(ListCompressedSequences, storage_executor)
+  PLEAT_UNARY(DeleteCompressedSequence, storage_executor)
+  grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadCompressedSequence(
+      grpc::CallbackServerContext*, v1::UploadCompressedSequenceResponse* response) override {
+    return pleat::UploadCompressedSequence(context_, response);
+  }
+  grpc::ServerWriteReactor<v1::DownloadCompressedSequenceResponse>* DownloadCompressedSequence(
+      grpc::CallbackServerContext*, const v1::DownloadCompressedSequenceRequest* request) override {
+    return pleat::DownloadCompressedSequence(context_, *request);
+  }
+  grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
+      grpc::CallbackServerContext*, const v1::DecodeFramesRequest* request) override {
+    return pleat::DecodeFrames(context_, *request);
   }
 
  private:
@@ -95,6 +120,9 @@ std::unique_ptr<grpc::Service> MakeJobService(HandlerContext* context) {
 }
 std::unique_ptr<grpc::Service> MakeModelService(HandlerContext* context) {
   return std::make_unique<ModelServiceImpl>(context);
+}
+std::unique_ptr<grpc::Service> MakeCompressedSequenceService(HandlerContext* context) {
+  return std::make_unique<CompressedSequenceServiceImpl>(context);
 }
 std::unique_ptr<grpc::Service> MakePoseService(HandlerContext* context) {
   return std::make_unique<PoseServiceImpl>(context);

@@ -13,6 +13,7 @@ namespace pleat {
 std::unique_ptr<grpc::Service> MakeSequenceService(HandlerContext* context);
 std::unique_ptr<grpc::Service> MakeJobService(HandlerContext* context);
 std::unique_ptr<grpc::Service> MakeModelService(HandlerContext* context);
+std::unique_ptr<grpc::Service> MakeCompressedSequenceService(HandlerContext* context);
 std::unique_ptr<grpc::Service> MakePoseService(HandlerContext* context);
 
 }  // namespace pleat

@@ -3,6 +3,7 @@
 
 #include "absl/status/status.h"
 #include "handler_context.h"
+#include "pleat/v1/compressed_sequence_service.pb.h"
 #include "pleat/v1/job_service.pb.h"
 #include "pleat/v1/model_service.pb.h"
 #include "pleat/v1/pose_service.pb.h"
@@ -21,6 +22,9 @@ absl::Status DeleteSequence(HandlerContext& context, const v1::DeleteSequenceReq
 
 absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTrainingJobRequest& request,
                                v1::CreateTrainingJobResponse* response);
+absl::Status CreateCompressionJob(HandlerContext& context,
+                                  const v1::CreateCompressionJobRequest& request,
+                                  v1::CreateCompressionJobResponse* response);
 absl::Status GetJob(HandlerContext& context, const v1::GetJobRequest& request,
                     v1::GetJobResponse* response);
 absl::Status ListJobs(HandlerContext& context, const v1::ListJobsRequest& request,
@@ -34,6 +38,16 @@ absl::Status ListModels(HandlerContext& context, const v1::ListModelsRequest& re
                         v1::ListModelsResponse* response);
 absl::Status DeleteModel(HandlerContext& context, const v1::DeleteModelRequest& request,
                          v1::DeleteModelResponse* response);
+
+absl::Status GetCompressedSequence(HandlerContext& context,
+                                   const v1::GetCompressedSequenceRequest& request,
+                                   v1::GetCompressedSequenceResponse* response);
+absl::Status ListCompressedSequences(HandlerContext& context,
+                                     const v1::ListCompressedSequencesRequest& request,
+                                     v1::ListCompressedSequencesResponse* response);
+absl::Status DeleteCompressedSequence(HandlerContext& context,
+                                      const v1::DeleteCompressedSequenceRequest& request,
+                                      v1::DeleteCompressedSequenceResponse* response);
 
 absl::Status GetStreamHeader(HandlerContext& context, const v1::GetStreamHeaderRequest& request,
                              v1::GetStreamHeaderResponse* response);

@@ -153,7 +153,7 @@ void JobManager::RunOne(JobStateMachine* job) {
     outcome = absl::InternalError(absl::StrCat("the job ended with an exception: ", error.what()));
   }
   if (outcome.ok()) {
-    job->Succeed(outcome->model_id, outcome->warnings);
+    job->Succeed(outcome->result_id, outcome->warnings);
   } else if (outcome.status().code() != absl::StatusCode::kCancelled) {
     job->Fail(outcome.status());
   } else if (job->cancel_requested()) {

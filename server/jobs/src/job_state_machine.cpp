@@ -61,12 +61,12 @@ void JobStateMachine::Report(const ProgressUpdate& update) {
   Changed();
 }
 
-bool JobStateMachine::Succeed(const std::string& model_id,
+bool JobStateMachine::Succeed(const std::string& result_id,
                               const std::vector<std::string>& warnings) {
   {
     std::lock_guard lock(mutex_);
     if (state_.info.state != JobState::kRunning) return false;
-    state_.info.model_id = model_id;
+    state_.info.result_id = result_id;
     state_.info.fraction = 1;
     state_.info.warnings.insert(state_.info.warnings.end(), warnings.begin(), warnings.end());
   }

@@ -19,6 +19,8 @@ const char* KindName(EntryKind kind) {
       return "sequence";
     case EntryKind::kModel:
       return "model";
+    case EntryKind::kCompressedSequence:
+      return "compressed sequence";
     case EntryKind::kJob:
       return "job";
   }

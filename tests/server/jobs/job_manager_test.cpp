@@ -60,7 +60,7 @@ JobInfo WaitForEnd(JobManager& jobs, const std::string& id) {
 RunJob Succeeds() {
   return [](const JobInfo& info, const Progress& progress) -> absl::StatusOr<JobOutcome> {
     if (absl::Status status = progress.Report(.5); !status.ok()) return status;
-    return JobOutcome{"model of " + info.model_name, {"careful"}};
+    return JobOutcome{"model of " + info.name, {"careful"}};
   };
 }
 
@@ -75,7 +75,7 @@ RunJob NeverEnds(std::atomic<int>* running) {
 
 JobInfo Named(const std::string& name) {
   JobInfo info;
-  info.model_name = name;
+  info.name = name;
   return info;
 }
 
@@ -85,7 +85,7 @@ TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
   JobManager jobs(
       {},
       [&](const JobInfo& info, const Progress& progress) {
-        order.push_back(info.model_name);
+        order.push_back(info.name);
         return Succeeds()(info, progress);
       },
       journal.save());
@@ -96,7 +96,7 @@ TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
   jobs.Start();
   for (const std::string& id : ids) EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kSucceeded);
   EXPECT_EQ(order, (std::vector<std::string>{"a", "b", "c"}));
-  EXPECT_EQ(jobs.List()[1].model_id, "model of b");
+  EXPECT_EQ(jobs.List()[1].result_id, "model of b");
   jobs.Shutdown();
   EXPECT_EQ(journal.at(ids[0]).info.state, JobState::kSucceeded);
   EXPECT_THAT(journal.at(ids[0]).info.warnings, testing::ElementsAre("careful"));
@@ -143,9 +143,9 @@ TEST(JobManagerTest, FailuresAndExceptionsEndOneJobOnly) {
   JobManager jobs(
       {},
       [&](const JobInfo& info, const Progress& progress) -> absl::StatusOr<JobOutcome> {
-        if (info.model_name == "throws") throw std::runtime_error("boom");
-        if (info.model_name == "memory") throw std::bad_alloc();
-        if (info.model_name == "fails") return absl::FailedPreconditionError("no rig fits");
+        if (info.name == "throws") throw std::runtime_error("boom");
+        if (info.name == "memory") throw std::bad_alloc();
+        if (info.name == "fails") return absl::FailedPreconditionError("no rig fits");
         return Succeeds()(info, progress);
       },
       journal.save());

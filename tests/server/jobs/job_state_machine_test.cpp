@@ -31,7 +31,7 @@ TEST(JobStateMachineTest, GoesTheDocumentedWay) {
   ASSERT_TRUE(job.Succeed("model", {"look here"}));
   const JobInfo info = job.snapshot().info;
   EXPECT_EQ(info.state, JobState::kSucceeded);
-  EXPECT_EQ(info.model_id, "model");
+  EXPECT_EQ(info.result_id, "model");
   EXPECT_EQ(info.fraction, 1);
   EXPECT_THAT(info.warnings, testing::ElementsAre("look here"));
 }

@@ -41,7 +41,7 @@ class LocalCharacterServiceTest : public testing::Test {
   }
   std::string TrainModel(const MeshSequence& sequence, const std::string& name = "") {
     const std::string id = service_->UploadSequence(sequence, {})->id;
-    return RunToEnd(service_->CreateTrainingJob({id}, {}, name)->id).model_id;
+    return RunToEnd(service_->CreateTrainingJob({id}, {}, name)->id).result_id;
   }
 
   TemporaryFolder folder_;
@@ -55,15 +55,15 @@ TEST_F(LocalCharacterServiceTest, EverythingSurvivesARestart) {
   const std::string sequence_id = service_->UploadSequence(tube, {})->id;
   const JobInfo job = RunToEnd(service_->CreateTrainingJob({sequence_id}, {}, "mine")->id);
   ASSERT_EQ(job.state, JobState::kSucceeded);
-  const std::string bytes = service_->DownloadModel(job.model_id, {}).value();
+  const std::string bytes = service_->DownloadModel(job.result_id, {}).value();
   Open();
   EXPECT_EQ(service_->GetSequence(sequence_id)->name, "tube");
   EXPECT_EQ(service_->GetSequence(sequence_id)->num_frames, 5);
   EXPECT_EQ(service_->GetJob(job.id)->state, JobState::kSucceeded);
-  EXPECT_EQ(service_->GetJob(job.id)->model_id, job.model_id);
-  EXPECT_EQ(service_->GetModel(job.model_id)->name, "mine");
-  EXPECT_EQ(service_->DownloadModel(job.model_id, {}).value(), bytes);
-  EXPECT_THAT(service_->AcquireModel(job.model_id), IsOk());
+  EXPECT_EQ(service_->GetJob(job.id)->result_id, job.result_id);
+  EXPECT_EQ(service_->GetModel(job.result_id)->name, "mine");
+  EXPECT_EQ(service_->DownloadModel(job.result_id, {}).value(), bytes);
+  EXPECT_THAT(service_->AcquireModel(job.result_id), IsOk());
 }
 
 TEST_F(LocalCharacterServiceTest, AJobThatWasRunningGoesOnAfterARestart) {
@@ -77,6 +77,52 @@ TEST_F(LocalCharacterServiceTest, AJobThatWasRunningGoesOnAfterARestart) {
   Open();
   EXPECT_EQ(RunToEnd(running).state, JobState::kSucceeded);
   EXPECT_EQ(RunToEnd(waiting).state, JobState::kSucceeded);
+}
+
+TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays) {
+  Open();
+  const MeshSequence large = MakeSwayingTube(120, "large", 60, 40);
+  const CompressOptions options{.max_error_mm = .2};
+  const std::string sequence_id = service_->UploadSequence(large, {})->id;
+  const std::string job = service_->CreateCompressionJob(sequence_id, options)->id;
+  while (service_->GetJob(job)->stage != "encode") {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  Open();
+  const JobInfo done = RunToEnd(job);
+  ASSERT_EQ(done.state, JobState::kSucceeded) << done.error;
+  EXPECT_EQ(std::get<CompressOptions>(done.options).max_error_mm, .2);
+  EXPECT_EQ(done.name, "large");
+  const std::string bytes = service_->DownloadCompressedSequence(done.result_id, {}).value();
+  EXPECT_TRUE(bytes == CompressSequence(large, options, nullptr).value());
+  Open();
+  EXPECT_EQ(service_->GetJob(job)->result_id, done.result_id);
+  EXPECT_TRUE(service_->DownloadCompressedSequence(done.result_id, {}).value() == bytes);
+  EXPECT_EQ(service_->GetCompressedSequence(done.result_id)->record->sequence_id, sequence_id);
+  EXPECT_TRUE(service_->missing_files().empty());
+}
+
+TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
+  Open();
+  const std::string file = CompressSequence(MakeSwayingTube(20), {}, nullptr).value();
+  const std::string id = service_->UploadCompressedSequence(file, {})->id;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto session, service_->OpenDecode(id, {}));
+  const uint64_t one = service_->decoder_bytes();
+  EXPECT_GT(one, file.size() + 96 * 12 * 16);
+  session.reset();
+  EXPECT_EQ(service_->decoder_bytes(), 0u);
+
+  service_.reset();
+  service_ =
+      LocalCharacterService::Open(
+          {.data_dir = folder_.path(), .decode_bytes = 5 * one / 2, .train = trainer_.function()})
+          .value();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto first, service_->OpenDecode(id, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto second, service_->OpenDecode(id, {5, 9}));
+  EXPECT_THAT(service_->OpenDecode(id, {}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("--decode-bytes")));
+  second.reset();
+  EXPECT_THAT(service_->OpenDecode(id, {}), IsOk());
 }
 
 TEST_F(LocalCharacterServiceTest, TheModelHasTheNameOfTheJobAndTheSameBytesEachTime) {

@@ -60,6 +60,8 @@ class RemoteCharacterService final : public CharacterService {
   absl::StatusOr<JobInfo> CreateTrainingJob(const std::vector<std::string>& sequence_ids,
                                             const TrainOptions& options,
                                             const std::string& model_name) override;
+  absl::StatusOr<JobInfo> CreateCompressionJob(const std::string& sequence_id,
+                                               const CompressOptions& options) override;
   absl::StatusOr<JobInfo> GetJob(const std::string& id) override;
   absl::StatusOr<std::vector<JobInfo>> ListJobs() override;
   absl::Status CancelJob(const std::string& id) override;
@@ -74,6 +76,17 @@ class RemoteCharacterService final : public CharacterService {
   // The bytes have the SHA-256 `id`.
   absl::StatusOr<std::string> DownloadModel(const std::string& id,
                                             const Progress& progress) override;
+
+  absl::StatusOr<CompressedSequenceInfo> UploadCompressedSequence(
+      const std::string& file, const Progress& progress) override;
+  absl::StatusOr<CompressedSequenceInfo> GetCompressedSequence(const std::string& id) override;
+  absl::StatusOr<std::vector<CompressedSequenceInfo>> ListCompressedSequences() override;
+  absl::Status DeleteCompressedSequence(const std::string& id) override;
+  // The bytes have the SHA-256 `id`.
+  absl::StatusOr<std::string> DownloadCompressedSequence(const std::string& id,
+                                                         const Progress& progress) override;
+  absl::Status DecodeFrames(const std::string& id, FrameRange range,
+                            const DecodedFramesSink& sink) override;
 
   // Frames are decoded from RemoteOptions::stream, so positions differ from a local evaluation by
   // up to half a step of its grid.

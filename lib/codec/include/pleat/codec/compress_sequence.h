@@ -26,7 +26,12 @@ struct CompressOptions {
   // from another first corner, which saves about 1.5 bytes each. Vertices always keep their order.
   bool keep_face_order = true;
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
+
+  friend bool operator==(const CompressOptions&, const CompressOptions&) = default;
 };
+
+// kInvalidArgument names an option that is out of range.
+absl::Status ValidateCompressOptions(const CompressOptions& options);
 
 // Measured on the decoded file.
 struct CompressSummary {

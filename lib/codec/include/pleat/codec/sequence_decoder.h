@@ -51,6 +51,10 @@ class SequenceDecoder {
   // Of the file: connectivity, face order and appearance.
   uint64_t topology_bytes() const;
 
+  // Memory that this decoder takes at most: the file, the fields of its largest segment, one group
+  // of frames, and an estimate of what all frames share.
+  uint64_t memory_bytes() const;
+
   using FrameSink = std::function<absl::Status(int t, const Eigen::Matrix3Xf& positions)>;
 
   // Gives the frames [begin, end) to `sink`, in order (3 x V, metres). Work is proportional to the
@@ -59,6 +63,10 @@ class SequenceDecoder {
   // kInvalidArgument when the range is not inside the sequence; kCancelled; or the sink's error.
   // Not for two threads at once.
   absl::Status Decode(int begin, int end, const FrameSink& sink, const Progress& progress = {});
+
+  // Frame t alone (3 x V, metres), as Decode gives it; valid until the next call. Frames in order
+  // cost the same as by Decode: the segment and the group decoded last are kept.
+  absl::StatusOr<const Eigen::Matrix3Xf*> DecodeFrame(int t);
 
   // All frames.
   absl::StatusOr<MeshSequence> DecodeAll(const Progress& progress = {});

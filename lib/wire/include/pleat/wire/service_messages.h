@@ -1,8 +1,10 @@
-// Sequences, jobs and models on the wire. FromProto: kInvalidArgument names the field.
+// Sequences, jobs, models and compressed sequences on the wire. FromProto: kInvalidArgument names
+// the field.
 #pragma once
 
 #include "absl/status/statusor.h"
 #include "pleat/character/character_service.h"
+#include "pleat/v1/compressed_sequence_service.pb.h"
 #include "pleat/v1/job_service.pb.h"
 #include "pleat/v1/model_service.pb.h"
 #include "pleat/v1/sequence_service.pb.h"
@@ -20,5 +22,12 @@ absl::StatusOr<JobInfo> FromProto(const v1::Job& message);
 
 v1::Model ToProto(const ModelInfo& info);
 absl::StatusOr<ModelInfo> FromProto(const v1::Model& message);
+
+v1::CompressOptions ToProto(const CompressOptions& options);
+// kInvalidArgument when no goal is set or a number is out of range.
+absl::StatusOr<CompressOptions> FromProto(const v1::CompressOptions& message);
+
+v1::CompressedSequence ToProto(const CompressedSequenceInfo& info);
+absl::StatusOr<CompressedSequenceInfo> FromProto(const v1::CompressedSequence& message);
 
 }  // namespace pleat

@@ -12,10 +12,12 @@ namespace pleat {
 std::string EncodeRecord(const SequenceInfo& info);
 std::string EncodeRecord(const JobInfo& info);
 std::string EncodeRecord(const ModelInfo& info);
+std::string EncodeRecord(const CompressedSequenceInfo& info);
 
 // kDataLoss when the bytes are no such record.
 absl::StatusOr<SequenceInfo> DecodeSequenceRecord(const std::string& bytes);
 absl::StatusOr<JobInfo> DecodeJobRecord(const std::string& bytes);
 absl::StatusOr<ModelInfo> DecodeModelRecord(const std::string& bytes);
+absl::StatusOr<CompressedSequenceInfo> DecodeCompressedSequenceRecord(const std::string& bytes);
 
 }  // namespace pleat

@@ -1,4 +1,4 @@
-// Queue and worker pool of training jobs.
+// Queue and worker pool of jobs.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@
 namespace pleat {
 
 struct JobOutcome {
-  std::string model_id;
+  std::string result_id;  // of the model or of the compressed sequence
   std::vector<std::string> warnings;
 };
 

@@ -45,7 +45,7 @@ class JobStateMachine {
   // Each returns false, and does nothing, when the job is not in the state that it starts from.
   bool Start();
   void Report(const ProgressUpdate& update);  // ignored unless running; fractions never fall
-  bool Succeed(const std::string& model_id, const std::vector<std::string>& warnings);
+  bool Succeed(const std::string& result_id, const std::vector<std::string>& warnings);
   bool Fail(const absl::Status& error);
   bool Cancelled();
   bool Requeue();  // the attempt that ends here does not count

@@ -11,6 +11,8 @@
 #include "pleat/character/character_service.h"
 #include "pleat/character/train_character.h"
 #include "pleat/jobs/job_manager.h"
+#include "pleat/service/decode_session.h"
+#include "pleat/service/memory_budget.h"
 #include "pleat/service/pose_session.h"
 #include "pleat/store/store.h"
 
@@ -22,7 +24,7 @@ using TrainFunction = std::function<absl::StatusOr<std::shared_ptr<const Charact
 
 // What is refused, with a status that names limit and number.
 struct ServiceLimits {
-  uint64_t max_upload_bytes = uint64_t{4} << 30;  // of one sequence file
+  uint64_t max_upload_bytes = uint64_t{4} << 30;  // of one sequence or compressed sequence file
   int64_t max_vertices = 1'000'000;               // of one frame
   int64_t max_frames = 20'000;                    // of one sequence or clip
   int max_clips = 64;                             // of one training job
@@ -31,9 +33,10 @@ struct ServiceLimits {
 struct LocalServiceOptions {
   std::string data_dir{};
   uint64_t reserve_bytes = uint64_t{256} << 20;  // kept free on the disk
-  int num_workers = 1;                           // training jobs at the same time
+  int num_workers = 1;                           // jobs at the same time
   int num_threads_per_job = 0;                   // 0 = one per core
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
+  uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences
   ServiceLimits limits{};
   TrainFunction train = TrainCharacter;
 };
@@ -59,6 +62,8 @@ class LocalCharacterService final : public CharacterService {
   absl::StatusOr<JobInfo> CreateTrainingJob(const std::vector<std::string>& sequence_ids,
                                             const TrainOptions& options,
                                             const std::string& model_name) override;
+  absl::StatusOr<JobInfo> CreateCompressionJob(const std::string& sequence_id,
+                                               const CompressOptions& options) override;
   absl::StatusOr<JobInfo> GetJob(const std::string& id) override;
   absl::StatusOr<std::vector<JobInfo>> ListJobs() override;
   absl::Status CancelJob(const std::string& id) override;
@@ -70,6 +75,16 @@ class LocalCharacterService final : public CharacterService {
   absl::Status DeleteModel(const std::string& id) override;
   absl::StatusOr<std::string> DownloadModel(const std::string& id,
                                             const Progress& progress) override;
+
+  absl::StatusOr<CompressedSequenceInfo> UploadCompressedSequence(
+      const std::string& file, const Progress& progress) override;
+  absl::StatusOr<CompressedSequenceInfo> GetCompressedSequence(const std::string& id) override;
+  absl::StatusOr<std::vector<CompressedSequenceInfo>> ListCompressedSequences() override;
+  absl::Status DeleteCompressedSequence(const std::string& id) override;
+  absl::StatusOr<std::string> DownloadCompressedSequence(const std::string& id,
+                                                         const Progress& progress) override;
+  absl::Status DecodeFrames(const std::string& id, FrameRange range,
+                            const DecodedFramesSink& sink) override;
 
   absl::Status EvaluateClip(
       const ClipQuery& query,
@@ -83,10 +98,13 @@ class LocalCharacterService final : public CharacterService {
                                                       uint64_t offset_bytes);
   // Checks the complete upload and stores it. Takes seconds for large sequences.
   absl::StatusOr<SequenceInfo> FinishUpload(Upload* upload);
+  // The same for an upload of a compressed sequence.
+  absl::StatusOr<CompressedSequenceInfo> FinishCompressedUpload(Upload* upload);
   // The model, pinned in the cache as long as the handle lives.
   absl::StatusOr<std::shared_ptr<const CharacterModel>> AcquireModel(const std::string& id);
-  absl::StatusOr<std::string> ReadModelBytes(const std::string& id, uint64_t offset,
-                                             uint64_t count);
+  // `count` bytes (fewer at the end) of the file of a model, sequence or compressed sequence.
+  absl::StatusOr<std::string> ReadStoredBytes(EntryKind kind, const std::string& id,
+                                              uint64_t offset, uint64_t count);
   absl::StatusOr<std::shared_ptr<JobStateMachine>> FindJob(const std::string& id);
   absl::StatusOr<std::unique_ptr<PoseSession>> OpenSession(const std::string& model_id,
                                                            PoseSessionOptions options);
@@ -94,8 +112,13 @@ class LocalCharacterService final : public CharacterService {
                                                         PoseTrack track,
                                                         PoseSessionOptions options);
 
+  // kResourceExhausted when all decoders together would take more than decode_bytes.
+  absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,
+                                                            FrameRange range);
+
   const ServiceLimits& limits() const { return options_.limits; }
   ByteCacheStats cache_stats() const { return cache_.stats(); }
+  uint64_t decoder_bytes() const { return decode_memory_.used_bytes(); }
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
 
   // Stops the workers; running jobs are queued for the next process. Watchers end.
@@ -107,17 +130,24 @@ class LocalCharacterService final : public CharacterService {
   absl::Status RestoreJobs();
   absl::Status CheckClip(const PoseTrack& track) const;
   absl::Status CheckSequence(const MeshSequence& sequence) const;
-  absl::StatusOr<SequenceInfo> StoreSequence(const MeshSequence& sequence, const std::string& id,
-                                             uint64_t size_bytes,
-                                             const std::function<absl::Status()>& place_file);
   absl::StatusOr<MeshSequence> LoadSequence(const std::string& id);
-  absl::StatusOr<JobOutcome> Train(const JobInfo& job, const Progress& progress);
-  absl::StatusOr<std::string> StoreModel(const CharacterModel& model);
+  absl::StatusOr<SequenceDecoder> OpenDecoder(std::string bytes) const;
+  absl::StatusOr<JobOutcome> Run(const JobInfo& job, const Progress& progress);
+  absl::StatusOr<JobOutcome> Train(const JobInfo& job, const TrainOptions& options,
+                                   const Progress& progress);
+  absl::StatusOr<JobOutcome> Compress(const JobInfo& job, CompressOptions options,
+                                      const Progress& progress);
+  // `place_file` puts the file into the blob store.
+  absl::Status AddEntry(EntryKind kind, const std::string& id, std::string record,
+                        const std::function<absl::Status()>& place_file);
+  absl::StatusOr<std::string> Download(EntryKind kind, const std::string& id, uint64_t size_bytes,
+                                       const Progress& progress);
   absl::Status DeleteEntry(EntryKind kind, const std::string& id);
 
   const LocalServiceOptions options_;
   std::unique_ptr<Store> store_;
   ByteCache<CharacterModel> cache_;
+  MemoryBudget decode_memory_;
   std::mutex content_mutex_;  // file and row appear and go together
   std::unique_ptr<JobManager> jobs_;
 };

@@ -13,7 +13,7 @@ struct sqlite3;
 
 namespace pleat {
 
-enum class EntryKind { kSequence, kModel, kJob };
+enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob };
 
 struct CatalogueEntry {
   std::string id;

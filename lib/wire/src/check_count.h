@@ -1,0 +1,16 @@
+// Counts on the wire are signed.
+#pragma once
+
+#include <cstdint>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+
+namespace pleat {
+
+inline absl::Status CheckCount(int64_t count, absl::string_view what) {
+  if (count >= 0) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(what, " is ", count, ", not a count"));
+}
+
+}  // namespace pleat

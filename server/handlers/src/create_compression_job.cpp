@@ -1,0 +1,19 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/service_messages.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status CreateCompressionJob(HandlerContext& context,
+                                  const v1::CreateCompressionJobRequest& request,
+                                  v1::CreateCompressionJobResponse* response) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.sequence_id(), "sequence_id"));
+  PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, FromProto(request.options()));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo info,
+                         context.service->CreateCompressionJob(request.sequence_id(), options));
+  *response->mutable_job() = ToProto(info);
+  return absl::OkStatus();
+}
+
+}  // namespace pleat

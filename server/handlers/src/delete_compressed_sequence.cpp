@@ -1,0 +1,14 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status DeleteCompressedSequence(HandlerContext& context,
+                                      const v1::DeleteCompressedSequenceRequest& request,
+                                      v1::DeleteCompressedSequenceResponse*) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
+  return context.service->DeleteCompressedSequence(request.id());
+}
+
+}  // namespace pleat

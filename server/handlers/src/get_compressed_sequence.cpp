@@ -1,0 +1,18 @@
+#include "pleat/base/status.h"
+#include "pleat/wire/service_messages.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "unary_handlers.h"
+
+namespace pleat {
+
+absl::Status GetCompressedSequence(HandlerContext& context,
+                                   const v1::GetCompressedSequenceRequest& request,
+                                   v1::GetCompressedSequenceResponse* response) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
+  PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info,
+                         context.service->GetCompressedSequence(request.id()));
+  *response->mutable_compressed_sequence() = ToProto(info);
+  return absl::OkStatus();
+}
+
+}  // namespace pleat

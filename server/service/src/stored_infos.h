@@ -1,0 +1,51 @@
+// Catalogue rows as descriptions of what they stand for.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/status.h"
+#include "pleat/store/catalogue.h"
+#include "pleat/wire/stored_records.h"
+
+namespace pleat {
+
+template <typename Info>
+struct StoredKind;
+template <>
+struct StoredKind<SequenceInfo> {
+  static constexpr EntryKind kind = EntryKind::kSequence;
+  static constexpr auto decode = &DecodeSequenceRecord;
+};
+template <>
+struct StoredKind<ModelInfo> {
+  static constexpr EntryKind kind = EntryKind::kModel;
+  static constexpr auto decode = &DecodeModelRecord;
+};
+template <>
+struct StoredKind<CompressedSequenceInfo> {
+  static constexpr EntryKind kind = EntryKind::kCompressedSequence;
+  static constexpr auto decode = &DecodeCompressedSequenceRecord;
+};
+
+template <typename Info>
+absl::StatusOr<Info> GetStored(Catalogue& catalogue, const std::string& id) {
+  PLEAT_ASSIGN_OR_RETURN(const CatalogueEntry entry, catalogue.Get(StoredKind<Info>::kind, id));
+  return StoredKind<Info>::decode(entry.record);
+}
+
+template <typename Info>
+absl::StatusOr<std::vector<Info>> ListStored(Catalogue& catalogue) {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
+                         catalogue.List(StoredKind<Info>::kind));
+  std::vector<Info> infos;
+  for (const CatalogueEntry& entry : entries) {
+    PLEAT_ASSIGN_OR_RETURN(Info info, StoredKind<Info>::decode(entry.record));
+    infos.push_back(std::move(info));
+  }
+  return infos;
+}
+
+}  // namespace pleat
