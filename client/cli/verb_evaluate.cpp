@@ -106,7 +106,7 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
   verb->add_option("--report", options->report, "JSON report (pleat.evaluate/1)");
   verb->add_option("--measure", options->evaluate.learners,
                    "learners to measure beside the chosen one")
-      ->check(CLI::IsMember({"regional", "gp", "sgplvm"}))
+      ->check(CLI::IsMember(LearnerNames()))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
   verb->add_option("--threads", options->evaluate.resources.num_threads, "0 = one per core")

@@ -70,10 +70,13 @@ TEST(TrainCharacterTest, FindsTheJointsOfTheTruth) {
   EXPECT_GT(found.rest_position(kLeftHand).x(), found.rest_position(kRightHand).x());
 }
 
-TEST(TrainCharacterTest, SameBytesForAnyThreadCount) {
-  TrainOptions options = FastTrainOptions();
-  options.resolution_percent = 10;
-  options.learner = "auto";
+class TrainThreadsTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(TrainThreadsTest, SameBytesForAnyThreadCount) {
+  TrainOptions options;
+  options.resolution_percent = 20;
+  options.learner = GetParam();
+  options.iterations = 30;
   std::string first;
   for (const int num_threads : {1, 2, 7}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(
@@ -83,6 +86,53 @@ TEST(TrainCharacterTest, SameBytesForAnyThreadCount) {
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first) << num_threads << " threads give another model";
   }
+}
+
+INSTANTIATE_TEST_SUITE_P(Learners, TrainThreadsTest,
+                         ::testing::Values("auto", "regional", "gp", "sgplvm", "back-constrained",
+                                           "ridge"),
+                         [](const auto& info) {
+                           return info.param == "back-constrained" ? "back_constrained"
+                                                                   : info.param;
+                         });
+
+TEST(TrainCharacterTest, EveryLearnerTrainsAndIsNamedInTheRecord) {
+  for (const std::string& learner : LearnerNames()) {
+    TrainOptions options = FastTrainOptions();
+    options.learner = learner;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
+                               TrainCharacter({SmallPerformer().sequence}, options));
+    EXPECT_EQ(model->record().learner, learner);
+    const double share = learner == "ridge" ? .7 : .15;  // a linear map cannot follow
+    EXPECT_LT(model->record().reconstruction.mean_percent, share * model->record().fit.mean_percent)
+        << learner;
+  }
+}
+
+TEST(TrainCharacterTest, DifferentialDetailsComeBackAsOffsets) {
+  TrainOptions options = FastTrainOptions();
+  options.detail_coordinates = "differential";
+  for (const double percent : {100., 20.}) {
+    options.resolution_percent = percent;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
+                               TrainCharacter({SmallPerformer().sequence}, options));
+    EXPECT_LT(model->record().reconstruction.mean_percent, 0.25 * model->record().fit.mean_percent);
+    // Not by chance the same as learning the offsets.
+    EXPECT_NE(model->record().reconstruction.mean_percent,
+              SmallCharacter()->record().reconstruction.mean_percent);
+  }
+}
+
+TEST(TrainCharacterTest, TheFullDeformationIsLearntTooAndLessWell) {
+  TrainOptions options = FastTrainOptions();
+  options.deformation = "full";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
+                             TrainCharacter({SmallPerformer().sequence}, options));
+  const TrainingRecord& record = model->record();
+  EXPECT_EQ(record.fit.mean_percent, SmallCharacter()->record().fit.mean_percent);
+  EXPECT_LT(record.reconstruction.mean_percent, record.fit.mean_percent);
+  EXPECT_GT(record.reconstruction.mean_percent,
+            SmallCharacter()->record().reconstruction.mean_percent);
 }
 
 TEST(TrainCharacterTest, PaperPresetTrainsOnTheControlMesh) {

@@ -36,6 +36,8 @@ TEST(TrainOptionsTest, EachBadValueIsNamedWithItsRange) {
   expect_refused({.learner = "magic"}, "learner");
   expect_refused({.fit = ""}, "fit");
   expect_refused({.detail_axes = "screen"}, "detail_axes");
+  expect_refused({.deformation = "coarse"}, "deformation");
+  expect_refused({.detail_coordinates = "polar"}, "detail_coordinates");
   expect_refused({.rotations = "matrix"}, "rotations");
   expect_refused({.history = 0}, "history");
   expect_refused({.resolution_percent = 0.5}, "resolution_percent");

@@ -66,6 +66,33 @@ TEST_F(DetailsTest, ApplyIsTheInverseInAllAxes) {
   }
 }
 
+TEST_F(DetailsTest, TheFullDeformationIsBeyondTheMotionOfTheRoot) {
+  for (const DetailAxes axes : kAllAxes) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::MatrixXd full,
+                               ComputeDetails(sequence_, figure_.rig, track_, all_,
+                                              {.base = DetailBase::kRoot, .axes = axes}));
+    for (int t = 0; t < 12; ++t) {
+      const Pose& pose = track_.poses[t];
+      BoneTransforms transforms;
+      ComputeBoneTransforms(figure_.rig.skeleton, pose, {}, &transforms);
+      Eigen::Matrix3Xd base;
+      ComputeDetailBase(DetailBase::kRoot, figure_.rig, transforms, &base);
+      // Rigid: the rest mesh turned about the root joint and moved with it.
+      const Eigen::Matrix3Xd expected =
+          (pose.rotations[0].toRotationMatrix() *
+           (figure_.rig.rest_positions.colwise() - figure_.rig.skeleton.rest_position(0)))
+              .colwise() +
+          pose.root_position;
+      EXPECT_LT((base - expected).cwiseAbs().maxCoeff(), 1e-12);
+      std::vector<Eigen::Quaterniond> rotations;
+      ComputeDetailRotations(axes, figure_.rig.weights, all_, transforms, &rotations);
+      const Eigen::VectorXd row = full.row(t).transpose();
+      ApplyDetails(base, rotations, row, &base);
+      EXPECT_LT((base - sequence_.FrameAsDouble(t)).cwiseAbs().maxCoeff(), 1e-9);
+    }
+  }
+}
+
 TEST_F(DetailsTest, RootAndLocalDetailsIgnoreRigidMotionOfTheWholeBody) {
   const Eigen::Quaterniond turn = QuaternionFromExponentialMap({0.3, 2, -0.5});
   const Eigen::Vector3d shift(3, -1, 2);

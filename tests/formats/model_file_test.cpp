@@ -20,7 +20,7 @@ class ModelFileTest : public testing::TestWithParam<Learner> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Learners, ModelFileTest,
-                         testing::Values(Learner::kGp, Learner::kSgplvm, Learner::kRegional),
+                         testing::ValuesIn(kAllLearners),
                          [](const auto& info) { return LearnerName(info.param); });
 
 TEST_P(ModelFileTest, EverythingRoundTrips) {

@@ -78,10 +78,11 @@ TEST_P(DetailModelTest, PredictsFramesItHasNotSeen) {
       std::sqrt((next.details.rowwise() - seen.details.colwise().mean()).squaredNorm() /
                 double(next.details.size()));
   double confidence = 0;
-  EXPECT_LT(HeldOutRms(model, next, &confidence), .25 * scale);
+  const bool linear = GetParam().learner == Learner::kRidge;  // the truth is not
+  EXPECT_LT(HeldOutRms(model, next, &confidence), (linear ? .7 : .25) * scale);
   EXPECT_GT(confidence, .8);
   EXPECT_NEAR(HeldOutRms(model, seen), summary.training_rms, 1e-3 * scale);
-  EXPECT_LT(summary.training_rms, .05 * scale);
+  EXPECT_LT(summary.training_rms, (linear ? .6 : .05) * scale);
   EXPECT_LE(summary.num_components, 6 + 1);
   EXPECT_GE(summary.kept_energy, .9999);
 }
@@ -148,8 +149,9 @@ TEST_P(DetailModelTest, PredictDoesNotAllocate) {
 
 TEST_P(DetailModelTest, StopsWhenCancelled) {
   const SyntheticMotion seen = MakeSyntheticMotion(60, 10, 30, 1);
+  const int allowed = GetParam().learner == Learner::kRidge ? 1 : 30;  // done in a few steps
   std::atomic<int> num_tests = 0;  // asked by several threads
-  const Progress progress(nullptr, [&] { return ++num_tests > 30; });
+  const Progress progress(nullptr, [&] { return ++num_tests > allowed; });
   EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(seen), nullptr, progress),
               HasStatus(absl::StatusCode::kCancelled, HasSubstr("cancelled")));
 }
@@ -168,14 +170,15 @@ TEST_P(DetailModelTest, ReportsRisingProgress) {
   ASSERT_THAT(TrainDetailModel(seen.features, seen.details, {0}, Options(seen), nullptr, progress),
               IsOk());
   EXPECT_EQ(last, 1);
-  EXPECT_GT(num_updates, 5);
+  EXPECT_GT(num_updates, GetParam().learner == Learner::kRidge ? 2 : 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Learners, DetailModelTest,
                          ::testing::Values(Variant{"Gp", Learner::kGp, false},
                                            Variant{"Sgplvm", Learner::kSgplvm, false},
                                            Variant{"BackConstrained", Learner::kSgplvm, true},
-                                           Variant{"Regional", Learner::kRegional, false}),
+                                           Variant{"Regional", Learner::kRegional, false},
+                                           Variant{"Ridge", Learner::kRidge, false}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {
@@ -203,6 +206,24 @@ TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {
   refused([](auto& p) { p.stages[1].alpha(0, 0) = std::nan(""); }, "alpha");
 }
 
+TEST(TrainDetailModelTest, TheOutputMapTakesPredictionsToOtherCoordinates) {
+  const SyntheticMotion seen = MakeSyntheticMotion(40, 10, 30, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel plain,
+                             TrainDetailModel(seen.features, seen.details, {0}));
+  DetailModelOptions options;
+  options.output_map = [](const Eigen::MatrixXd& columns) { return -3 * columns; };
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel mapped,
+                             TrainDetailModel(seen.features, seen.details, {0}, options));
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf a(30), b(30);
+  for (int t = 0; t < 40; t += 7) {
+    const Eigen::VectorXd row = seen.features.row(t).transpose() * 1.1;
+    plain.Predict(row, &workspace, a);
+    mapped.Predict(row, &workspace, b);
+    EXPECT_LT((b + 3 * a).norm(), 2e-3 * b.norm());
+  }
+}
+
 TEST(TrainDetailModelTest, RefusesWrongDataWithWords) {
   const SyntheticMotion seen = MakeSyntheticMotion(20, 6, 12, 1);
   EXPECT_THAT(TrainDetailModel(seen.features.topRows(5), seen.details, {0}),
@@ -220,7 +241,7 @@ TEST(TrainDetailModelTest, RefusesWrongDataWithWords) {
 TEST(TrainDetailModelTest, ConstantDetailsAreThePredictedMean) {
   SyntheticMotion seen = MakeSyntheticMotion(20, 6, 12, 1);
   seen.details.setConstant(2.5);
-  for (const Learner learner : {Learner::kGp, Learner::kSgplvm, Learner::kRegional}) {
+  for (const Learner learner : kAllLearners) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
                                TrainDetailModel(seen.features, seen.details, {0},
                                                 WithRegions(SmallOptions(learner), seen)));

@@ -56,6 +56,8 @@ TrainOptions ChangedOptions() {
   TrainOptions options = TrainOptions::Paper();
   options.learner = "gp";
   options.rotations = "quaternion";
+  options.deformation = "full";
+  options.detail_coordinates = "differential";
   options.history = 3;
   options.rest_frame = 17;
   options.yaw_degrees = 90.5;

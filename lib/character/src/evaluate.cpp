@@ -81,7 +81,7 @@ absl::StatusOr<ErrorSummary> MeasureBaseline(const DetailPredictor& predictor,
   std::vector<const Pose*> poses;
   Eigen::VectorXd features(model.features().num_features());
   BoneTransforms transforms;
-  Eigen::Matrix3Xd skinned;
+  Eigen::Matrix3Xd base;
   std::vector<Eigen::Quaterniond> rotations;
   std::vector<int> all_vertices(model.num_vertices());
   for (int v = 0; v < model.num_vertices(); ++v) all_vertices[v] = v;
@@ -95,11 +95,11 @@ absl::StatusOr<ErrorSummary> MeasureBaseline(const DetailPredictor& predictor,
       details = full.transpose().reshaped();
     }
     ComputeBoneTransforms(model.skeleton(), *poses[0], {}, &transforms);
-    SkinVertices(model.rig().weights, model.rig().rest_positions, transforms, &skinned);
+    ComputeDetailBase(DetailBaseOf(model.options()), model.rig(), transforms, &base);
     ComputeDetailRotations(DetailAxesOf(model.options()), model.rig().weights, all_vertices,
                            transforms, &rotations);
-    ApplyDetails(skinned, rotations, details, &skinned);
-    *positions = skinned.cast<float>();
+    ApplyDetails(base, rotations, details, &base);
+    *positions = base.cast<float>();
     return absl::OkStatus();
   });
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
@@ -59,26 +60,45 @@ double HeldOutError(const DetailModel& model, const LearningData& data,
   return sum / static_cast<double>(rows.size());
 }
 
+DetailModelOptions ModelOptionsOf(const std::string& learner, const TrainOptions& options,
+                                  const std::vector<DetailRegion>& regions) {
+  DetailModelOptions result;
+  result.regions = regions;
+  result.pca_energy = options.detail_energy;
+  result.max_components = options.max_components;
+  if (learner == "gp") {
+    result.learner = Learner::kGp;
+  } else if (learner == "ridge") {
+    result.learner = Learner::kRidge;
+  } else if (learner == "regional") {
+    result.learner = Learner::kRegional;
+  } else {
+    result.learner = Learner::kSgplvm;
+    if (learner == "sgplvm") result.sgplvm = SharedGplvmOptions::Paper();
+    result.sgplvm.latent_dimension = options.latent_dimensions;
+    result.sgplvm.max_iterations = options.iterations;
+    result.sgplvm.dynamics_weight = options.dynamics_weight;
+  }
+  return result;
+}
+
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 const std::string& learner,
                                                                 const TrainOptions& options,
                                                                 const Progress& progress) {
-  DetailModelOptions detail_options;
-  detail_options.learner = learner == "sgplvm" ? Learner::kSgplvm
-                           : learner == "gp"   ? Learner::kGp
-                                               : Learner::kRegional;
-  detail_options.regions = data.regions;
-  detail_options.sgplvm = SharedGplvmOptions::Paper();
-  detail_options.sgplvm.latent_dimension = options.latent_dimensions;
-  detail_options.sgplvm.max_iterations = options.iterations;
-  detail_options.sgplvm.dynamics_weight = options.dynamics_weight;
-  detail_options.pca_energy = options.detail_energy;
-  detail_options.max_components = options.max_components;
+  DetailModelOptions model_options = ModelOptionsOf(learner, options, data.regions);
+  Eigen::MatrixXd encoded;
+  if (data.differential) {
+    encoded = data.differential->Encode(data.details);
+    model_options.output_map = [&data](const Eigen::MatrixXd& columns) {
+      return data.differential->DecodeColumns(columns);
+    };
+  }
   PLEAT_ASSIGN_OR_RETURN(DetailModel model,
-                         TrainDetailModel(data.features, data.details, data.clip_starts,
-                                          detail_options, nullptr, progress));
+                         TrainDetailModel(data.features, data.differential ? encoded : data.details,
+                                          data.clip_starts, model_options, nullptr, progress));
   return std::make_shared<const DetailModel>(std::move(model));
 }
 
@@ -95,6 +115,7 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
   part.details = data.details(split.train, Eigen::all);
   part.clip_starts = split.train_clip_starts;
   part.regions = data.regions;
+  part.differential = data.differential;
   const std::vector<std::string> candidates = {"regional", "gp", "sgplvm"};
   std::string best;
   double best_error = std::numeric_limits<double>::infinity();

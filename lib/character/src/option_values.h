@@ -13,6 +13,10 @@ inline DetailAxes DetailAxesOf(const TrainOptions& options) {
   return DetailAxes::kLocal;
 }
 
+inline DetailBase DetailBaseOf(const TrainOptions& options) {
+  return options.deformation == "full" ? DetailBase::kRoot : DetailBase::kSkinned;
+}
+
 inline RotationRepresentation RepresentationOf(const TrainOptions& options) {
   if (options.rotations == "euler") return RotationRepresentation::kEuler;
   if (options.rotations == "quaternion") return RotationRepresentation::kQuaternion;

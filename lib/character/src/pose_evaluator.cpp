@@ -117,6 +117,9 @@ absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
   s.details = model_->full_mean();
   s.details.noalias() += model_->full_basis() * s.coefficients;
 
+  if (DetailBaseOf(model_->options()) == DetailBase::kRoot) {
+    ComputeDetailBase(DetailBase::kRoot, model_->rig(), s.transforms, &s.skinned);
+  }
   ComputeDetailRotations(DetailAxesOf(model_->options()), model_->rig().weights, s.all_vertices,
                          s.transforms, &s.rotations);
   ApplyDetails(s.skinned, s.rotations, s.details, &s.hybrid);

@@ -1,7 +1,7 @@
 #include "pleat/character/train_options.h"
 
+#include <algorithm>
 #include <cstdio>
-#include <initializer_list>
 #include <limits>
 #include <type_traits>
 
@@ -16,10 +16,8 @@ namespace pleat {
 namespace {
 
 absl::Status CheckChoice(absl::string_view name, const std::string& value,
-                         std::initializer_list<const char*> choices) {
-  for (const char* choice : choices) {
-    if (value == choice) return absl::OkStatus();
-  }
+                         const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       "option ", name, ": '", value, "' is unknown; choose one of ", absl::StrJoin(choices, ", ")));
 }
@@ -77,13 +75,23 @@ TrainOptions TrainOptions::Paper() {
   return paper;
 }
 
+const std::vector<std::string>& LearnerNames() {
+  static const auto& names =
+      *new std::vector<std::string>{"regional", "gp", "sgplvm", "back-constrained", "ridge"};
+  return names;
+}
+
 absl::Status ValidateTrainOptions(const TrainOptions& options) {
-  PLEAT_RETURN_IF_ERROR(
-      CheckChoice("learner", options.learner, {"auto", "regional", "gp", "sgplvm"}));
+  std::vector<std::string> learners = LearnerNames();
+  learners.insert(learners.begin(), "auto");
+  PLEAT_RETURN_IF_ERROR(CheckChoice("learner", options.learner, learners));
   PLEAT_RETURN_IF_ERROR(CheckChoice("fit", options.fit, {"all-joints", "walk"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("refine", options.refine, {"none", "joints", "full"}));
   PLEAT_RETURN_IF_ERROR(
       CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
+  PLEAT_RETURN_IF_ERROR(CheckChoice("deformation", options.deformation, {"fine", "full"}));
+  PLEAT_RETURN_IF_ERROR(
+      CheckChoice("detail_coordinates", options.detail_coordinates, {"offsets", "differential"}));
   PLEAT_RETURN_IF_ERROR(CheckChoice("upsampling", options.upsampling, {"refined", "rbf"}));
   PLEAT_RETURN_IF_ERROR(CheckRange("bend_stiffness", options.bend_stiffness, 0.0, 1.0));
   PLEAT_RETURN_IF_ERROR(CheckRange("smoothness", options.smoothness, 0.0, 1.0));

@@ -52,7 +52,8 @@ absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& 
   const MeshSequence& sequence = rigged.frames.sequence;
   const bool decimated = static_cast<int>(data->control_vertices.size()) < sequence.num_vertices();
   const bool refined = decimated && options.upsampling == "refined";
-  const ComputeDetailsOptions detail_options{.axes = DetailAxesOf(options),
+  const ComputeDetailsOptions detail_options{.base = DetailBaseOf(options),
+                                             .axes = DetailAxesOf(options),
                                              .num_threads = resources.num_threads};
   std::vector<int> vertices = data->control_vertices;
   if (refined) {
@@ -184,6 +185,11 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
                          SelectControlVertices(sequence.topology(), rigged.rig.rest_positions,
                                                options.resolution_percent / 100));
   PLEAT_RETURN_IF_ERROR(ComputeControlDetails(rigged, track, options, resources, progress, &data));
+  if (options.detail_coordinates == "differential") {
+    PLEAT_ASSIGN_OR_RETURN(data.differential, DifferentialCoordinates::Build(
+                                                  sequence.topology(), rigged.rig.rest_positions,
+                                                  data.control_vertices));
+  }
   const PoseFeatureOptions feature_options = FeatureOptionsOf(options);
   // A single held-out frame is bridged from its neighbours, so that the frame after it has a speed.
   const FilledTrack filled = FillGaps(track, rigged.frames.frame_numbers, kMaxBridgedFrames);

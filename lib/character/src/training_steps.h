@@ -13,6 +13,7 @@
 #include "pleat/character/character_model.h"
 #include "pleat/character/train_character.h"
 #include "pleat/fitting/pose_fit.h"
+#include "pleat/geometry/differential_coordinates.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/auto_rig.h"
 #include "pleat/skeleton/pose.h"
@@ -64,6 +65,7 @@ struct LearningData {
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
   std::optional<RbfUpsampler> upsampler;
+  std::optional<DifferentialCoordinates> differential;  // learn in these, with that option
   std::vector<DetailRegion> regions;  // one for each bone that moves a control vertex
 };
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
@@ -71,7 +73,8 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
                                                  const TrainResources& resources,
                                                  const Progress& progress);
 
-// Trains the learner named `learner` ("regional", "gp" or "sgplvm").
+// Trains the learner named `learner`, one of LearnerNames(). The model predicts offsets, whatever
+// coordinates it was trained in.
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 const std::string& learner,
                                                                 const TrainOptions& options,

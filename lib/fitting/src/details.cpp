@@ -39,8 +39,12 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
   return absl::OkStatus();
 }
 
-// Linear blend skinning of one vertex.
-Eigen::Vector3d SkinVertex(const Rig& rig, const BoneTransforms& transforms, int v) {
+// The base of one vertex: moved by the root, or by linear blend skinning.
+Eigen::Vector3d BaseOfVertex(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
+                             int v) {
+  if (base == DetailBase::kRoot) {
+    return transforms.linear[0] * rig.rest_positions.col(v) + transforms.translation[0];
+  }
   const VertexInfluences& influences = rig.weights.vertex(v);
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
@@ -52,15 +56,15 @@ Eigen::Vector3d SkinVertex(const Rig& rig, const BoneTransforms& transforms, int
 }
 
 template <typename Vector>
-void Apply(const Eigen::Ref<const Eigen::Matrix3Xd>& skinned,
+void Apply(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
            const std::vector<Eigen::Quaterniond>& rotations, const Vector& details,
            Eigen::Matrix3Xd* positions) {
-  const Eigen::Index count = skinned.cols();
+  const Eigen::Index count = base.cols();
   assert(details.size() == 3 * count && static_cast<Eigen::Index>(rotations.size()) == count);
   positions->resize(3, count);
   for (Eigen::Index c = 0; c < count; ++c) {
     const Eigen::Vector3d detail = details.template segment<3>(3 * c).template cast<double>();
-    positions->col(c) = skinned.col(c) + rotations[c] * detail;
+    positions->col(c) = base.col(c) + rotations[c] * detail;
   }
 }
 
@@ -80,6 +84,16 @@ void ComputeDetailRotations(DetailAxes axes, const SkinWeights& weights,
       BlendRotations(weights, vertices, transforms, rotations);
       return;
   }
+}
+
+void ComputeDetailBase(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
+                       Eigen::Matrix3Xd* positions) {
+  if (base == DetailBase::kSkinned) {
+    SkinVertices(rig.weights, rig.rest_positions, transforms, positions);
+    return;
+  }
+  positions->noalias() = transforms.linear[0] * rig.rest_positions;
+  positions->colwise() += transforms.translation[0];
 }
 
 absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, const Rig& rig,
@@ -103,7 +117,7 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
       for (size_t c = 0; c < vertices.size(); ++c) {
         const int v = vertices[c];
         const Eigen::Vector3d offset =
-            sequence.frame(t).col(v).cast<double>() - SkinVertex(rig, transforms, v);
+            sequence.frame(t).col(v).cast<double>() - BaseOfVertex(options.base, rig, transforms, v);
         details.block<1, 3>(t, 3 * c) = (rotations[c].conjugate() * offset).transpose();
       }
     });
@@ -112,16 +126,16 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
   return details;
 }
 
-void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& skinned,
+void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
                   const std::vector<Eigen::Quaterniond>& rotations,
                   const Eigen::Ref<const Eigen::VectorXd>& details, Eigen::Matrix3Xd* positions) {
-  Apply(skinned, rotations, details, positions);
+  Apply(base, rotations, details, positions);
 }
 
-void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& skinned,
+void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
                   const std::vector<Eigen::Quaterniond>& rotations,
                   const Eigen::Ref<const Eigen::VectorXf>& details, Eigen::Matrix3Xd* positions) {
-  Apply(skinned, rotations, details, positions);
+  Apply(base, rotations, details, positions);
 }
 
 }  // namespace pleat

@@ -156,7 +156,7 @@ absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader) {
 }
 
 absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
-  for (const Learner learner : {Learner::kGp, Learner::kSgplvm, Learner::kRegional}) {
+  for (const Learner learner : kAllLearners) {
     if (LearnerName(learner) == name) return learner;
   }
   return absl::InvalidArgumentError(absl::StrCat("unknown learner '", name, "'"));

@@ -38,6 +38,8 @@ std::string LearnerName(Learner learner) {
       return "sgplvm";
     case Learner::kRegional:
       return "regional";
+    case Learner::kRidge:
+      return "ridge";
   }
   return "unknown";
 }

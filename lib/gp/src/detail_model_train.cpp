@@ -84,13 +84,15 @@ class DetailModelTrainer {
     }
     PLEAT_RETURN_IF_ERROR(progress_.Stage("pca", 0, .1).Report(1));
     model_.learner_ = options_.learner;
-    model_.mean_ = pca.mean.cast<float>();
-    model_.basis_ = pca.basis.cast<float>();
+    model_.mean_ = Mapped(pca.mean).cast<float>();
+    model_.basis_ = Mapped(pca.basis).cast<float>();
     model_.fade_confidence_ = options_.fade_confidence;
     summary_.num_components = static_cast<int>(pca.basis.cols());
     summary_.kept_energy = pca.kept_energy;
     if (options_.learner == Learner::kSgplvm) {
       PLEAT_RETURN_IF_ERROR(TrainSgplvm(pca.scores));
+    } else if (options_.learner == Learner::kRidge) {
+      PLEAT_RETURN_IF_ERROR(TrainRidge(pca.scores));
     } else {
       PLEAT_RETURN_IF_ERROR(TrainGp(pca.scores));
     }
@@ -101,6 +103,16 @@ class DetailModelTrainer {
   }
 
  private:
+  Eigen::MatrixXd Mapped(const Eigen::MatrixXd& columns) const {
+    return options_.output_map ? options_.output_map(columns) : columns;
+  }
+
+  absl::Status TrainRidge(const Eigen::MatrixXd& scores) {
+    PLEAT_ASSIGN_OR_RETURN(GpRegression stage, TrainRidgeGp(features_, scores, options_.ridge));
+    model_.stages_.push_back(std::move(stage));
+    return absl::OkStatus();
+  }
+
   absl::Status TrainGp(const Eigen::MatrixXd& scores) {
     const double end = options_.learner == Learner::kRegional ? .3 : .95;
     PLEAT_ASSIGN_OR_RETURN(GpRegression stage,

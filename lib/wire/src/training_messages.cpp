@@ -13,6 +13,8 @@ v1::TrainOptions ToProto(const TrainOptions& options) {
   message.set_learner(options.learner);
   message.set_fit(options.fit);
   message.set_detail_axes(options.detail_axes);
+  message.set_deformation(options.deformation);
+  message.set_detail_coordinates(options.detail_coordinates);
   message.set_rotations(options.rotations);
   message.set_history(options.history);
   message.set_resolution_percent(options.resolution_percent);
@@ -37,6 +39,8 @@ absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
   if (message.has_learner()) options.learner = message.learner();
   if (message.has_fit()) options.fit = message.fit();
   if (message.has_detail_axes()) options.detail_axes = message.detail_axes();
+  if (message.has_deformation()) options.deformation = message.deformation();
+  if (message.has_detail_coordinates()) options.detail_coordinates = message.detail_coordinates();
   if (message.has_rotations()) options.rotations = message.rotations();
   if (message.has_history()) options.history = message.history();
   if (message.has_resolution_percent()) options.resolution_percent = message.resolution_percent();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -11,13 +12,18 @@
 namespace pleat {
 
 struct TrainOptions {
-  // "auto" (validated on held-out training frames), "regional", "gp", "sgplvm" (the paper's)
+  // "auto" (validated on held-out training frames) or one of LearnerNames().
   std::string learner = "auto";
   std::string fit = "all-joints";  // "all-joints" (Levenberg-Marquardt) or "walk" (the paper's)
   std::string refine = "full";     // rig on the training frames: "none" (paper), "joints", "full"
+  // What is learnt: "fine" (details, what the mesh does beyond its skinned rig; the paper's choice)
+  // or "full" (all deformation beyond the motion of the root, which the paper compares with).
+  std::string deformation = "fine";
   std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
-  std::string rotations = "expmap";   // pose features: "expmap" (paper), "euler", "quaternion"
-  int history = 2;                    // poses per feature row, 1..8 (paper: 2)
+  // "offsets" (paper) or "differential": every control vertex against the mean of its neighbours.
+  std::string detail_coordinates = "offsets";
+  std::string rotations = "expmap";  // pose features: "expmap" (paper), "euler", "quaternion"
+  int history = 2;                   // poses per feature row, 1..8 (paper: 2)
   std::string history_form = "differences";  // of those poses, or "poses" (paper)
   double resolution_percent = 100;           // share of the vertices that learn, 1..100 (paper: 5)
   std::string upsampling = "refined";  // control -> all: "rbf" (paper), "refined" on the input
@@ -38,6 +44,10 @@ struct TrainOptions {
   friend bool operator==(const TrainOptions&, const TrainOptions&) = default;
 };
 
+// Every learner but "auto": "regional", "gp", "sgplvm" (the paper's), "back-constrained" (the same
+// with latent points that are a smooth function of the pose), "ridge" (linear).
+const std::vector<std::string>& LearnerNames();
+
 // OK when every option is in the range above; else names option, value and range.
 absl::Status ValidateTrainOptions(const TrainOptions& options);
 
@@ -54,7 +64,9 @@ void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("learner", options.learner);
   visit("fit", options.fit);
   visit("refine", options.refine);
+  visit("deformation", options.deformation);
   visit("detail_axes", options.detail_axes);
+  visit("detail_coordinates", options.detail_coordinates);
   visit("rotations", options.rotations);
   visit("history", options.history);
   visit("history_form", options.history_form);

@@ -1,5 +1,5 @@
 // Details: what the mesh does beyond its skinned rig (method.md, section 4; paper, section III-C).
-//   d_t(v) = B_t(v)^T (p_t(v) - p_S,t(v))
+//   d_t(v) = B_t(v)^T (p_t(v) - p_S,t(v)),  p_S,t the detail base
 #pragma once
 
 #include <Eigen/Core>
@@ -26,7 +26,18 @@ void ComputeDetailRotations(DetailAxes axes, const SkinWeights& weights,
                             const std::vector<int>& vertices, const BoneTransforms& transforms,
                             std::vector<Eigen::Quaterniond>* rotations);
 
+// What details are added to.
+enum class DetailBase {
+  kSkinned,  // the skinned mesh: details are fine, the paper's choice
+  kRoot,     // the rest mesh moved by the root alone: details are the full deformation
+};
+
+// 3 x V, metres. No allocation once `positions` has the right size.
+void ComputeDetailBase(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
+                       Eigen::Matrix3Xd* positions);
+
 struct ComputeDetailsOptions {
+  DetailBase base = DetailBase::kSkinned;
   DetailAxes axes = DetailAxes::kLocal;
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
@@ -40,13 +51,13 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
                                                const ComputeDetailsOptions& options = {},
                                                const Progress& progress = {});
 
-// The inverse for one frame: column c of `positions` = skinned_c + rotations[c] * details_c.
-// skinned: 3 x C, metres; rotations: C, of ComputeDetailRotations; details: 3C. `positions` (3 x C)
-// may be the matrix behind `skinned`. No allocation once it has the right size.
-void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& skinned,
+// The inverse for one frame: column c of `positions` = base_c + rotations[c] * details_c.
+// base: 3 x C, metres; rotations: C, of ComputeDetailRotations; details: 3C. `positions` (3 x C)
+// may be the matrix behind `base`. No allocation once it has the right size.
+void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
                   const std::vector<Eigen::Quaterniond>& rotations,
                   const Eigen::Ref<const Eigen::VectorXd>& details, Eigen::Matrix3Xd* positions);
-void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& skinned,
+void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
                   const std::vector<Eigen::Quaterniond>& rotations,
                   const Eigen::Ref<const Eigen::VectorXf>& details, Eigen::Matrix3Xd* positions);
 

@@ -2,6 +2,7 @@
 //
 //   gp        features -> coefficients
 //   sgplvm    features -> latent point (the paper's back-map) -> coefficients
+//   ridge     features -> coefficients, linear
 //   regional  features -> coefficients, a sum over body regions, mixed with a share of gp
 //   detail  = mean + basis * coefficients
 //
@@ -9,6 +10,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +20,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/gp/gp_regression.h"
 #include "pleat/gp/regional_gp.h"
+#include "pleat/gp/ridge.h"
 #include "pleat/gp/shared_gplvm.h"
 
 namespace pleat {
@@ -25,7 +29,10 @@ enum class Learner {
   kGp,        // direct regression with an RBF + linear kernel
   kSgplvm,    // the paper's shared GPLVM
   kRegional,  // regression per body region, additive over near and far joints
+  kRidge,     // linear regression
 };
+inline constexpr std::array kAllLearners = {Learner::kGp, Learner::kSgplvm, Learner::kRegional,
+                                            Learner::kRidge};
 
 // A part of the body that the regional learner predicts by itself.
 struct DetailRegion {
@@ -34,13 +41,14 @@ struct DetailRegion {
   std::vector<std::vector<int>> feature_sets;  // columns of Y_S, as in GpRegion
 };
 
-// "gp", "sgplvm", "regional".
+// "gp", "sgplvm", "regional", "ridge".
 std::string LearnerName(Learner learner);
 
 struct DetailModelOptions {
   Learner learner = Learner::kGp;
   GpRegressionOptions gp{};             // of the direct learner
   SharedGplvmOptions sgplvm{};          // of the shared GPLVM
+  RidgeOptions ridge{};                 // of the linear learner
   RegionalGpOptions regional{};         // of the regional learner
   std::vector<DetailRegion> regions{};  // what it needs; may be empty for the others
   // Of Y_S -> X, after training. With back-constraints the constraint itself is the map.
@@ -50,6 +58,10 @@ struct DetailModelOptions {
   // the energy needs, up to a cap.
   double pca_energy = .9999;
   int max_components = 128;
+
+  // Y_M may be in other coordinates than the predictions shall be: this linear map of columns
+  // (D_M x k) takes mean and basis there. None: as they are.
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> output_map{};
 
   // Of the regional learner, the rest is the direct GP's: the mean of two models errs less than
   // either, and the direct GP is what knows how far a pose is from training.
@@ -73,7 +85,7 @@ struct DetailModelParameters {
   Learner learner = Learner::kGp;
   std::vector<GpRegressionParameters> stages;  // one or two, applied in this order
   Eigen::VectorXf mean;                        // D_M, unit of Y_M
-  Eigen::MatrixXf basis;                       // D_M x r, orthonormal columns
+  Eigen::MatrixXf basis;                       // D_M x r; orthonormal as trained
   double fade_confidence = .02;
   double regional_share = 0;                     // of `regional` in the prediction, 0..1
   std::optional<RegionalGpParameters> regional;  // with Learner::kRegional only

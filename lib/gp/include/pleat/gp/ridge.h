@@ -1,9 +1,10 @@
-// Ridge regression: the linear baseline of the evaluation.
+// Ridge regression: the linear baseline of the evaluation, and a learner.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "absl/status/statusor.h"
+#include "pleat/gp/gp_regression.h"
 
 namespace pleat {
 
@@ -26,5 +27,12 @@ struct Ridge {
 absl::StatusOr<Ridge> TrainRidge(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                  const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                  const RidgeOptions& options = {});
+
+// The same regression as a Gaussian process, which knows the variance of its mean: a linear kernel
+// whose noise is `penalty`, both times the variance of largest marginal likelihood. Source:
+// Rasmussen and Williams (2006), section 2.1. The RBF part of the kernel is at its lower clamp.
+absl::StatusOr<GpRegression> TrainRidgeGp(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& outputs,
+                                          const RidgeOptions& options = {});
 
 }  // namespace pleat

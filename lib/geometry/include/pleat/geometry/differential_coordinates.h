@@ -1,0 +1,50 @@
+// Differential coordinates of displacements on a subset of the vertices: every displacement against
+// the mean of its neighbours'. The paper (section III-C) tried them for its details.
+//
+//   delta_i = (1 + anchor) d_i - mean of d_j over the neighbours j of i
+//
+// Source: O. Sorkine, "Differential representations for mesh processing", CGF 25(4), 2006, with
+// uniform weights. Differences alone leave a constant open; the anchor, a small share of the
+// displacement itself, closes it and makes the map invertible.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/mesh/topology.h"
+
+namespace pleat {
+
+class DifferentialCoordinates {
+ public:
+  // Two control vertices are neighbours when an edge joins the cells of vertices that are nearest
+  // to them along the surface; with all vertices as control vertices these are the mesh's edges.
+  // reference: 3 x V, metres. kInvalidArgument when the counts of `topology` and `reference`
+  // differ, a control vertex is out of range or `anchor` is not positive.
+  static absl::StatusOr<DifferentialCoordinates> Build(const Topology& topology,
+                                                       const Eigen::Matrix3Xd& reference,
+                                                       const std::vector<int>& control_vertices,
+                                                       double anchor = .01);
+
+  int num_control_vertices() const { return static_cast<int>(matrix_.rows()); }  // C
+  const std::vector<int>& num_neighbours() const { return num_neighbours_; }     // C
+
+  // Displacements -> differential coordinates, T x 3C both (xyz of the first vertex, of the
+  // second, ...).
+  Eigen::MatrixXd Encode(const Eigen::Ref<const Eigen::MatrixXd>& displacements) const;
+  // The inverse for columns: 3C x r -> 3C x r.
+  Eigen::MatrixXd DecodeColumns(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+
+ private:
+  DifferentialCoordinates() = default;
+
+  std::vector<int> num_neighbours_;
+  Eigen::SparseMatrix<double> matrix_;  // C x C, symmetric: the map times the neighbour counts
+  std::shared_ptr<const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
+};
+
+}  // namespace pleat
