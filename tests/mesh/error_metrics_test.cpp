@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace pleat {
 namespace {
 
@@ -40,6 +42,23 @@ TEST(ErrorMetricsTest, MotionErrorSkipsFramesThatDoNotFollow) {
   errors.AddFrame(Offsets({0.3}), Offsets({0}), /*follows_previous=*/false);
   errors.AddFrame(Offsets({0.35}), Offsets({0}));
   EXPECT_NEAR(errors.Summarize().motion_mean_percent, 5, 1e-9);  // only the last pair
+}
+
+TEST(ErrorMetricsTest, JitterIsTheSecondDifferenceWithinRuns) {
+  ErrorAccumulator errors(1);
+  // The truth glides, the animation goes to and fro by 3 mm; another run of two frames adds no
+  // second difference.
+  for (int t = 0; t < 5; ++t) {
+    errors.AddFrame(Offsets({.01 * t + .003 * (t % 2), .01 * t}), Offsets({.01 * t, .01 * t}));
+  }
+  errors.AddFrame(Offsets({7, 7}), Offsets({0, 0}), /*follows_previous=*/false);
+  errors.AddFrame(Offsets({7, 7}), Offsets({0, 0}));
+  const ErrorSummary summary = errors.Summarize();
+  EXPECT_EQ(summary.num_jitter_frames, 3);
+  EXPECT_EQ(summary.num_motion_frames, 5);
+  EXPECT_NEAR(summary.jitter_mm, 6 / std::sqrt(2), 1e-9);  // of two vertices one shakes
+  EXPECT_NEAR(summary.truth_jitter_mm, 0, 1e-9);
+  EXPECT_NEAR(summary.motion_mean_mm, 1.5 * 4 / 5, 1e-9);
 }
 
 TEST(ErrorMetricsTest, NothingAddedIsAllZero) {

@@ -16,11 +16,23 @@ void ErrorAccumulator::AddFrame(const Eigen::Ref<const Eigen::Matrix3Xd>& predic
   sum_m_ += distances.sum();
   sum_squared_m2_ += distances.squaredNorm();
   frame_mean_m_.push_back(distances.mean());
-  if (follows_previous && previous_difference_.cols() == difference.cols()) {
-    motion_sum_m_ += (difference - previous_difference_).colwise().norm().sum();
-    motion_count_ += difference.cols();
+  const bool follows = follows_previous && previous_difference_.cols() == difference.cols();
+  run_length_ = follows ? run_length_ + 1 : 1;
+  if (run_length_ >= 2) {
+    motion_sum_m_ += (difference - previous_difference_).colwise().norm().mean();
+    ++motion_frames_;
+  }
+  if (run_length_ >= 3) {
+    const double count = static_cast<double>(difference.cols());
+    jitter_sum_m2_ += (predicted - 2 * predicted_[0] + predicted_[1]).squaredNorm() / count;
+    truth_jitter_sum_m2_ += (truth - 2 * truth_[0] + truth_[1]).squaredNorm() / count;
+    ++jitter_frames_;
   }
   previous_difference_ = difference;
+  predicted_[1].swap(predicted_[0]);
+  truth_[1].swap(truth_[0]);
+  predicted_[0] = predicted;
+  truth_[0] = truth;
 }
 
 ErrorSummary ErrorAccumulator::Summarize() const {
@@ -37,8 +49,15 @@ ErrorSummary ErrorAccumulator::Summarize() const {
   summary.max_percent = *std::max_element(sorted.begin(), sorted.end()) * to_percent;
   summary.mean_mm = sum_m_ / count * 1000;
   for (const double mean : frame_mean_m_) summary.frame_mean_percent.push_back(mean * to_percent);
-  if (motion_count_ > 0) {
-    summary.motion_mean_percent = motion_sum_m_ / static_cast<double>(motion_count_) * to_percent;
+  summary.num_motion_frames = motion_frames_;
+  summary.num_jitter_frames = jitter_frames_;
+  if (motion_frames_ > 0) {
+    summary.motion_mean_mm = motion_sum_m_ / motion_frames_ * 1000;
+    summary.motion_mean_percent = motion_sum_m_ / motion_frames_ * to_percent;
+  }
+  if (jitter_frames_ > 0) {
+    summary.jitter_mm = std::sqrt(jitter_sum_m2_ / jitter_frames_) * 1000;
+    summary.truth_jitter_mm = std::sqrt(truth_jitter_sum_m2_ / jitter_frames_) * 1000;
   }
   return summary;
 }

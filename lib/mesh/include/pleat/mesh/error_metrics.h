@@ -15,6 +15,14 @@ struct ErrorSummary {
   double mean_mm = 0;
   std::vector<double> frame_mean_percent;  // per compared frame
   double motion_mean_percent = 0;  // mean |(a_t - a_t-1) - (b_t - b_t-1)| over consecutive frames
+
+  // How the motion looks; not kept in model files. Zero counts mean that nothing was measured.
+  int num_motion_frames = 0;  // whose predecessor was there
+  double motion_mean_mm = 0;
+  int num_jitter_frames = 0;  // whose predecessor and successor were there
+  // Root of the mean squared second difference |x_t+1 - 2 x_t + x_t-1| of the vertices, of the
+  // animation and of the truth: where the first is larger it shakes, where smaller it glides.
+  double jitter_mm = 0, truth_jitter_mm = 0;
 };
 
 // Collects the distances frame by frame, so that no second animation has to be in memory.
@@ -35,9 +43,11 @@ class ErrorAccumulator {
   std::vector<float> distances_m_;
   std::vector<double> frame_mean_m_;
   double sum_m_ = 0, sum_squared_m2_ = 0;
-  Eigen::Matrix3Xd previous_difference_;  // 3 x V, of the frame added last
-  double motion_sum_m_ = 0;
-  long motion_count_ = 0;
+  // Of the frame added last and of the one before, 3 x V.
+  Eigen::Matrix3Xd previous_difference_, predicted_[2], truth_[2];
+  int run_length_ = 0;  // consecutive frames so far
+  double motion_sum_m_ = 0, jitter_sum_m2_ = 0, truth_jitter_sum_m2_ = 0;
+  int motion_frames_ = 0, jitter_frames_ = 0;
 };
 
 }  // namespace pleat
