@@ -9,9 +9,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ErrorsJson(const std::map<std::string, ErrorSummary>& errors) {
+ordered_json ErrorsJson(const std::map<std::string, ErrorSummary>& errors,
+                        ordered_json (*to_json)(const ErrorSummary&)) {
   ordered_json json = ordered_json::object();
-  for (const auto& [name, error] : errors) json[name] = ErrorJson(error);
+  for (const auto& [name, error] : errors) json[name] = to_json(error);
   return json;
 }
 
@@ -48,6 +49,23 @@ ordered_json ErrorJson(const ErrorSummary& error) {
           {"p95_percent", error.p95_percent},
           {"max_percent", error.max_percent},
           {"mean_mm", error.mean_mm}};
+}
+
+ordered_json MotionJson(const ErrorSummary& error) {
+  const auto measured = [](int count, double value) {
+    return count > 0 ? ordered_json(value) : ordered_json(nullptr);
+  };
+  return {{"num_frames", error.num_motion_frames},
+          {"mean_percent", measured(error.num_motion_frames, error.motion_mean_percent)},
+          {"mean_mm", measured(error.num_motion_frames, error.motion_mean_mm)},
+          {"jitter_mm", measured(error.num_jitter_frames, error.jitter_mm)},
+          {"truth_jitter_mm", measured(error.num_jitter_frames, error.truth_jitter_mm)}};
+}
+
+ordered_json ValidationJson(const LearnerValidation& validation) {
+  if (validation.num_held_out_frames == 0) return nullptr;
+  return {{"num_held_out_frames", validation.num_held_out_frames},
+          {"mean_percent", validation.mean_percent}};
 }
 
 ordered_json OptionsJson(const TrainOptions& options) {
@@ -108,6 +126,7 @@ ordered_json TrainReportJson(const CharacterModel& model, const TrainCosts& cost
   }
   json["worst_joints"] = WorstJointsJson(model.skeleton(), record.joint_fit_percent);
   json["learner"] = record.learner;
+  json["validation"] = ValidationJson(record.validation);
   json["options"] = OptionsJson(model.options());
   json["num_frames"] = record.num_frames;
   json["num_vertices"] = model.num_vertices();
@@ -125,10 +144,11 @@ ordered_json EvaluateReportJson(const EvaluateReport& report) {
   json["protocol"] = report.protocol;
   json["diagonal_m"] = report.diagonal_m;
   json["learner"] = report.learner;
+  json["validation"] = ValidationJson(report.validation);
   json["skinned"] = ErrorJson(report.skinned);
   json["hybrid"] = ErrorJson(report.hybrid);
-  json["baselines"] = ErrorsJson(report.baselines);
-  json["learners"] = ErrorsJson(report.learners);
+  json["baselines"] = ErrorsJson(report.baselines, ErrorJson);
+  json["learners"] = ErrorsJson(report.learners, ErrorJson);
   json["seconds"] = report.seconds;
   json["num_train_frames"] = report.num_train_frames;
   json["num_test_frames"] = report.num_test_frames;
@@ -137,6 +157,10 @@ ordered_json EvaluateReportJson(const EvaluateReport& report) {
                                 {"hybrid", report.hybrid.frame_mean_percent}};
   json["motion_mean_percent"] = {{"skinned", report.skinned.motion_mean_percent},
                                  {"hybrid", report.hybrid.motion_mean_percent}};
+  json["motion"] = {{"skinned", MotionJson(report.skinned)},
+                    {"hybrid", MotionJson(report.hybrid)},
+                    {"baselines", ErrorsJson(report.baselines, MotionJson)},
+                    {"learners", ErrorsJson(report.learners, MotionJson)}};
   json["options"] = OptionsJson(report.options);
   return json;
 }

@@ -21,6 +21,10 @@ nlohmann::ordered_json JointsJson(const Skeleton& skeleton);
 // {"mean_percent", "rms_percent", "p95_percent", "max_percent", "mean_mm"}
 nlohmann::ordered_json ErrorJson(const ErrorSummary& error);
 
+// How the motion looks: {"num_frames", "mean_percent", "mean_mm" (of frame-to-frame steps),
+// "jitter_mm", "truth_jitter_mm"}; numbers that could not be measured are null.
+nlohmann::ordered_json MotionJson(const ErrorSummary& error);
+
 // Every option by name, numbers as numbers.
 nlohmann::ordered_json OptionsJson(const TrainOptions& options);
 nlohmann::ordered_json OptionsJson(const CompressOptions& options);
@@ -39,6 +43,10 @@ nlohmann::ordered_json TrainReportJson(const CharacterModel& model, const TrainC
 // "pleat.compress/1"
 nlohmann::ordered_json CompressReportJson(const CompressionRecord& record, int num_frames,
                                           int num_vertices);
+
+// What the learner "auto" chose by: {"num_held_out_frames", "mean_percent": {learner: number}}, or
+// null when nothing was held out.
+nlohmann::ordered_json ValidationJson(const LearnerValidation& validation);
 
 // "pleat.evaluate/1"
 nlohmann::ordered_json EvaluateReportJson(const EvaluateReport& report);

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 
 namespace pleat {
 namespace {
@@ -38,6 +39,18 @@ std::string FormatTable(const std::vector<std::string>& header,
   };
   append(header);
   for (const std::vector<std::string>& row : rows) append(row);
+  return text;
+}
+
+std::string FormatMarkdownTable(const std::vector<std::string>& header,
+                                const std::vector<std::vector<std::string>>& rows) {
+  std::string text = absl::StrCat("| ", absl::StrJoin(header, " | "), " |\n|---|");
+  for (size_t c = 1; c < header.size(); ++c) text += "---:|";
+  text += "\n";
+  for (const std::vector<std::string>& row : rows) {
+    assert(row.size() == header.size());
+    absl::StrAppend(&text, "| ", absl::StrJoin(row, " | "), " |\n");
+  }
   return text;
 }
 

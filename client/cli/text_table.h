@@ -10,6 +10,10 @@ namespace pleat {
 std::string FormatTable(const std::vector<std::string>& header,
                         const std::vector<std::vector<std::string>>& rows);
 
+// The same as a Markdown table.
+std::string FormatMarkdownTable(const std::vector<std::string>& header,
+                                const std::vector<std::vector<std::string>>& rows);
+
 // "1.5 MB"
 std::string FormatBytes(double bytes);
 

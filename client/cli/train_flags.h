@@ -11,7 +11,7 @@
 namespace pleat {
 
 struct TrainFlags {
-  std::string preset = "default";             // "default" or "paper"
+  std::string preset;                         // "default" or "paper"; empty = not given: default
   std::map<std::string, std::string> values;  // option name -> text, only those that were given
 };
 

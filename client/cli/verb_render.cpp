@@ -1,11 +1,14 @@
-// render INPUT... -o sheet.png: a contact sheet, one row per input.
+// render INPUT... -o sheet.png: a contact sheet, one row per input; with --rig skeletons, with
+// --compare heat maps of the errors of a model.
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "cli/error_sheet.h"
 #include "cli/exit_code.h"
 #include "cli/input.h"
 #include "cli/model_input.h"
@@ -18,6 +21,7 @@
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/fitting/pose_fit.h"
 #include "pleat/rigging/auto_rig.h"
+#include "pleat/skeleton/pose_history.h"
 
 namespace pleat {
 namespace {
@@ -26,34 +30,77 @@ struct RenderVerbOptions {
   std::vector<std::string> inputs, labels;
   std::string output, frames, model, fps;
   std::optional<double> azimuth_degrees;
+  std::optional<int> count;
   SheetOptions sheet;
-  bool rig = false;
+  double scale_mm = ErrorSheetOptions().scale_mm;
+  bool rig = false, compare = false;
 };
 
-// The rows that a model adds below its input: what its rig alone makes of the input's poses, and
-// what rig and learnt detail make of them.
-absl::Status AddModelRows(std::shared_ptr<const CharacterModel> model, const MeshSequence& input,
-                          const Session& session, std::vector<SheetRow>* rows) {
+// Two animations of a model in the poses that were fitted to an input.
+struct ModelAnimations {
+  MeshSequence skinned, hybrid;
+};
+
+// What the model's rig alone makes of the input's poses, and what rig and learnt detail make of
+// them, in the given frames.
+absl::StatusOr<ModelAnimations> AnimateModel(std::shared_ptr<const CharacterModel> model,
+                                             const MeshSequence& input,
+                                             const std::vector<int>& frames,
+                                             const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitMotionWithProgress(*model, input, session));
-  std::vector<Eigen::Matrix3Xf> skinned, hybrid;
-  PoseEvaluator evaluator(std::move(model));
+  std::vector<Eigen::Matrix3Xf> skinned(frames.size()), hybrid(frames.size());
+  PoseEvaluator evaluator(model);
+  PoseHistory history(track, model->frame_rate().fps(), model->options().history);
+  std::vector<const Pose*> poses;
   EvaluatedFrame frame;
-  for (const Pose& pose : track.poses) {
-    PLEAT_RETURN_IF_ERROR(evaluator.EvaluateSkinned(pose, {}, &frame));
-    skinned.push_back(frame.positions);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    history.At(frames[i], &poses);
+    PLEAT_RETURN_IF_ERROR(evaluator.EvaluateSkinned(*poses[0], {}, &frame));
+    skinned[i] = frame.positions;
+    PLEAT_RETURN_IF_ERROR(evaluator.Evaluate(poses, {}, &frame));
+    hybrid[i] = frame.positions;
   }
-  PLEAT_RETURN_IF_ERROR(
-      evaluator.EvaluateClip(track, {}, [&hybrid](int, const EvaluatedFrame& evaluated) {
-        hybrid.push_back(evaluated.positions);
-        return absl::OkStatus();
-      }));
   PLEAT_ASSIGN_OR_RETURN(MeshSequence skinned_sequence,
                          MeshSequence::Create(input.topology(), std::move(skinned)));
   PLEAT_ASSIGN_OR_RETURN(MeshSequence hybrid_sequence,
                          MeshSequence::Create(input.topology(), std::move(hybrid)));
-  rows->insert(rows->begin() + 1, {{"skinned only", std::move(skinned_sequence)},
-                                   {"hybrid", std::move(hybrid_sequence)}});
+  return ModelAnimations{std::move(skinned_sequence), std::move(hybrid_sequence)};
+}
+
+// kInvalidArgument names the first of `frames` that the sequence does not have.
+absl::Status CheckFrames(const std::string& label, const MeshSequence& sequence,
+                         const std::vector<int>& frames) {
+  for (const int t : frames) {
+    if (t < sequence.num_frames()) continue;
+    return absl::InvalidArgumentError(absl::StrCat("'", label, "' has no frame ", t, ": it has ",
+                                                   sequence.num_frames(), " frames, from 0"));
+  }
   return absl::OkStatus();
+}
+
+// --compare: skinned only and hybrid coloured by their distance from the input, and the input.
+absl::StatusOr<std::string> DrawComparison(const RenderVerbOptions& options,
+                                           const Session& session) {
+  if (options.inputs.size() != 2 || options.rig || !options.model.empty() ||
+      !options.labels.empty()) {
+    return UsageError(
+        "--compare takes two inputs, a sequence and a model, and none of --rig, --model, --label");
+  }
+  PLEAT_ASSIGN_OR_RETURN(const MeshSequence truth,
+                         ReadInput(session, options.inputs[0], options.fps));
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
+                         LoadModel(session, options.inputs[1]));
+  std::vector<int> frames = options.sheet.frames;
+  if (frames.empty()) frames = SpacedFrames(truth.num_frames(), options.sheet.count);
+  PLEAT_RETURN_IF_ERROR(CheckFrames(truth.name(), truth, frames));
+  PLEAT_ASSIGN_OR_RETURN(ModelAnimations animations, AnimateModel(model, truth, frames, session));
+  return RenderErrorSheet(
+      truth.Subset(frames), frames,
+      {{"skinned only", std::move(animations.skinned)}, {"hybrid", std::move(animations.hybrid)}},
+      {.scale_mm = options.scale_mm,
+       .azimuth_degrees = options.azimuth_degrees.value_or(model->record().yaw_degrees),
+       .tile_width = options.sheet.tile_width,
+       .tile_height = options.sheet.tile_height});
 }
 
 RigSheetRow::View ViewOf(const std::string& label, const Rig& rig, const Pose& pose,
@@ -76,11 +123,7 @@ RigSheetRow ModelRigRow(const std::string& label, const CharacterModel& model) {
 // them.
 absl::StatusOr<RigSheetRow> SequenceRigRow(const std::string& label, const MeshSequence& sequence,
                                            const std::vector<int>& frames, const Session& session) {
-  for (const int t : frames) {
-    if (t < sequence.num_frames()) continue;
-    return absl::InvalidArgumentError(absl::StrCat("'", label, "' has no frame ", t, ": it has ",
-                                                   sequence.num_frames(), " frames, from 0"));
-  }
+  PLEAT_RETURN_IF_ERROR(CheckFrames(label, sequence, frames));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   AutoRigSummary summary;
   PLEAT_ASSIGN_OR_RETURN(const Rig rig,
@@ -132,8 +175,12 @@ absl::StatusOr<std::string> DrawSheet(RenderVerbOptions options, const Session& 
   if (!options.model.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
                            LoadModel(session, options.model));
-    const MeshSequence input = rows[0].sequence;
-    PLEAT_RETURN_IF_ERROR(AddModelRows(model, input, session, &rows));
+    const MeshSequence& input = rows[0].sequence;
+    std::vector<int> all(input.num_frames());
+    std::iota(all.begin(), all.end(), 0);
+    PLEAT_ASSIGN_OR_RETURN(ModelAnimations animations, AnimateModel(model, input, all, session));
+    rows.insert(rows.begin() + 1, {{"skinned only", std::move(animations.skinned)},
+                                   {"hybrid", std::move(animations.hybrid)}});
     options.sheet.azimuth_degrees = model->record().yaw_degrees;
   }
   if (options.azimuth_degrees) options.sheet.azimuth_degrees = *options.azimuth_degrees;
@@ -147,8 +194,9 @@ absl::Status RunRender(RenderVerbOptions options, const Session& session) {
   if (!options.frames.empty()) {
     PLEAT_ASSIGN_OR_RETURN(options.sheet.frames, ParseFrameList(options.frames));
   }
-  PLEAT_ASSIGN_OR_RETURN(const std::string png,
-                         options.rig ? DrawRigs(options, session) : DrawSheet(options, session));
+  PLEAT_ASSIGN_OR_RETURN(const std::string png, options.compare ? DrawComparison(options, session)
+                                                : options.rig   ? DrawRigs(options, session)
+                                                                : DrawSheet(options, session));
   PLEAT_RETURN_IF_ERROR(WriteFile(options.output, png));
   if (!session.quiet) *session.out << options.output << "\n";
   return absl::OkStatus();
@@ -165,9 +213,9 @@ void AddRenderVerb(CLI::App& app, Session& session) {
   verb->add_option("-o,--output", options->output, "PNG file")->required();
   verb->add_option("--label", options->labels, "title of a row, in the order of the inputs");
   CLI::Option* frames = verb->add_option("--frames", options->frames, "frames to show: 0,10,20");
-  verb->add_option("--count", options->sheet.count, "number of evenly spaced frames to show")
+  verb->add_option("--count", options->count,
+                   "number of evenly spaced frames to show [8; 4 with --compare]")
       ->check(CLI::Range(1, 200))
-      ->capture_default_str()
       ->excludes(frames);
   verb->add_option("--model", options->model,
                    "adds the rows 'skinned only' and 'hybrid' for the first input");
@@ -183,6 +231,13 @@ void AddRenderVerb(CLI::App& app, Session& session) {
   verb->add_flag("--rig", options->rig,
                  "draw mesh and skeleton from two sides: the rig of a model (.pleat), or the "
                  "automatic one of a sequence in its rest frame and in --frames");
+  verb->add_flag("--compare", options->compare,
+                 "INPUT is a sequence and a model: skinned only and hybrid, coloured by the "
+                 "distance of every vertex from the sequence, beside it");
+  verb->add_option("--scale-mm", options->scale_mm,
+                   "with --compare: error at the end of the colour scale, mm")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
   AddServerFlags(verb, session);
 }

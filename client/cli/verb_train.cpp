@@ -144,6 +144,7 @@ void PrintText(const TrainedModel& trained, const std::string& output, std::ostr
       << FormatTable(ErrorTableHeader("training frames"),
                      {ErrorTableRow("skinned only", record.fit, record.diagonal_m),
                       ErrorTableRow("hybrid", record.reconstruction, record.diagonal_m)});
+  out << ValidationText(record.validation);
   PrintWorst(*trained.model, out);
   if (!trained.id.empty()) out << "model " << trained.id << "\n";
   if (!output.empty()) {

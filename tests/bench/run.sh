@@ -82,6 +82,28 @@ for input in "${inputs[@]}"; do
   done
 done
 
+# The paper's figures: tables here, tables and plots in build/bench/experiments.
+figures=build/bench/experiments
+experiments() {  # experiments NAME INPUT [flags...]: all four, on training frames and on unseen ones
+  local name=$1 input=$2
+  shift 2
+  for experiment in full-vs-fine representations resolutions skinned-vs-hybrid; do
+    for preset in paper default; do
+      echo "== $name $experiment --preset $preset $*"
+      "$pleat" evaluate "$input" --experiment $experiment --preset $preset "$@" --quiet \
+        --out "$figures/$name-$preset"
+    done
+  done
+}
+for input in "${inputs[@]}"; do
+  for protocol in reconstruct blocks10; do
+    experiments "$(basename "$input" .pc2)-$protocol" "$input" --protocol $protocol
+  done
+done
+if [ -f "$data/skirt/walk_a.pc2" ]; then
+  experiments skirt "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2"
+fi
+
 if [ -f "$data/skirt/walk_a.pc2" ]; then
   for refine in none joints full; do
     "$pleat" evaluate "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2" \

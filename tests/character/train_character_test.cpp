@@ -96,6 +96,22 @@ INSTANTIATE_TEST_SUITE_P(Learners, TrainThreadsTest,
                                                                    : info.param;
                          });
 
+TEST(TrainCharacterTest, AutoRecordsWhatItChoseBy) {
+  TrainOptions options = FastTrainOptions();
+  options.learner = "auto";
+  options.iterations = 20;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
+                             TrainCharacter({SmallPerformer().sequence}, options));
+  const TrainingRecord& record = model->record();
+  EXPECT_EQ(record.validation.num_held_out_frames, 12);  // a fifth of 60 frames
+  ASSERT_GE(record.validation.mean_percent.size(), 3u);
+  const double chosen = record.validation.mean_percent.at(record.learner);
+  for (const auto& [learner, percent] : record.validation.mean_percent) {
+    EXPECT_GE(percent, chosen) << learner;
+  }
+  EXPECT_EQ(SmallCharacter()->record().validation.num_held_out_frames, 0);  // it was told
+}
+
 TEST(TrainCharacterTest, EveryLearnerTrainsAndIsNamedInTheRecord) {
   for (const std::string& learner : LearnerNames()) {
     TrainOptions options = FastTrainOptions();

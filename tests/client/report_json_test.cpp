@@ -20,6 +20,25 @@ TEST(ReportJson, ErrorsHaveExactlyTheFieldsOfTheSchema) {
             R"("mean_mm":5.0})");
 }
 
+TEST(ReportJson, MotionThatWasNotMeasuredIsNull) {
+  ErrorSummary error;
+  error.motion_mean_mm = 2;
+  error.jitter_mm = 3;
+  EXPECT_TRUE(MotionJson(error)["mean_mm"].is_null());
+  EXPECT_TRUE(MotionJson(error)["jitter_mm"].is_null());
+  error.num_motion_frames = 5;
+  EXPECT_EQ(MotionJson(error)["mean_mm"], 2.0);
+  EXPECT_TRUE(MotionJson(error)["truth_jitter_mm"].is_null());
+  error.num_jitter_frames = 4;
+  EXPECT_EQ(MotionJson(error)["jitter_mm"], 3.0);
+}
+
+TEST(ReportJson, ValidationSaysWhyALearnerWasChosen) {
+  EXPECT_TRUE(ValidationJson({}).is_null());
+  EXPECT_EQ(ValidationJson({12, {{"gp", .25}, {"regional", .5}}}).dump(),
+            R"({"num_held_out_frames":12,"mean_percent":{"gp":0.25,"regional":0.5}})");
+}
+
 TEST(ReportJson, OptionsKeepTheirTypes) {
   const nlohmann::ordered_json json = OptionsJson(TrainOptions::Paper());
   EXPECT_EQ(json["learner"], "sgplvm");
@@ -45,7 +64,8 @@ TEST(ReportJson, EvaluationHasTheFieldsOfTheSchema) {
   EXPECT_EQ(json["baselines"]["zero"]["mean_percent"], 1.5);
   EXPECT_EQ(json["learners"]["gp"]["mean_percent"], .5);
   EXPECT_EQ(json["seconds"]["learn"], 2.0);
-  for (const char* field : {"diagonal_m", "learner", "skinned", "hybrid"}) {
+  EXPECT_TRUE(json["motion"]["learners"]["gp"]["mean_mm"].is_null());
+  for (const char* field : {"diagonal_m", "learner", "skinned", "hybrid", "validation"}) {
     EXPECT_TRUE(json.contains(field)) << field;
   }
 }

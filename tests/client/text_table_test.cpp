@@ -14,6 +14,11 @@ TEST(TextTable, AlignsColumns) {
 
 TEST(TextTable, NoRowsIsTheHeader) { EXPECT_EQ(FormatTable({"a", "b"}, {}), "a  b\n"); }
 
+TEST(TextTable, MarkdownHasARuleBelowItsHeader) {
+  EXPECT_EQ(FormatMarkdownTable({"a", "mm"}, {{"x", "1"}, {"y", "2"}}),
+            "| a | mm |\n|---|---:|\n| x | 1 |\n| y | 2 |\n");
+}
+
 TEST(TextTable, FormatsBytes) {
   EXPECT_EQ(FormatBytes(0), "0 B");
   EXPECT_EQ(FormatBytes(999), "999 B");

@@ -50,6 +50,7 @@ class SmallModelBuilder {
     parts.record.pose_jitter_degrees = 0.5;
     parts.record.unsmoothed_jitter_degrees = 0.625;
     parts.record.unsmoothed_rms_percent = 1.125;
+    parts.record.validation = {4, {{"gp", 0.5}, {"sgplvm", 0.75}}};
     return parts;
   }
   std::shared_ptr<const CharacterModel> Build() { return *CharacterModel::Create(Parts()); }

@@ -19,8 +19,7 @@ class ModelFileTest : public testing::TestWithParam<Learner> {
   const std::string bytes_ = EncodeModel(*model_);
 };
 
-INSTANTIATE_TEST_SUITE_P(Learners, ModelFileTest,
-                         testing::ValuesIn(kAllLearners),
+INSTANTIATE_TEST_SUITE_P(Learners, ModelFileTest, testing::ValuesIn(kAllLearners),
                          [](const auto& info) { return LearnerName(info.param); });
 
 TEST_P(ModelFileTest, EverythingRoundTrips) {
@@ -48,6 +47,8 @@ TEST_P(ModelFileTest, EverythingRoundTrips) {
   EXPECT_EQ(read->record().pose_jitter_degrees, 0.5);
   EXPECT_EQ(read->record().unsmoothed_jitter_degrees, 0.625);
   EXPECT_EQ(read->record().unsmoothed_rms_percent, 1.125);
+  EXPECT_EQ(read->record().validation.num_held_out_frames, 4);
+  EXPECT_EQ(read->record().validation.mean_percent, model_->record().validation.mean_percent);
 }
 
 TEST_P(ModelFileTest, ReadModelPredictsTheSameBits) {

@@ -46,6 +46,25 @@ TEST(LinePlot, LeavesGapsAndTakesSinglePointsAndConstants) {
   EXPECT_THAT(RenderLinePlot({{"tiny", {1e-300, 2e-300}}}, options), IsOk());
 }
 
+TEST(LinePlot, LongLegendsTakeMoreRowsAndStayInside) {
+  LinePlotOptions options;
+  options.width = 300;
+  std::vector<PlotSeries> series;
+  for (int i = 0; i < 6; ++i) series.push_back({"a series with a long name", {0, double(i)}});
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Image image, RenderLinePlot(series, options));
+  // One swatch below the other, and the curve of the last series somewhere below them.
+  const Rgb first{0, 114, 178}, second{213, 94, 0};
+  const auto highest = [&](Rgb colour) {
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        if (image.at(x, y) == colour) return y;
+      }
+    }
+    return image.height();
+  };
+  EXPECT_GT(highest(second), highest(first) + 5);
+}
+
 TEST(LinePlot, RefusesNothingToDraw) {
   EXPECT_THAT(RenderLinePlot({}, {}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("no finite value")));

@@ -197,6 +197,7 @@ TEST(MessagesTest, SequencesJobsAndModelsComeBack) {
   model.record.pose_jitter_degrees = .25;
   model.record.unsmoothed_jitter_degrees = .375;
   model.record.unsmoothed_rms_percent = .625;
+  model.record.validation = {9, {{"gp", .25}, {"sgplvm", .5}}};
   PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo m, FromProto(Reparse(ToProto(model))));
   EXPECT_EQ(m.skeleton.joint(1).name, "chest");
   EXPECT_EQ(m.skeleton.rest_position(1), model.skeleton.rest_position(1));
@@ -212,6 +213,8 @@ TEST(MessagesTest, SequencesJobsAndModelsComeBack) {
   EXPECT_EQ(m.record.pose_jitter_degrees, .25);
   EXPECT_EQ(m.record.unsmoothed_jitter_degrees, .375);
   EXPECT_EQ(m.record.unsmoothed_rms_percent, .625);
+  EXPECT_EQ(m.record.validation.num_held_out_frames, 9);
+  EXPECT_EQ(m.record.validation.mean_percent, model.record.validation.mean_percent);
 }
 
 TEST(MessagesTest, CompressionsComeBack) {

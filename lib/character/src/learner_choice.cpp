@@ -87,8 +87,10 @@ DetailModelOptions ModelOptionsOf(const std::string& learner, const TrainOptions
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 const std::string& learner,
                                                                 const TrainOptions& options,
-                                                                const Progress& progress) {
+                                                                const Progress& progress,
+                                                                DirectGp* direct_gp) {
   DetailModelOptions model_options = ModelOptionsOf(learner, options, data.regions);
+  if (direct_gp && *direct_gp) model_options.trained_gp = &**direct_gp;
   Eigen::MatrixXd encoded;
   if (data.differential) {
     encoded = data.differential->Encode(data.details);
@@ -99,12 +101,13 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
   PLEAT_ASSIGN_OR_RETURN(DetailModel model,
                          TrainDetailModel(data.features, data.differential ? encoded : data.details,
                                           data.clip_starts, model_options, nullptr, progress));
+  const bool has_direct_gp = learner == "gp" || learner == "regional";
+  if (direct_gp && has_direct_gp && !*direct_gp) *direct_gp = model.stages().front();
   return std::make_shared<const DetailModel>(std::move(model));
 }
 
 absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,
-                                          double diagonal_m,
-                                          std::map<std::string, double>* validation_mean_percent,
+                                          double diagonal_m, LearnerValidation* validation,
                                           const Progress& progress) {
   if (options.learner != "auto") return options.learner;
   const int num_rows = static_cast<int>(data.features.rows());
@@ -116,7 +119,8 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
   part.clip_starts = split.train_clip_starts;
   part.regions = data.regions;
   part.differential = data.differential;
-  const std::vector<std::string> candidates = {"regional", "gp", "sgplvm"};
+  const std::vector<std::string> candidates = {"gp", "regional", "sgplvm"};
+  DirectGp direct_gp;
   std::string best;
   double best_error = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < candidates.size(); ++i) {
@@ -124,10 +128,12 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
     PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> model,
                            LearnDetails(part, candidates[i], options,
                                         progress.Stage(absl::StrCat("validate ", candidates[i]),
-                                                       begin, begin + 1.0 / candidates.size())));
+                                                       begin, begin + 1.0 / candidates.size()),
+                                        &direct_gp));
     const double error = HeldOutError(*model, data, split.held_out);
-    if (validation_mean_percent) {
-      (*validation_mean_percent)[candidates[i]] = 100 * error / diagonal_m;
+    if (validation) {
+      validation->num_held_out_frames = static_cast<int>(split.held_out.size());
+      validation->mean_percent[candidates[i]] = 100 * error / diagonal_m;
     }
     if (error < best_error) {
       best_error = error;

@@ -99,7 +99,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
   PLEAT_ASSIGN_OR_RETURN(
       const LearningData data,
       ComputeLearningData(rigged, track, options, resources, progress.Stage("detail", .45, .5)));
-  std::map<std::string, double> validation;
+  LearnerValidation validation;
   PLEAT_ASSIGN_OR_RETURN(
       const std::string learner,
       ChooseLearner(data, options, diagonal_m, &validation, progress.Stage("validate", .5, .75)));
@@ -112,11 +112,11 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
       TrainingRecord record,
       MeasureReconstruction(unmeasured, frames.sequence, track, progress.Stage("measure", .95, 1)));
   constexpr double kDegrees = 180 / std::numbers::pi;
+  record.validation = std::move(validation);
   record.pose_jitter_degrees = kDegrees * fit.jitter_rad;
   record.unsmoothed_jitter_degrees = kDegrees * fit.unsmoothed_jitter_rad;
   record.unsmoothed_rms_percent = 100 * fit.unsmoothed_rms_m / diagonal_m;
   if (summary) {
-    summary->validation_mean_percent = std::move(validation);
     summary->num_components = static_cast<int>(detail_model->basis().cols());
     summary->num_control_vertices = static_cast<int>(data.control_vertices.size());
   }

@@ -75,16 +75,19 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
 
 // Trains the learner named `learner`, one of LearnerNames(). The model predicts offsets, whatever
 // coordinates it was trained in.
+// The direct GP of some data and options, once one of the learners has trained it. `direct_gp` may
+// be null; else it is taken from there, or left there.
+using DirectGp = std::optional<GpRegression>;
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 const std::string& learner,
                                                                 const TrainOptions& options,
-                                                                const Progress& progress);
+                                                                const Progress& progress,
+                                                                DirectGp* direct_gp = nullptr);
 
 // The learner of `options`; for "auto" the one with the lowest error on contiguous blocks of
-// training frames that it did not see. validation_mean_percent: filled then, of diagonal_m.
+// training frames that it did not see. validation: filled then, in % of diagonal_m; may be null.
 absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,
-                                          double diagonal_m,
-                                          std::map<std::string, double>* validation_mean_percent,
+                                          double diagonal_m, LearnerValidation* validation,
                                           const Progress& progress);
 
 // All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, metres.

@@ -116,8 +116,8 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
       ComputeDetailRotations(options.axes, rig.weights, vertices, transforms, &rotations);
       for (size_t c = 0; c < vertices.size(); ++c) {
         const int v = vertices[c];
-        const Eigen::Vector3d offset =
-            sequence.frame(t).col(v).cast<double>() - BaseOfVertex(options.base, rig, transforms, v);
+        const Eigen::Vector3d offset = sequence.frame(t).col(v).cast<double>() -
+                                       BaseOfVertex(options.base, rig, transforms, v);
         details.block<1, 3>(t, 3 * c) = (rotations[c].conjugate() * offset).transpose();
       }
     });

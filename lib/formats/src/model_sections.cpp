@@ -264,6 +264,12 @@ void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
   writer->Write(record.pose_jitter_degrees);
   writer->Write(record.unsmoothed_jitter_degrees);
   writer->Write(record.unsmoothed_rms_percent);
+  writer->Write(static_cast<int32_t>(record.validation.num_held_out_frames));
+  writer->Write(static_cast<uint32_t>(record.validation.mean_percent.size()));
+  for (const auto& [learner, percent] : record.validation.mean_percent) {
+    writer->WriteString(Clip(learner));
+    writer->Write(percent);
+  }
 }
 
 namespace {
@@ -289,6 +295,20 @@ absl::Status ReadFitReport(ByteReader* reader, TrainingRecord* record) {
   return absl::OkStatus();
 }
 
+// What chose the learner; older files of this version lack it.
+absl::Status ReadValidation(ByteReader* reader, LearnerValidation* validation) {
+  PLEAT_ASSIGN_OR_RETURN(validation->num_held_out_frames,
+                         reader->Read<int32_t>("held-out frame count"));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>("learner count"));
+  for (uint32_t i = 0; i < count; ++i) {
+    PLEAT_ASSIGN_OR_RETURN(const std::string learner,
+                           reader->ReadString(kMaxNameBytes, "validated learner"));
+    PLEAT_ASSIGN_OR_RETURN(validation->mean_percent[learner],
+                           reader->Read<double>("validation error"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
@@ -311,6 +331,7 @@ absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
     record.warnings.push_back(std::move(warning));
   }
   if (reader->remaining() > 0) PLEAT_RETURN_IF_ERROR(ReadFitReport(reader, &record));
+  if (reader->remaining() > 0) PLEAT_RETURN_IF_ERROR(ReadValidation(reader, &record.validation));
   return record;
 }
 

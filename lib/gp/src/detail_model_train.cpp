@@ -114,6 +114,14 @@ class DetailModelTrainer {
   }
 
   absl::Status TrainGp(const Eigen::MatrixXd& scores) {
+    if (options_.trained_gp) {
+      if (options_.trained_gp->num_inputs() != features_.cols() ||
+          options_.trained_gp->num_outputs() != scores.cols()) {
+        return absl::InvalidArgumentError("the trained GP has other inputs or outputs");
+      }
+      model_.stages_.push_back(*options_.trained_gp);
+      return absl::OkStatus();
+    }
     const double end = options_.learner == Learner::kRegional ? .3 : .95;
     PLEAT_ASSIGN_OR_RETURN(GpRegression stage,
                            GpRegression::Train(features_, scores, options_.gp, &summary_.gp,

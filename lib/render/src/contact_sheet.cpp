@@ -90,6 +90,7 @@ Image RenderTile(const SheetTile& tile, const Eigen::Vector3d& shift, const Came
                  std::optional<double> floor_y) {
   RenderOptions render;
   render.vertex_colours = tile.vertex_colours;
+  render.shading = tile.shading;
   render.floor_y = floor_y;
   render.skeleton = tile.skeleton;
   if (render.skeleton) render.skeleton->joints.colwise() += shift;

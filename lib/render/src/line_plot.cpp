@@ -39,12 +39,36 @@ struct Range {
   }
 };
 
+// Where the legend's entries go: rows from the left, below the title.
+struct LegendPlace {
+  int x, y;
+};
+constexpr int kLegendTop = 26, kLegendLine = 14, kSwatch = 18, kLegendSpace = 16, kLeft = 64,
+              kRightMargin = 16;
+
+std::vector<LegendPlace> PlaceLegend(const std::vector<PlotSeries>& series, int width) {
+  std::vector<LegendPlace> places;
+  int x = kLeft, y = kLegendTop;
+  for (const PlotSeries& s : series) {
+    const int entry = kSwatch + TextWidth(s.name, 1) + kLegendSpace;
+    if (x > kLeft && x + entry > width - kRightMargin) {
+      x = kLeft;
+      y += kLegendLine;
+    }
+    places.push_back({x, y});
+    x += entry;
+  }
+  return places;
+}
+
 class Plot {
  public:
-  Plot(const LinePlotOptions& options, Range x, Range y)
-      : image_(options.width, options.height), x_(x), y_(y) {
-    right_ = options.width - 16;
-    top_ = 34 + kLegendHeight;
+  Plot(const LinePlotOptions& options, std::vector<LegendPlace> legend, Range x, Range y)
+      : image_(options.width, options.height), legend_(std::move(legend)), x_(x), y_(y) {
+    right_ = options.width - kRightMargin;
+    // At least half of the picture is left to the curves.
+    top_ = std::min((legend_.empty() ? kLegendTop : legend_.back().y + kLegendLine) + kLegendLine,
+                    options.height / 2);
     bottom_ = options.height - 40;
   }
 
@@ -54,14 +78,13 @@ class Plot {
   Image Release() { return std::move(image_); }
 
  private:
-  static constexpr int kLegendHeight = 14, kLeft = 64;
-
   double X(double x) const { return kLeft + (x - x_.low) / (x_.high - x_.low) * (right_ - kLeft); }
   double Y(double y) const {
     return bottom_ - (y - y_.low) / (y_.high - y_.low) * (bottom_ - top_);
   }
 
   Image image_;
+  std::vector<LegendPlace> legend_;
   Range x_, y_;
   int right_, top_, bottom_;
 };
@@ -89,19 +112,14 @@ void Plot::DrawFrame(const LinePlotOptions& options) {
   image_.FillRectangle(kLeft, bottom_, right_ - kLeft, 1, kAxis);
   DrawText(&image_, (kLeft + right_ - TextWidth(options.x_label, 1)) / 2, bottom_ + 22,
            options.x_label, 1, kInk);
-  DrawText(&image_, 6, top_ - kLegendHeight, options.y_label, 1, kInk);  // above the axis
+  DrawText(&image_, 6, top_ - kLegendLine, options.y_label, 1, kInk);  // above the axis
 }
 
 void Plot::DrawLegend(const std::vector<PlotSeries>& series) {
-  constexpr int kSwatch = 18, kSpace = 16;
-  int width = 0;
-  for (const PlotSeries& s : series) width += kSwatch + TextWidth(s.name, 1) + kSpace;
-  int x = right_ - width;
   for (size_t i = 0; i < series.size(); ++i) {
-    const int y = top_ - kLegendHeight;
+    const auto [x, y] = legend_[i];
     image_.FillRectangle(x, y + 3, kSwatch - 5, 3, kPalette[i % kPalette.size()]);
     DrawText(&image_, x + kSwatch, y, series[i].name, 1, kInk);
-    x += kSwatch + TextWidth(series[i].name, 1) + kSpace;
   }
 }
 
@@ -141,7 +159,7 @@ absl::StatusOr<Image> RenderLinePlot(const std::vector<PlotSeries>& series,
   y.Widen();
   y.high += .04 * (y.high - y.low);
 
-  Plot plot(options, x, y);
+  Plot plot(options, PlaceLegend(series, options.width), x, y);
   plot.DrawFrame(options);
   for (size_t i = 0; i < series.size(); ++i) {
     plot.DrawSeries(series[i], options.first_x, kPalette[i % kPalette.size()]);

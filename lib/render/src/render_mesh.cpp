@@ -35,12 +35,13 @@ Eigen::Matrix3Xf VertexNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& positio
   return (camera_from_world * normals).colwise().normalized().cast<float>();
 }
 
-Rgb Shade(const Vector3f& colour, const Vector3f& normal) {
+Rgb Shade(const Vector3f& colour, const Vector3f& normal, float shading) {
   static const Vector3f kKey = Vector3f(-.45f, .60f, .66f).normalized();
   static const Vector3f kFill = Vector3f(.80f, .10f, .60f).normalized();
   const float light = .30f + .08f * normal.y() + .62f * std::max(0.f, normal.dot(kKey)) +
                       .20f * std::max(0.f, normal.dot(kFill));
-  const Vector3f lit = (colour * light * 1.12f).cwiseMin(255.f).cwiseMax(0.f);
+  const float factor = 1 + shading * (light * 1.12f - 1);
+  const Vector3f lit = (colour * factor).cwiseMin(255.f).cwiseMax(0.f);
   return {static_cast<uint8_t>(lit.x()), static_cast<uint8_t>(lit.y()),
           static_cast<uint8_t>(lit.z())};
 }
@@ -53,7 +54,7 @@ class Rasteriser {
                std::numeric_limits<float>::infinity()) {}
 
   void DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c,
-                    const Vector3f& back_colour);
+                    const Vector3f& back_colour, float shading);
   // A line hidden where the mesh is nearer; ends in samples with depth.
   void DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb colour);
   Image Downsample() const;
@@ -64,7 +65,8 @@ class Rasteriser {
 };
 
 void Rasteriser::DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b,
-                              const ProjectedVertex& c, const Vector3f& back_colour) {
+                              const ProjectedVertex& c, const Vector3f& back_colour,
+                              float shading) {
   // y runs down, so a counter-clockwise (front) face has negative area here.
   const float area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
   if (area == 0) return;
@@ -90,7 +92,8 @@ void Rasteriser::DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b
       nearest = depth;
       const Vector3f normal = (u * a.normal + v * b.normal + w * c.normal).normalized();
       const Vector3f colour = u * a.colour + v * b.colour + w * c.colour;
-      image_.at(x, y) = front ? Shade(colour, normal) : Shade(back_colour, Vector3f(-normal));
+      image_.at(x, y) =
+          front ? Shade(colour, normal, shading) : Shade(back_colour, Vector3f(-normal), 1);
     }
   }
 }
@@ -192,7 +195,8 @@ Image RenderMesh(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
   const Vector3f back_colour = to_vector(options.back_colour);
   for (int f = 0; f < triangles.cols(); ++f) {
     rasteriser.DrawTriangle(vertices[triangles(0, f)], vertices[triangles(1, f)],
-                            vertices[triangles(2, f)], back_colour);
+                            vertices[triangles(2, f)], back_colour,
+                            static_cast<float>(options.shading));
   }
   if (options.floor_y) DrawFloor(positions, *options.floor_y, camera, &rasteriser);
   Image image = rasteriser.Downsample();

@@ -83,6 +83,10 @@ v1::TrainingRecord ToProto(const TrainingRecord& record) {
   message.set_pose_jitter_degrees(record.pose_jitter_degrees);
   message.set_unsmoothed_jitter_degrees(record.unsmoothed_jitter_degrees);
   message.set_unsmoothed_rms_percent(record.unsmoothed_rms_percent);
+  message.set_num_held_out_frames(record.validation.num_held_out_frames);
+  for (const auto& [learner, percent] : record.validation.mean_percent) {
+    (*message.mutable_validation_mean_percent())[learner] = percent;
+  }
   return message;
 }
 
@@ -105,6 +109,9 @@ TrainingRecord FromProto(const v1::TrainingRecord& message) {
   record.pose_jitter_degrees = message.pose_jitter_degrees();
   record.unsmoothed_jitter_degrees = message.unsmoothed_jitter_degrees();
   record.unsmoothed_rms_percent = message.unsmoothed_rms_percent();
+  record.validation.num_held_out_frames = message.num_held_out_frames();
+  record.validation.mean_percent.insert(message.validation_mean_percent().begin(),
+                                        message.validation_mean_percent().end());
   return record;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,10 +26,18 @@ struct FrameError {
   double mean_percent = 0;  // mean vertex distance
 };
 
+// How learners did on contiguous blocks of training frames that they did not see, which is what
+// the learner "auto" chooses by.
+struct LearnerValidation {
+  int num_held_out_frames = 0;                 // 0: nothing was held out
+  std::map<std::string, double> mean_percent;  // per learner: mean vertex distance
+};
+
 // What training found out about its own result; kept in the model file.
 struct TrainingRecord {
-  std::string learner;  // the learner that was chosen: "regional", "gp", "sgplvm"
-  int num_frames = 0;   // training frames
+  std::string learner;           // the learner that was chosen, one of LearnerNames()
+  LearnerValidation validation;  // that chose it
+  int num_frames = 0;            // training frames
   int rest_frame = 0;
   double yaw_degrees = 0;       // facing that was found
   double rig_residual = 0;      // of the embedding; under .03 is trusted

@@ -37,6 +37,7 @@ struct EvaluateOptions {
   TrainResources resources;
   // Which learners are measured; the chosen one is always among them.
   std::vector<std::string> learners = {"sgplvm", "gp", "regional"};
+  bool measure_baselines = true;
   // Protocol cross: further clips to train on, of the connectivity of the first.
   std::vector<MeshSequence> more_training_clips;
   std::function<double()> clock_seconds;  // for EvaluateReport::seconds; absent = zeros
@@ -46,10 +47,12 @@ struct EvaluateReport {
   std::string protocol;
   double diagonal_m = 0;
   int num_train_frames = 0, num_test_frames = 0;
-  std::string learner;  // the one behind `hybrid`
+  std::string learner;           // the one behind `hybrid`
+  LearnerValidation validation;  // that chose it
+  int num_control_vertices = 0;
   ErrorSummary skinned, hybrid;
   std::map<std::string, ErrorSummary> baselines;  // "zero", "mean", "nearest", "ridge"
-  std::map<std::string, ErrorSummary> learners;   // "sgplvm", "gp", "regional"
+  std::map<std::string, ErrorSummary> learners;   // by name, LearnerNames()
   std::map<std::string, double> seconds;          // "read", "rig", "fit", "learn", "predict"
   TrainOptions options;
   std::vector<int> test_frames;

@@ -1,7 +1,6 @@
 // Offline: mesh sequences -> character model (steps 3 to 7 of the data's way, ARCHITECTURE.md).
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,8 +20,7 @@ struct TrainResources {
 
 // What a training run reports beside the model (the model's record holds the rest).
 struct TrainSummary {
-  std::map<std::string, double> validation_mean_percent;  // per learner, when learner = "auto"
-  int num_components = 0;                                 // of the detail basis
+  int num_components = 0;  // of the detail basis
   int num_control_vertices = 0;
 };
 

@@ -63,6 +63,10 @@ struct DetailModelOptions {
   // (D_M x k) takes mean and basis there. None: as they are.
   std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> output_map{};
 
+  // The direct GP of the same features, details, energy and components, when a model of learner gp
+  // or regional has trained it before: taken as it is. Must outlive the training.
+  const GpRegression* trained_gp = nullptr;
+
   // Of the regional learner, the rest is the direct GP's: the mean of two models errs less than
   // either, and the direct GP is what knows how far a pose is from training.
   double regional_share = .75;

@@ -16,6 +16,7 @@ struct SheetTile {
   Eigen::Matrix3Xd positions;                   // 3 x V, metres
   const Eigen::Matrix3Xi* triangles = nullptr;  // 3 x F, must outlive the call
   std::vector<Rgb> vertex_colours;              // V, or empty
+  double shading = 1;                           // as in RenderOptions
   std::optional<SkeletonOverlay> skeleton;
   std::string label;  // lower left corner, e.g. "frame 12"
 };

@@ -24,7 +24,9 @@ struct RenderOptions {
   Rgb back_colour{196, 130, 110};  // of faces seen from behind
   Rgb background{255, 255, 255};
   std::vector<Rgb> vertex_colours;  // V, or empty
-  std::optional<double> floor_y;    // draws a half-metre grid at this height, metres
+  // 1: lit; 0: colours as they are, whose meaning light would change; between: both mixed.
+  double shading = 1;
+  std::optional<double> floor_y;  // draws a half-metre grid at this height, metres
   std::optional<SkeletonOverlay> skeleton;
 };
 

@@ -1,0 +1,34 @@
+// Errors of predicted test frames, whoever predicts them.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "baselines.h"
+#include "pleat/base/progress.h"
+#include "pleat/character/character_model.h"
+#include "pleat/mesh/error_metrics.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/skeleton/pose.h"
+
+namespace pleat {
+
+// Everything the comparison needs for one test frame at a time.
+struct TestSide {
+  MeshSequence sequence;    // the whole clip that holds the test frames
+  PoseTrack track;          // its poses, fitted with the trained rig
+  std::vector<int> frames;  // test frames, ascending
+};
+
+// Of the model, or with `skinned_only` of its rig alone.
+absl::StatusOr<ErrorSummary> MeasureModel(const std::shared_ptr<const CharacterModel>& model,
+                                          const TestSide& test, double diagonal_m,
+                                          bool skinned_only, const Progress& progress);
+
+// A baseline predicts control details; the rest of the way is the model's own.
+absl::StatusOr<ErrorSummary> MeasureBaseline(const DetailPredictor& predictor,
+                                             const CharacterModel& model, const TestSide& test,
+                                             double diagonal_m, const Progress& progress);
+
+}  // namespace pleat
