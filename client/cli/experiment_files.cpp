@@ -157,7 +157,10 @@ absl::StatusOr<std::map<std::string, std::string>> ExperimentPlots(
   std::map<std::string, std::string> plots;
   for (const std::string& group : Groups(report)) {
     std::vector<PlotSeries> series;
-    LinePlotOptions options{.width = 1000, .height = 420, .title = Title(report, subject)};
+    LinePlotOptions options;
+    options.width = 1000;
+    options.height = 420;
+    options.title = Title(report, subject);
     for (const ExperimentRow& row : report.rows) {
       if (row.variant.group != group) continue;
       const EvaluateReport& measured = row.report;

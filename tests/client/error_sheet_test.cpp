@@ -68,8 +68,9 @@ TEST(ErrorSheet, ThePictureShowsTheColourOfTheLegend) {
     tile.triangles = &truth.topology().triangles();
     tile.vertex_colours = ErrorColours(scale, tile.positions, truth.FrameAsDouble(0));
     tile.shading = 0;
-    PLEAT_ASSERT_OK_AND_ASSIGN(const Image image,
-                               RenderContactSheet({tile}, {.num_columns = 1, .floor = false}));
+    ContactSheetOptions sheet;
+    sheet.floor = false;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Image image, RenderContactSheet({tile}, sheet));
     const Rgb shown = MainColour(image), expected = scale(std::min(error_mm, 25.));
     EXPECT_NEAR(shown.r, expected.r, 1) << error_mm;
     EXPECT_NEAR(shown.g, expected.g, 1) << error_mm;
