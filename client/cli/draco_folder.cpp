@@ -1,5 +1,6 @@
 #include "cli/draco_folder.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cli/draco_process.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/codec/frame_decoder.h"
@@ -16,7 +18,6 @@ namespace {
 
 constexpr char kSchema[] = "pleat.drc/1";
 constexpr uint64_t kMaxHeaderBytes = uint64_t{1} << 28;
-constexpr uint64_t kMaxFrameBytes = uint64_t{1} << 30;
 constexpr int kMaxFrames = 1'000'000;
 
 std::string FramePath(const std::string& folder, int t) {
@@ -88,6 +89,69 @@ absl::StatusOr<DracoFolder> ParseHeader(const std::string& text, const std::stri
   return folder;
 }
 
+// Decodes one file of the stream; it must have `num_positions` positions.
+absl::StatusOr<DracoGeometry> ReadGeometry(const StreamHeader& header, int num_positions,
+                                           const std::string& path, const Progress& progress) {
+  DracoProcessOptions options;
+  options.limits.max_vertices = static_cast<uint32_t>(header.num_points);
+  options.limits.max_triangles = static_cast<uint32_t>(header.num_triangles);
+  PLEAT_ASSIGN_OR_RETURN(DracoGeometry geometry, DecodeDracoInChild(path, progress, options));
+  if (geometry.positions.cols() == num_positions) return geometry;
+  return absl::DataLossError(absl::StrCat(path, ": ", geometry.positions.cols(),
+                                          " positions, the stream declared ", num_positions));
+}
+
+// Vertex numbers of all positions, each vertex at least once.
+absl::Status CheckNumbers(const DracoGeometry& geometry, int num_vertices,
+                          const std::string& path) {
+  std::vector<bool> seen(num_vertices, false);
+  for (const int32_t v : geometry.vertex_numbers) {
+    if (v < 0 || v >= num_vertices) {
+      return absl::DataLossError(absl::StrCat(path, ": a vertex number out of range: ", v));
+    }
+    seen[v] = true;
+  }
+  if (std::find(seen.begin(), seen.end(), false) == seen.end()) return absl::OkStatus();
+  return absl::DataLossError(absl::StrCat(path, ": not every vertex is there"));
+}
+
+absl::StatusOr<DracoGeometry> ReadStreamMesh(const DracoFolder& stream, const std::string& path,
+                                             const Progress& progress) {
+  const StreamHeader& header = stream.header;
+  PLEAT_ASSIGN_OR_RETURN(DracoGeometry geometry,
+                         ReadGeometry(header, header.num_points, path, progress));
+  if (geometry.triangles.cols() != header.num_triangles) {
+    return absl::DataLossError(absl::StrCat(path, ": ", geometry.triangles.cols(),
+                                            " triangles, the stream declared ",
+                                            header.num_triangles));
+  }
+  PLEAT_RETURN_IF_ERROR(CheckNumbers(geometry, header.num_vertices, path));
+  return geometry;
+}
+
+absl::StatusOr<Topology> ReadTopology(const DracoFolder& stream, const std::string& path,
+                                      const Progress& progress) {
+  PLEAT_ASSIGN_OR_RETURN(DracoGeometry geometry, ReadStreamMesh(stream, path, progress));
+  for (int& corner : geometry.triangles.reshaped()) corner = geometry.vertex_numbers[corner];
+  return Topology::FromTriangles(stream.header.num_vertices, geometry.triangles);
+}
+
+// 3 x V, metres, in the character's vertex order.
+absl::StatusOr<Eigen::Matrix3Xf> ReadFrame(const DracoFolder& stream, const std::string& path,
+                                           const Progress& progress) {
+  const StreamHeader& header = stream.header;
+  Eigen::Matrix3Xf positions(3, header.num_vertices);
+  const bool is_mesh = header.encoding == FrameEncoding::kDracoMesh;
+  PLEAT_ASSIGN_OR_RETURN(const DracoGeometry geometry,
+                         is_mesh ? ReadStreamMesh(stream, path, progress)
+                                 : ReadGeometry(header, header.num_vertices, path, progress));
+  const std::vector<int32_t>& vertices = is_mesh ? geometry.vertex_numbers : header.vertex_order;
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    positions.col(vertices[i]) = geometry.positions.col(static_cast<Eigen::Index>(i));
+  }
+  return positions;
+}
+
 }  // namespace
 
 absl::Status DracoFolderWriter::AddFrame(std::string_view draco_bytes) {
@@ -112,25 +176,23 @@ bool IsDracoFolder(const std::string& path) {
 absl::StatusOr<MeshSequence> ReadDracoFolder(const std::string& folder, const Progress& progress) {
   const std::string header_path = folder + "/stream.json";
   PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(header_path, kMaxHeaderBytes));
-  PLEAT_ASSIGN_OR_RETURN(DracoFolder stream, ParseHeader(text, header_path));
-  PLEAT_ASSIGN_OR_RETURN(stream.header.topology,
-                         ReadFile(folder + "/topology.drc", kMaxFrameBytes));
-  PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(stream.header)));
+  PLEAT_ASSIGN_OR_RETURN(const DracoFolder stream, ParseHeader(text, header_path));
+  if (absl::Status status = CheckStreamHeader(stream.header); !status.ok()) {
+    return absl::Status(status.code(), absl::StrCat(header_path, ": ", status.message()));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const Topology topology,
+                         ReadTopology(stream, folder + "/topology.drc", progress));
   MeshSequenceOptions options;
   options.name = std::filesystem::path(folder).lexically_normal().filename().string();
   options.frame_rate = stream.frame_rate;
   std::vector<Eigen::Matrix3Xf> frames;
   for (int t = 0; t < stream.num_frames; ++t) {
-    const std::string path = FramePath(folder, t);
-    PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, kMaxFrameBytes));
-    Eigen::Matrix3Xf positions;
-    if (absl::Status status = decoder.Decode(bytes, &positions); !status.ok()) {
-      return absl::Status(status.code(), absl::StrCat(path, ": ", status.message()));
-    }
+    PLEAT_ASSIGN_OR_RETURN(Eigen::Matrix3Xf positions,
+                           ReadFrame(stream, FramePath(folder, t), progress));
     frames.push_back(std::move(positions));
     PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / stream.num_frames));
   }
-  return MeshSequence::Create(decoder.topology(), std::move(frames), std::move(options));
+  return MeshSequence::Create(topology, std::move(frames), std::move(options));
 }
 
 }  // namespace pleat

@@ -1,6 +1,7 @@
 #include "cli/input.h"
 
 #include "cli/draco_folder.h"
+#include "cli/draco_process.h"
 #include "cli/frame_rate.h"
 #include "cli/progress_display.h"
 #include "pleat/base/status.h"
@@ -15,10 +16,12 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
     PLEAT_ASSIGN_OR_RETURN(options.frame_rate, ParseFrameRate(fps));
   }
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  if (IsDracoFolder(input)) {
-    return ReadDracoFolder(input, InterruptibleProgress(&display).Stage("read", 0, 1));
-  }
-  return ReadSequence(input, options, InterruptibleProgress(&display).Stage("read", 0, 1));
+  const Progress progress = InterruptibleProgress(&display).Stage("read", 0, 1);
+  if (IsDracoFolder(input)) return ReadDracoFolder(input, progress);
+  options.read_draco = [&progress](const std::string& path) {
+    return ReadDracoMesh(path, progress);
+  };
+  return ReadSequence(input, options, progress);
 }
 
 }  // namespace pleat

@@ -113,12 +113,18 @@ TEST_F(SequenceReaderTest, EmptyAndMissingAndDoubledFramesAreNamed) {
 
 TEST_F(SequenceReaderTest, UnknownInputListsWhatIsKnown) {
   Write("a.fbx", "Kaydara");
-  EXPECT_THAT(Read("a.fbx"), HasStatus(kInvalid, AllOf(HasSubstr("'.fbx'"),
-                                                       HasSubstr(".obj, .ply, .pc2, .pseq"))));
+  EXPECT_THAT(
+      Read("a.fbx"),
+      HasStatus(kInvalid, AllOf(HasSubstr("'.fbx'"), HasSubstr(".obj, .ply, .drc, .pc2, .pseq"))));
   EXPECT_THAT(Read(""), HasStatus(absl::StatusCode::kNotFound,
                                   AllOf(HasSubstr(".obj, .ply"), HasSubstr("'.fbx'"))));
   EXPECT_THAT(Read("*.fbx"), HasStatus(kInvalid, HasSubstr("unknown extension")));
   EXPECT_THAT(Read("absent"), HasStatus(absl::StatusCode::kNotFound, HasSubstr("absent")));
+}
+
+TEST_F(SequenceReaderTest, DracoIsReadByThoseWhoBringAReader) {
+  Write("d0.drc", "DRACO");
+  EXPECT_THAT(Read("d0.drc"), HasStatus(kInvalid, HasSubstr("not read here")));
 }
 
 TEST_F(SequenceReaderTest, MixedKindsAreRefused) {

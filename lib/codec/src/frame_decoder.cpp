@@ -8,9 +8,7 @@
 #include "pleat/base/status.h"
 
 namespace pleat {
-namespace {
-
-absl::Status CheckHeader(const StreamHeader& header, const FrameDecoderLimits& limits) {
+absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLimits& limits) {
   if (header.encoding != FrameEncoding::kDracoMesh &&
       header.encoding != FrameEncoding::kDracoPointCloud &&
       header.encoding != FrameEncoding::kDracoDelta) {
@@ -44,6 +42,8 @@ absl::Status CheckHeader(const StreamHeader& header, const FrameDecoderLimits& l
   return absl::OkStatus();
 }
 
+namespace {
+
 // positions (3 x V): column point_vertices[p] = points.col(p). False when a vertex has no point.
 bool Scatter(const Eigen::Matrix3Xf& points, const std::vector<int32_t>& point_vertices,
              int num_vertices, Eigen::Matrix3Xf* positions) {
@@ -68,7 +68,7 @@ FrameDecoder::FrameDecoder(StreamHeader header, Topology topology, Eigen::Matrix
 
 absl::StatusOr<FrameDecoder> FrameDecoder::Create(StreamHeader header,
                                                   const FrameDecoderLimits& limits) {
-  PLEAT_RETURN_IF_ERROR(CheckHeader(header, limits));
+  PLEAT_RETURN_IF_ERROR(CheckStreamHeader(header, limits));
   Eigen::Matrix3Xf points, reference;
   std::vector<int32_t> point_vertices;
   Eigen::Matrix3Xi triangles;

@@ -23,16 +23,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr absl::string_view kKnownExtensions = ".obj, .ply, .pc2, .pseq";
+constexpr absl::string_view kKnownExtensions = ".obj, .ply, .drc, .pc2, .pseq";
 
 std::string Extension(const fs::path& path) {
   return absl::AsciiStrToLower(path.extension().string());
 }
-bool IsMesh(const fs::path& path) { return Extension(path) == ".obj" || Extension(path) == ".ply"; }
+bool IsMesh(const fs::path& path) {
+  const std::string extension = Extension(path);
+  return extension == ".obj" || extension == ".ply" || extension == ".drc";
+}
 std::string FileName(const std::string& path) { return fs::path(path).filename().string(); }
 
-absl::StatusOr<MeshFile> ReadMesh(const std::string& path, const MeshFileLimits& limits) {
-  return Extension(path) == ".ply" ? ReadPly(path, limits) : ReadObj(path, limits);
+absl::StatusOr<MeshFile> ReadMesh(const std::string& path, const ReadSequenceOptions& options) {
+  if (Extension(path) != ".drc") {
+    return Extension(path) == ".ply" ? ReadPly(path, options.limits)
+                                     : ReadObj(path, options.limits);
+  }
+  if (options.read_draco) return options.read_draco(path);
+  return absl::InvalidArgumentError(
+      absl::StrCat("'", path, "' is a Draco file, which is not read here"));
 }
 
 // Same frame, said with the file's name in front.
@@ -89,7 +98,7 @@ class FrameFileReader {
 
   absl::StatusOr<MeshSequence> Read(const std::string& name, const std::string& input,
                                     const Progress& progress) {
-    PLEAT_ASSIGN_OR_RETURN(first_, ReadMesh(paths_[0], options_.limits));
+    PLEAT_ASSIGN_OR_RETURN(first_, ReadMesh(paths_[0], options_));
     PLEAT_RETURN_IF_ERROR(CheckSizes());
     frames_.resize(paths_.size());
     faults_.resize(paths_.size());
@@ -127,7 +136,7 @@ class FrameFileReader {
   }
 
   void ReadFrame(int t) {
-    absl::StatusOr<MeshFile> mesh = ReadMesh(paths_[t], options_.limits);
+    absl::StatusOr<MeshFile> mesh = ReadMesh(paths_[t], options_);
     faults_[t] = mesh.ok()
                      ? CheckSameTopology(first_.topology, paths_[0], mesh->topology, paths_[t], t)
                      : mesh.status();
@@ -171,7 +180,7 @@ std::vector<std::string> MeshesBeside(const fs::path& cache_path) {
 
 // The mesh whose vertices the cache moves (see ReadSequence).
 absl::StatusOr<MeshFile> FindMesh(const fs::path& cache_path, Eigen::Index num_vertices,
-                                  const MeshFileLimits& limits) {
+                                  const ReadSequenceOptions& options) {
   const fs::path folder = cache_path.parent_path();
   for (const std::string& name :
        {fs::path(cache_path).replace_extension(".obj").string(),
@@ -179,7 +188,7 @@ absl::StatusOr<MeshFile> FindMesh(const fs::path& cache_path, Eigen::Index num_v
         (folder / "template.ply").string()}) {
     std::error_code error;
     if (!fs::exists(name, error)) continue;
-    PLEAT_ASSIGN_OR_RETURN(MeshFile mesh, ReadMesh(name, limits));
+    PLEAT_ASSIGN_OR_RETURN(MeshFile mesh, ReadMesh(name, options));
     if (mesh.positions.cols() == num_vertices) return mesh;
     return absl::InvalidArgumentError(absl::StrCat("'", cache_path.string(), "' moves ",
                                                    num_vertices, " vertices but its mesh '", name,
@@ -188,7 +197,7 @@ absl::StatusOr<MeshFile> FindMesh(const fs::path& cache_path, Eigen::Index num_v
   std::vector<std::string> fitting;
   absl::StatusOr<MeshFile> found = MeshFile{};
   for (const std::string& path : MeshesBeside(cache_path)) {
-    absl::StatusOr<MeshFile> mesh = ReadMesh(path, limits);
+    absl::StatusOr<MeshFile> mesh = ReadMesh(path, options);
     if (!mesh.ok() || mesh->positions.cols() != num_vertices) continue;
     fitting.push_back(FileName(path));
     found = std::move(mesh);
@@ -208,7 +217,7 @@ absl::StatusOr<MeshFile> FindMesh(const fs::path& cache_path, Eigen::Index num_v
 absl::StatusOr<MeshSequence> ReadPointCacheSequence(const std::string& path,
                                                     const ReadSequenceOptions& options) {
   PLEAT_ASSIGN_OR_RETURN(PointCache cache, ReadPointCache(path, options.limits));
-  PLEAT_ASSIGN_OR_RETURN(MeshFile mesh, FindMesh(path, cache.frames[0].cols(), options.limits));
+  PLEAT_ASSIGN_OR_RETURN(MeshFile mesh, FindMesh(path, cache.frames[0].cols(), options));
   MeshSequenceOptions sequence_options;
   sequence_options.name = fs::path(path).stem().string();
   sequence_options.frame_rate = options.frame_rate.value_or(FrameRate{});
@@ -231,7 +240,7 @@ absl::StatusOr<MeshSequence> ReadPleatSequence(const std::string& path,
 absl::Status UnknownExtension(const std::string& path) {
   return absl::InvalidArgumentError(absl::StrCat(
       "'", path, "' has the unknown extension '", fs::path(path).extension().string(),
-      "'; known are ", kKnownExtensions, ", a folder of .obj or .ply, or a pattern (*, ?)"));
+      "'; known are ", kKnownExtensions, ", a folder of .obj, .ply or .drc, or a pattern (*, ?)"));
 }
 
 absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path,

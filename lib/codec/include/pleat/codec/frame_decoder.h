@@ -19,6 +19,9 @@ struct FrameDecoderLimits {
   int max_triangles = 8'000'000;
 };
 
+// kInvalidArgument names what a decoder cannot use: counts, box, vertex order.
+absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLimits& limits = {});
+
 // Draco is memory-safe on hostile bytes but not resource-safe (an 86-byte file reached 22 GB), and
 // accepts face indices that do not exist. So every header count is compared with what the stream
 // declared before Draco allocates, attributes before their values are decoded, indices afterwards.

@@ -1,6 +1,7 @@
 // The one door for mesh sequences: a folder, a glob, a single mesh, a point cache, or Pleat's own.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,12 +20,15 @@ struct ReadSequenceOptions {
   MeshFileLimits limits{};
   int num_threads =
       0;  // for folders and globs; 0 = one per core. The result does not depend on it.
+  // Reads .drc files, from several threads; without it they are refused: Draco's decoder needs a
+  // process of its own, which a library does not start.
+  std::function<absl::StatusOr<MeshFile>(const std::string& path)> read_draco{};
 };
 
 // `input` is one of
-// - a folder of .obj or of .ply files (or with one .pc2 and its mesh), or a glob
+// - a folder of .obj, .ply or .drc files (or with one .pc2 and its mesh), or a glob
 // ("dir/frame_*.obj")
-// - one .obj or .ply: a sequence of one frame
+// - one .obj, .ply or .drc: a sequence of one frame
 // - a .pc2, whose mesh is the .obj or .ply of the same stem, else template.obj, else the only .obj
 //   of the folder with the right number of vertices
 // - a Pleat sequence file (.pseq).
