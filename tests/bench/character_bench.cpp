@@ -51,12 +51,37 @@ void EvaluatePose(benchmark::State& state, const std::string& learner) {
     if (!status.ok()) state.SkipWithError(status.ToString().c_str());
     t = t + 1 < track.num_frames() ? t + 1 : 1;
   }
-  state.counters["components"] = static_cast<double>(model->full_basis().cols());
+  state.counters["components"] = model->full_basis().num_components();
+  state.counters["planes"] = model->full_basis().num_planes();
   state.counters["model_MB"] = static_cast<double>(model->memory_bytes()) / 1e6;
 }
 BENCHMARK_CAPTURE(EvaluatePose, gp, "gp")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(EvaluatePose, sgplvm, "sgplvm")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(EvaluatePose, regional, "regional")->Unit(benchmark::kMicrosecond);
+
+// Sixteen queries together; the time is that of one.
+void EvaluateBatch(benchmark::State& state, const std::string& learner) {
+  constexpr int kBatch = 16;
+  const std::shared_ptr<const CharacterModel> model = BenchCharacter(learner);
+  const PoseTrack track = FitMotion(*model, BenchPerformer().sequence).value();
+  PoseEvaluator evaluator(model);
+  std::vector<EvaluatedFrame> frames(kBatch);
+  std::vector<std::vector<const Pose*>> poses(kBatch);
+  std::vector<PoseQuery> queries(kBatch);
+  int t = 1;
+  while (state.KeepRunningBatch(kBatch)) {
+    for (int q = 0; q < kBatch; ++q) {
+      poses[q] = {&track.poses[t], &track.poses[t - 1]};
+      queries[q].poses = &poses[q];
+      queries[q].frame = &frames[q];
+      t = t + 1 < track.num_frames() ? t + 1 : 1;
+    }
+    evaluator.EvaluateBatch(queries);
+    if (!queries.back().status.ok()) state.SkipWithError("a query failed");
+  }
+}
+BENCHMARK_CAPTURE(EvaluateBatch, gp, "gp")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(EvaluateBatch, regional, "regional")->Unit(benchmark::kMicrosecond);
 
 void SkinPose(benchmark::State& state) {
   const std::shared_ptr<const CharacterModel> model = BenchCharacter("gp");

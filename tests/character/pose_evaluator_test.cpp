@@ -6,8 +6,10 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <numeric>
 
 #include "pleat/character/fit_motion.h"
+#include "pleat/fitting/details.h"
 #include "pleat/skeleton/human_template.h"
 #include "support/status_matchers.h"
 #include "trained_performer.h"
@@ -170,6 +172,79 @@ TEST(PoseEvaluatorTest, DoesNotAllocateAfterTheFirstFrame) {
   counting = false;
   EXPECT_THAT(status, IsOk());
   EXPECT_EQ(num_allocations, 0);
+}
+
+// The same frame in double precision, from the parts of the model.
+Eigen::Matrix3Xd EvaluateInDoublePrecision(const CharacterModel& model,
+                                           const std::vector<const Pose*>& poses) {
+  Eigen::VectorXd features(model.features().num_features());
+  model.features().ComputeRow(poses, features);
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf coefficients(model.full_basis().num_components());
+  model.detail_model().PredictCoefficients(features, &workspace, coefficients);
+  const Eigen::VectorXd details = model.full_basis().Mean().cast<double>() +
+                                  model.full_basis().Dense() * coefficients.cast<double>();
+  BoneTransforms transforms;
+  ComputeBoneTransforms(model.skeleton(), *poses[0], {}, &transforms);
+  std::vector<int> all(model.num_vertices());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<Eigen::Quaterniond> rotations;
+  ComputeDetailRotations(DetailAxes::kLocal, model.rig().weights, all, transforms, &rotations);
+  Eigen::Matrix3Xd positions;
+  SkinVertices(model.rig().weights, model.rig().rest_positions, transforms, &positions);
+  ApplyDetails(positions, rotations, details, &positions);
+  return positions;
+}
+
+TEST(PoseEvaluatorTest, SinglePrecisionIsWithinAHundredthOfAMillimetre) {
+  PoseEvaluator evaluator(SmallCharacter());
+  EvaluatedFrame frame;
+  for (const int t : {1, 9, 20}) {
+    const std::vector<const Pose*> poses = {&TrainingTrack().poses[t],
+                                            &TrainingTrack().poses[t - 1]};
+    ASSERT_THAT(evaluator.Evaluate(poses, {}, &frame), IsOk());
+    const Eigen::Matrix3Xd expected = EvaluateInDoublePrecision(*SmallCharacter(), poses);
+    EXPECT_LT((frame.positions.cast<double>() - expected).cwiseAbs().maxCoeff(), 1e-5);
+  }
+}
+
+TEST(PoseEvaluatorTest, ABatchGivesTheBitsOfSingleQueries) {
+  PoseEvaluator evaluator(SmallCharacter()), single(SmallCharacter());
+  constexpr int kNumQueries = 21;  // more than are answered together
+  std::vector<std::vector<const Pose*>> poses;
+  std::vector<EvaluatedFrame> frames(kNumQueries);
+  std::vector<PoseQuery> queries(kNumQueries);
+  const std::vector<double> scales(kNumHumanJoints, 1.1), wrong_scales = {1, 2};
+  for (int q = 0; q < kNumQueries; ++q) {
+    poses.push_back({&TrainingTrack().poses[q + 1], &TrainingTrack().poses[q]});
+  }
+  for (int q = 0; q < kNumQueries; ++q) {
+    queries[q] = {.poses = &poses[q],
+                  .bone_scales = q % 5 == 2 ? &scales : nullptr,
+                  .skinned_only = q % 4 == 1,
+                  .frame = &frames[q]};
+  }
+  queries[7].bone_scales = &wrong_scales;
+  evaluator.EvaluateBatch(queries);
+  for (int q = 0; q < kNumQueries; ++q) {
+    if (q == 7) {
+      EXPECT_THAT(queries[q].status,
+                  HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("bone scales")));
+      EXPECT_EQ(frames[q].positions.size(), 0);
+      continue;
+    }
+    ASSERT_THAT(queries[q].status, IsOk());
+    EvaluatedFrame expected;
+    const std::vector<double>& query_scales =
+        queries[q].bone_scales ? *queries[q].bone_scales : std::vector<double>{};
+    if (queries[q].skinned_only) {
+      ASSERT_THAT(single.EvaluateSkinned(*poses[q][0], query_scales, &expected), IsOk());
+    } else {
+      ASSERT_THAT(single.Evaluate(poses[q], query_scales, &expected), IsOk());
+    }
+    EXPECT_EQ(frames[q].positions, expected.positions) << q;
+    EXPECT_EQ(frames[q].confidence, expected.confidence) << q;
+  }
 }
 
 TEST(PoseEvaluatorTest, BadPosesAreRefusedWithWords) {

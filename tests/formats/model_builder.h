@@ -121,8 +121,11 @@ class SmallModelBuilder {
       detail.regional_share = 0.5;
       detail.regional = Regional(kFeatures, kComponents);
     }
-    detail.mean = Vector(3 * num_control).cast<float>() * 0.01f;
-    detail.basis = Matrix(3 * num_control, kComponents).cast<float>();
+    detail.basis = DetailBasis::Quantise(Vector(3 * num_control).cast<float>() * 0.01f,
+                                         Matrix(3 * num_control, kComponents),
+                                         Eigen::VectorXd::Constant(kComponents, 1e-4))
+                       .value()
+                       .parameters();
     return detail;
   }
 

@@ -1,7 +1,9 @@
 #include "pleat/formats/model_file.h"
 
 #include <cstring>
+#include <tuple>
 
+#include "absl/strings/str_cat.h"
 #include "model_builder.h"
 #include "pleat/base/file.h"
 #include "support/hostile_bytes.h"
@@ -35,8 +37,8 @@ TEST_P(ModelFileTest, EverythingRoundTrips) {
   EXPECT_EQ(read->options(), model_->options());
   EXPECT_EQ(read->parts().feature_reference, model_->parts().feature_reference);
   EXPECT_EQ(read->parts().control_vertices, model_->parts().control_vertices);
-  EXPECT_EQ(read->full_basis(), model_->full_basis());
-  EXPECT_EQ(read->full_mean(), model_->full_mean());
+  EXPECT_EQ(read->full_basis().Dense(), model_->full_basis().Dense());
+  EXPECT_EQ(read->full_basis().Mean(), model_->full_basis().Mean());
   EXPECT_EQ(read->record().warnings, model_->record().warnings);
   EXPECT_EQ(read->record().fit.mean_percent, 1.25);
   EXPECT_EQ(read->record().yaw_degrees, 90);
@@ -133,15 +135,27 @@ TEST_P(ModelFileTest, FilesRoundTripAndErrorsNameThem) {
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("b.pleat")));
 }
 
-TEST_P(ModelFileTest, GoldenFileOfVersion1StaysReadable) {
-  const std::string path =
-      std::string(PLEAT_SOURCE_DIR "/tests/golden/model_v1_") + LearnerName(GetParam()) + ".pleat";
+class GoldenModelTest : public ::testing::TestWithParam<std::tuple<Learner, int>> {};
+
+TEST_P(GoldenModelTest, StaysReadable) {
+  const auto [learner, version] = GetParam();
+  const std::string path = absl::StrCat(PLEAT_SOURCE_DIR "/tests/golden/model_v", version, "_",
+                                        LearnerName(learner), ".pleat");
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string golden, ReadFile(path));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(golden));
+  const auto expected = SmallModelBuilder(learner).Build();
   EXPECT_EQ(read->name(), "small");
-  EXPECT_EQ(read->record().learner, LearnerName(GetParam()));
-  EXPECT_EQ(read->rig().rest_positions, model_->rig().rest_positions);
+  EXPECT_EQ(read->record().learner, LearnerName(learner));
+  EXPECT_EQ(read->rig().rest_positions, expected->rig().rest_positions);
+  const DetailBasis& basis = read->detail_model().basis();
+  EXPECT_LT((basis.Dense() - expected->detail_model().basis().Dense()).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_EQ(basis.Mean(), expected->detail_model().basis().Mean());
 }
+
+INSTANTIATE_TEST_SUITE_P(Versions, GoldenModelTest,
+                         ::testing::Combine(::testing::Values(Learner::kGp, Learner::kSgplvm,
+                                                              Learner::kRegional),
+                                            ::testing::Values(1, 2)));
 
 }  // namespace
 }  // namespace pleat

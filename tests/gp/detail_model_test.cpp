@@ -96,17 +96,20 @@ TEST_P(DetailModelTest, FadesToTheMeanFarAway) {
   for (const double distance : {1e3, 1e8, 1e200}) {
     const Eigen::VectorXd far = distance * RandomMatrix(10, 1, 77);
     EXPECT_EQ(model.Predict(far, &workspace, detail), 0) << distance;
-    EXPECT_LT((detail - model.mean()).norm(), 1e-5 * model.mean().norm()) << distance;
+    EXPECT_LT((detail - model.basis().Mean()).norm(), 1e-5 * model.basis().Mean().norm())
+        << distance;
   }
   // Confidence falls along the way, and the detail never leaves the range of the training.
-  const float largest =
-      (seen.details.cast<float>().rowwise() - model.mean().transpose()).rowwise().norm().maxCoeff();
+  const float largest = (seen.details.cast<float>().rowwise() - model.basis().Mean().transpose())
+                            .rowwise()
+                            .norm()
+                            .maxCoeff();
   const Eigen::VectorXd direction = RandomMatrix(10, 1, 78);
   double last = 1;
   for (double s = 1; s < 200; s *= 1.3) {
     const double confidence = model.Predict(s * direction, &workspace, detail);
     EXPECT_LE(confidence, last + 1e-3);
-    EXPECT_LT((detail - model.mean()).norm(), 4 * largest) << s;
+    EXPECT_LT((detail - model.basis().Mean()).norm(), 4 * largest) << s;
     last = confidence;
   }
 }
@@ -196,11 +199,8 @@ TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {
   refused([](auto& p) { p.stages.pop_back(); }, "2 stages, got 1");
   refused([](auto& p) { p.learner = Learner::kGp; }, "1 stages, got 2");
   refused([](auto& p) { std::swap(p.stages[0], p.stages[1]); }, "the second");
-  refused([](auto& p) { p.basis.conservativeResize(12, 1); }, "basis is");
-  refused([](auto& p) { p.mean.conservativeResize(3); }, "basis is");
-  refused([](auto& p) { p.mean.resize(0), p.basis.resize(0, p.basis.cols()); }, "basis is");
-  refused([](auto& p) { p.mean[2] = std::numeric_limits<float>::quiet_NaN(); }, "not finite");
-  refused([](auto& p) { p.basis(2, 1) = std::numeric_limits<float>::infinity(); }, "not finite");
+  refused([](auto& p) { p.basis.mean.conservativeResize(3); }, "planes are");
+  refused([](auto& p) { ++p.basis.num_components; }, "components, the last stage");
   refused([](auto& p) { p.fade_confidence = 2; }, "fading");
   refused([](auto& p) { p.regional = RegionalGpParameters{}; }, "regions");
   refused([](auto& p) { p.stages[1].alpha(0, 0) = std::nan(""); }, "alpha");

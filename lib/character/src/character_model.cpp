@@ -85,7 +85,7 @@ absl::Status CheckParts(const CharacterModel::Parts& parts) {
 }
 
 size_t DetailModelBytes(const DetailModel& detail) {
-  size_t bytes = static_cast<size_t>(detail.basis().size() + detail.mean().size()) * sizeof(float);
+  size_t bytes = detail.basis().memory_bytes();
   for (const GpRegression& stage : detail.stages()) {
     const GpRegressionParameters& parameters = stage.parameters();
     bytes +=
@@ -97,15 +97,21 @@ size_t DetailModelBytes(const DetailModel& detail) {
 }
 
 // Applies the V x C upsampling to each coordinate of every column of `control` (3C x r).
-Eigen::MatrixXf UpsampleColumns(const RbfUpsampler& upsampler, const Eigen::MatrixXf& control) {
+Eigen::MatrixXd UpsampleColumns(const RbfUpsampler& upsampler, const Eigen::MatrixXd& control) {
   const Eigen::Index num_vertices = upsampler.matrix().rows();
-  Eigen::MatrixXf full(3 * num_vertices, control.cols());
+  Eigen::MatrixXd full(3 * num_vertices, control.cols());
   for (Eigen::Index column = 0; column < control.cols(); ++column) {
-    const Eigen::MatrixXf xyz = control.col(column).reshaped(3, control.rows() / 3);
+    const Eigen::MatrixXf xyz = control.col(column).cast<float>().reshaped(3, control.rows() / 3);
     const Eigen::MatrixXf upsampled = upsampler.matrix() * xyz.transpose();  // V x 3
-    full.col(column) = upsampled.transpose().reshaped();
+    full.col(column) = upsampled.transpose().reshaped().cast<double>();
   }
   return full;
+}
+
+absl::StatusOr<DetailBasis> Upsample(const RbfUpsampler& upsampler, const DetailBasis& control) {
+  const Eigen::VectorXd mean = control.Mean().cast<double>();
+  return DetailBasis::Quantise(UpsampleColumns(upsampler, mean).cast<float>(),
+                               UpsampleColumns(upsampler, control.Dense()), control.FinestSteps());
 }
 
 }  // namespace
@@ -114,18 +120,19 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> CharacterModel::Create(Par
   PLEAT_RETURN_IF_ERROR(CheckParts(parts));
   PoseFeatures features(FeatureOptionsOf(parts.options), parts.rig.skeleton.num_joints(),
                         parts.feature_reference);
+  DetailBasis upsampled_basis;
+  if (parts.upsampler) {
+    PLEAT_ASSIGN_OR_RETURN(upsampled_basis,
+                           Upsample(*parts.upsampler, parts.detail_model->basis()));
+  }
   return std::shared_ptr<const CharacterModel>(
-      new CharacterModel(std::move(parts), std::move(features)));
+      new CharacterModel(std::move(parts), std::move(features), std::move(upsampled_basis)));
 }
 
-CharacterModel::CharacterModel(Parts parts, PoseFeatures features)
-    : parts_(std::move(parts)), features_(std::move(features)) {
-  const DetailModel& detail = *parts_.detail_model;
-  if (parts_.upsampler) {
-    upsampled_basis_ = UpsampleColumns(*parts_.upsampler, detail.basis());
-    upsampled_mean_ = UpsampleColumns(*parts_.upsampler, detail.mean());
-  }
-}
+CharacterModel::CharacterModel(Parts parts, PoseFeatures features, DetailBasis upsampled_basis)
+    : parts_(std::move(parts)),
+      features_(std::move(features)),
+      upsampled_basis_(std::move(upsampled_basis)) {}
 
 std::shared_ptr<const CharacterModel> CharacterModel::WithRecord(TrainingRecord record) const {
   const std::shared_ptr<CharacterModel> copy(new CharacterModel(*this));
@@ -148,7 +155,7 @@ size_t CharacterModel::memory_bytes() const {
     bytes +=
         static_cast<size_t>(parts_.upsampler->matrix().nonZeros()) * (sizeof(float) + sizeof(int));
   }
-  bytes += static_cast<size_t>(upsampled_basis_.size() + upsampled_mean_.size()) * sizeof(float);
+  bytes += upsampled_basis_.memory_bytes();
   return bytes;
 }
 

@@ -1,8 +1,8 @@
 #include "pleat/character/pose_evaluator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -11,22 +11,25 @@
 #include "pleat/fitting/details.h"
 #include "pleat/gp/detail_model.h"
 #include "pleat/skeleton/pose_history.h"
-#include "pleat/skinning/rig.h"
+#include "pleat/skinning/frame_skinning.h"
 
 namespace pleat {
 
 struct PoseEvaluator::Scratch {
+  explicit Scratch(const CharacterModel& model);
+
   std::vector<Pose> history;  // normalised copies, [0] = pose to show
   std::vector<const Pose*> history_pointers;
   BoneTransforms transforms;
-  Eigen::Matrix3Xd skinned;                   // 3 x V
-  std::vector<int> all_vertices;              // 0 .. V-1
-  std::vector<Eigen::Quaterniond> rotations;  // V, axes of the details
-  Eigen::Matrix3Xd hybrid;                    // 3 x V
-  Eigen::VectorXd features;                   // D_S
-  Eigen::VectorXf coefficients;               // r
-  Eigen::VectorXf details;                    // 3V
+  std::vector<Eigen::Matrix3d> axes;  // J, of the bones' details
+  BoneMotions motions;
+  bool has_details = false;
+  double confidence = 0;
+  Eigen::VectorXd features;      // D_S
+  Eigen::VectorXf coefficients;  // r
   DetailModel::Workspace workspace;
+  DetailBasis::Query expansion;
+  std::vector<float> details;  // of the tile at hand, by blocks
 };
 
 namespace {
@@ -77,22 +80,48 @@ void CopyNormalized(const Pose& source, Pose* target) {
   }
 }
 
+// The axes B_t(v) of a vertex's detail are the mean of its bones' axes, which are all the same
+// unless details are local.
+void SetAxes(DetailAxes axes, const BoneTransforms& transforms,
+             std::vector<Eigen::Matrix3d>* bone_axes) {
+  switch (axes) {
+    case DetailAxes::kWorld:
+      bone_axes->assign(transforms.rotation.size(), Eigen::Matrix3d::Identity());
+      return;
+    case DetailAxes::kRoot:
+      bone_axes->assign(transforms.rotation.size(), transforms.rotation[0]);
+      return;
+    case DetailAxes::kLocal:
+      *bone_axes = transforms.rotation;
+      return;
+  }
+}
+
+// The base of full deformations: every vertex moves with the root alone (ComputeDetailBase).
+void MoveAllWithRoot(BoneTransforms* transforms) {
+  for (size_t b = 1; b < transforms->linear.size(); ++b) {
+    transforms->linear[b] = transforms->linear[0];
+    transforms->translation[b] = transforms->translation[0];
+  }
+}
+
+constexpr size_t kMostTogether = 16;
+constexpr int kTileBlocks = 8;  // whose details stay in the first cache
+
 }  // namespace
 
-PoseEvaluator::PoseEvaluator(std::shared_ptr<const CharacterModel> model)
-    : model_(std::move(model)), scratch_(std::make_unique<Scratch>()) {
-  const int history = model_->options().history;
-  scratch_->history.resize(history);
-  for (Pose& pose : scratch_->history) {
-    pose = Pose::Rest(model_->skeleton());
-    scratch_->history_pointers.push_back(&pose);
-  }
-  scratch_->all_vertices.resize(model_->num_vertices());
-  std::iota(scratch_->all_vertices.begin(), scratch_->all_vertices.end(), 0);
-  scratch_->features.resize(model_->features().num_features());
-  scratch_->coefficients.resize(model_->full_basis().cols());
-  scratch_->details.resize(model_->full_basis().rows());
+static_assert(DetailBasis::kLanes == kSkinningLanes);
+
+PoseEvaluator::Scratch::Scratch(const CharacterModel& model)
+    : history(model.options().history, Pose::Rest(model.skeleton())),
+      features(model.features().num_features()),
+      coefficients(model.full_basis().num_components()),
+      details(kTileBlocks * DetailBasis::kBlockDetails) {
+  for (const Pose& pose : history) history_pointers.push_back(&pose);
 }
+
+PoseEvaluator::PoseEvaluator(std::shared_ptr<const CharacterModel> model)
+    : model_(std::move(model)) {}
 
 PoseEvaluator::~PoseEvaluator() = default;
 PoseEvaluator::PoseEvaluator(PoseEvaluator&&) noexcept = default;
@@ -103,47 +132,104 @@ const CharacterModel& PoseEvaluator::model() const { return *model_; }
 absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
                                      const std::vector<double>& bone_scales,
                                      EvaluatedFrame* frame) {
-  Scratch& s = *scratch_;
-  if (poses.empty()) return absl::InvalidArgumentError("a pose query needs at least one pose");
-  PLEAT_RETURN_IF_ERROR(Skin(*poses[0], bone_scales));
-  for (size_t h = 1; h < s.history.size(); ++h) {
-    const Pose& pose = *poses[std::min(h, poses.size() - 1)];
-    PLEAT_RETURN_IF_ERROR(CheckPose(pose, model_->skeleton().num_joints()));
-    CopyNormalized(pose, &s.history[h]);
-  }
-  model_->features().ComputeRow(s.history_pointers, s.features);
-  frame->confidence =
-      model_->detail_model().PredictCoefficients(s.features, &s.workspace, s.coefficients);
-  s.details = model_->full_mean();
-  s.details.noalias() += model_->full_basis() * s.coefficients;
-
-  if (DetailBaseOf(model_->options()) == DetailBase::kRoot) {
-    ComputeDetailBase(DetailBase::kRoot, model_->rig(), s.transforms, &s.skinned);
-  }
-  ComputeDetailRotations(DetailAxesOf(model_->options()), model_->rig().weights, s.all_vertices,
-                         s.transforms, &s.rotations);
-  ApplyDetails(s.skinned, s.rotations, s.details, &s.hybrid);
-  frame->positions = s.hybrid.cast<float>();
-  return absl::OkStatus();
+  PoseQuery query{.poses = &poses, .bone_scales = &bone_scales, .frame = frame};
+  EvaluateBatch({&query, 1});
+  return query.status;
 }
 
 absl::Status PoseEvaluator::EvaluateSkinned(const Pose& pose,
                                             const std::vector<double>& bone_scales,
                                             EvaluatedFrame* frame) {
-  PLEAT_RETURN_IF_ERROR(Skin(pose, bone_scales));
-  frame->positions = scratch_->skinned.cast<float>();
-  frame->confidence = 1;
+  const std::vector<const Pose*> poses = {&pose};
+  PoseQuery query{
+      .poses = &poses, .bone_scales = &bone_scales, .skinned_only = true, .frame = frame};
+  EvaluateBatch({&query, 1});
+  return query.status;
+}
+
+void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
+  while (scratches_.size() < std::min(queries.size(), kMostTogether)) {
+    scratches_.push_back(std::make_unique<Scratch>(*model_));
+  }
+  for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
+    std::array<Scratch*, kMostTogether> scratches{};
+    std::array<EvaluatedFrame*, kMostTogether> frames{};
+    size_t count = 0;
+    // Queries with details in front, so that those are expanded together.
+    for (const bool skinned_only : {false, true}) {
+      for (size_t q = begin; q < std::min(begin + kMostTogether, queries.size()); ++q) {
+        if (queries[q].skinned_only != skinned_only) continue;
+        Scratch* scratch = scratches_[count].get();
+        queries[q].status = Prepare(queries[q], scratch);
+        if (!queries[q].status.ok()) continue;
+        frames[count] = queries[q].frame;
+        scratches[count++] = scratch;
+      }
+    }
+    FillFrames({scratches.data(), count}, {frames.data(), count});
+  }
+}
+
+// Everything of a query but its vertices.
+absl::Status PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) const {
+  static const std::vector<double> kNoScales;
+  Scratch& s = *scratch;
+  const std::vector<const Pose*>& poses = *query.poses;
+  const std::vector<double>& scales = query.bone_scales ? *query.bone_scales : kNoScales;
+  const int num_joints = model_->skeleton().num_joints();
+  if (poses.empty()) return absl::InvalidArgumentError("a pose query needs at least one pose");
+  PLEAT_RETURN_IF_ERROR(CheckBoneScales(scales, num_joints));
+  for (size_t h = 0; h < (query.skinned_only ? 1 : s.history.size()); ++h) {
+    const Pose& pose = *poses[std::min(h, poses.size() - 1)];
+    PLEAT_RETURN_IF_ERROR(CheckPose(pose, num_joints));
+    CopyNormalized(pose, &s.history[h]);
+  }
+  ComputeBoneTransforms(model_->skeleton(), s.history[0], scales, &s.transforms);
+  SetAxes(DetailAxesOf(model_->options()), s.transforms, &s.axes);
+  s.has_details = !query.skinned_only;
+  if (s.has_details && DetailBaseOf(model_->options()) == DetailBase::kRoot) {
+    MoveAllWithRoot(&s.transforms);
+  }
+  s.motions.Set(s.transforms, s.axes);
+  s.confidence = 1;
+  if (s.has_details) {
+    model_->features().ComputeRow(s.history_pointers, s.features);
+    s.confidence =
+        model_->detail_model().PredictCoefficients(s.features, &s.workspace, s.coefficients);
+    model_->full_basis().SetCoefficients(s.coefficients, &s.expansion);
+  }
   return absl::OkStatus();
 }
 
-absl::Status PoseEvaluator::Skin(const Pose& pose, const std::vector<double>& bone_scales) {
-  Scratch& s = *scratch_;
-  PLEAT_RETURN_IF_ERROR(CheckPose(pose, model_->skeleton().num_joints()));
-  PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, model_->skeleton().num_joints()));
-  CopyNormalized(pose, &s.history[0]);
-  ComputeBoneTransforms(model_->skeleton(), s.history[0], bone_scales, &s.transforms);
-  SkinVertices(model_->rig().weights, model_->rig().rest_positions, s.transforms, &s.skinned);
-  return absl::OkStatus();
+void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
+                               std::span<EvaluatedFrame* const> frames) {
+  std::array<const DetailBasis::Query*, kMostTogether> expansions{};
+  std::array<float*, kMostTogether> details{};
+  size_t num_detailed = 0;
+  for (size_t q = 0; q < scratches.size(); ++q) {
+    frames[q]->positions.resize(3, model_->num_vertices());
+    frames[q]->confidence = scratches[q]->confidence;
+    if (!scratches[q]->has_details) continue;
+    expansions[num_detailed] = &scratches[q]->expansion;
+    details[num_detailed++] = scratches[q]->details.data();
+  }
+  const int num_blocks = model_->full_basis().num_blocks();
+  for (int block = 0; block < num_blocks; block += kTileBlocks) {
+    const int count = std::min(kTileBlocks, num_blocks - block);
+    model_->full_basis().ExpandBlocks({expansions.data(), num_detailed}, block, count,
+                                      {details.data(), num_detailed});
+    for (int i = 0; i < count; ++i) {
+      // The next tile comes from memory while this one is skinned.
+      if (num_detailed > 0) model_->full_basis().PrefetchBlocks(block + kTileBlocks + i, 1);
+      for (size_t q = 0; q < scratches.size(); ++q) {
+        const Scratch& s = *scratches[q];
+        const float* tile =
+            s.details.data() + static_cast<ptrdiff_t>(i) * DetailBasis::kBlockDetails;
+        SkinBlocks(model_->rig(), s.motions, block + i, 1, s.has_details ? tile : nullptr,
+                   &frames[q]->positions);
+      }
+    }
+  }
 }
 
 absl::Status PoseEvaluator::EvaluateClip(
@@ -157,14 +243,30 @@ absl::Status PoseEvaluator::EvaluateClip(
           absl::StrCat("frame ", t, ": ", absl::string_view(status.message())));
     }
   }
+  constexpr int kBatch = 8;
   PoseHistory history(track, model_->frame_rate().fps(), model_->options().history);
-  std::vector<const Pose*> poses;
-  EvaluatedFrame frame;
-  for (int t = 0; t < track.num_frames(); ++t) {
-    history.At(t, &poses);
-    PLEAT_RETURN_IF_ERROR(Evaluate(poses, bone_scales, &frame));
-    PLEAT_RETURN_IF_ERROR(consume(t, frame));
-    PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / track.num_frames()));
+  std::vector<std::vector<Pose>> poses(kBatch);  // copies: a history lives until the next
+  std::vector<std::vector<const Pose*>> pointers(kBatch);
+  std::vector<EvaluatedFrame> frames(kBatch);
+  std::vector<PoseQuery> queries(kBatch);
+  for (int begin = 0; begin < track.num_frames(); begin += kBatch) {
+    const int count = std::min(kBatch, track.num_frames() - begin);
+    for (int i = 0; i < count; ++i) {
+      history.At(begin + i, &pointers[i]);
+      poses[i].resize(pointers[i].size());
+      for (size_t h = 0; h < poses[i].size(); ++h) {
+        poses[i][h] = *pointers[i][h];
+        pointers[i][h] = &poses[i][h];
+      }
+      queries[i] = {
+          .poses = &pointers[i], .bone_scales = &bone_scales, .frame = &frames[i], .status = {}};
+    }
+    EvaluateBatch({queries.data(), static_cast<size_t>(count)});
+    for (int i = 0; i < count; ++i) {
+      PLEAT_RETURN_IF_ERROR(queries[i].status);
+      PLEAT_RETURN_IF_ERROR(consume(begin + i, frames[i]));
+      PLEAT_RETURN_IF_ERROR(progress.Report((begin + i + 1.0) / track.num_frames()));
+    }
   }
   return absl::OkStatus();
 }

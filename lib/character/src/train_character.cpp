@@ -19,8 +19,17 @@ ErrorSummary WithoutFrames(ErrorSummary summary) {
   return summary;
 }
 
-// The five frames with the largest mean error, by clip.
+// Whether frame t of `num_frames` is measured: all, or of thousands pairs of neighbours.
+bool IsMeasured(int t, int num_frames) {
+  constexpr int kMaxMeasuredFrames = 2000;
+  const int period = 2 * ((num_frames + kMaxMeasuredFrames - 1) / kMaxMeasuredFrames);
+  return t % period < 2;
+}
+
+// The five frames with the largest mean error, by clip. frames: the number of each frame in the
+// joined sequence.
 std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percent,
+                                    const std::vector<int>& frames,
                                     const std::vector<int>& clip_starts) {
   std::vector<int> order(frame_mean_percent.size());
   std::iota(order.begin(), order.end(), 0);
@@ -28,8 +37,9 @@ std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percen
                    [&](int a, int b) { return frame_mean_percent[a] > frame_mean_percent[b]; });
   std::vector<FrameError> worst;
   for (size_t i = 0; i < std::min<size_t>(5, order.size()); ++i) {
-    const auto next = std::upper_bound(clip_starts.begin(), clip_starts.end(), order[i]);
-    worst.push_back({static_cast<int>(next - clip_starts.begin()) - 1, order[i] - *(next - 1),
+    const int t = frames[order[i]];
+    const auto next = std::upper_bound(clip_starts.begin(), clip_starts.end(), t);
+    worst.push_back({static_cast<int>(next - clip_starts.begin()) - 1, t - *(next - 1),
                      frame_mean_percent[order[i]]});
   }
   return worst;
@@ -59,24 +69,27 @@ absl::StatusOr<TrainingRecord> MeasureReconstruction(
   ErrorAccumulator fit(record.diagonal_m), reconstruction(record.diagonal_m);
   PoseEvaluator evaluator(model);
   EvaluatedFrame skinned;
-  size_t clip = 0;
+  std::vector<int> measured;
   PLEAT_RETURN_IF_ERROR(evaluator.EvaluateClip(
       track, {},
       [&](int t, const EvaluatedFrame& hybrid) {
-        const bool starts_clip =
-            clip < track.clip_starts.size() && track.clip_starts[clip] == t && ++clip;
+        if (!IsMeasured(t, track.num_frames())) return absl::OkStatus();
+        const bool follows =
+            !measured.empty() && measured.back() == t - 1 &&
+            !std::binary_search(track.clip_starts.begin(), track.clip_starts.end(), t);
+        measured.push_back(t);
         const Eigen::Matrix3Xd truth = sequence.FrameAsDouble(t);
-        reconstruction.AddFrame(hybrid.positions.cast<double>(), truth, !starts_clip);
+        reconstruction.AddFrame(hybrid.positions.cast<double>(), truth, follows);
         PLEAT_RETURN_IF_ERROR(evaluator.EvaluateSkinned(track.poses[t], {}, &skinned));
-        fit.AddFrame(skinned.positions.cast<double>(), truth, !starts_clip);
+        fit.AddFrame(skinned.positions.cast<double>(), truth, follows);
         vertex_error += (skinned.positions.cast<double>() - truth).colwise().norm().transpose();
         return absl::OkStatus();
       },
       progress));
   ErrorSummary fit_summary = fit.Summarize();
-  record.worst_frames = WorstFrames(fit_summary.frame_mean_percent, track.clip_starts);
+  record.worst_frames = WorstFrames(fit_summary.frame_mean_percent, measured, track.clip_starts);
   record.joint_fit_percent =
-      JointErrors(weights, 100 / (record.diagonal_m * sequence.num_frames()) * vertex_error);
+      JointErrors(weights, 100 / (record.diagonal_m * double(measured.size())) * vertex_error);
   record.fit = WithoutFrames(std::move(fit_summary));
   record.reconstruction = WithoutFrames(reconstruction.Summarize());
   return record;
@@ -117,7 +130,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
   record.unsmoothed_jitter_degrees = kDegrees * fit.unsmoothed_jitter_rad;
   record.unsmoothed_rms_percent = 100 * fit.unsmoothed_rms_m / diagonal_m;
   if (summary) {
-    summary->num_components = static_cast<int>(detail_model->basis().cols());
+    summary->num_components = detail_model->num_components();
     summary->num_control_vertices = static_cast<int>(data.control_vertices.size());
   }
   return unmeasured->WithRecord(std::move(record));

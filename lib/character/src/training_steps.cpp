@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "detail_regions.h"
 #include "option_values.h"
+#include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
@@ -44,8 +45,72 @@ absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged,
                              control_vertices, rbf, progress);
 }
 
+// Frames whose details give the basis; those of a longer sequence are expressed in it.
+constexpr int kMaxBasisFrames = 1000;
+
+// The frames and poses `frame_indices`, each alone: details know no neighbours.
+absl::StatusOr<Eigen::MatrixXd> DetailsOfFrames(const RiggedFrames& rigged, const PoseTrack& track,
+                                                const std::vector<int>& frame_indices,
+                                                const std::vector<int>& vertices,
+                                                const ComputeDetailsOptions& options,
+                                                const Progress& progress) {
+  PoseTrack part{.fps = track.fps, .poses = {}};
+  for (const int t : frame_indices) part.poses.push_back(track.poses[t]);
+  return ComputeDetails(rigged.frames.sequence.Subset(frame_indices), rigged.rig, part, vertices,
+                        options, progress);
+}
+
+// Fills data->upsampler from the details of all vertices, and returns those of the control
+// vertices.
+absl::StatusOr<Eigen::MatrixXd> RefineUpsampler(const Eigen::MatrixXd& details,
+                                                const TrainResources& resources,
+                                                const Progress& progress, LearningData* data) {
+  UpsamplingRefinementOptions refinement;
+  refinement.num_threads = resources.num_threads;
+  PLEAT_ASSIGN_OR_RETURN(data->upsampler, data->upsampler->Refine(details, data->control_vertices,
+                                                                  refinement, progress));
+  Eigen::MatrixXd control(details.rows(), 3 * data->control_vertices.size());
+  for (size_t c = 0; c < data->control_vertices.size(); ++c) {
+    control.middleCols<3>(3 * c) = details.middleCols<3>(3 * data->control_vertices[c]);
+  }
+  return control;
+}
+
+// The scores of all frames in the basis that some of them gave, block by block.
+absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track,
+                              const ComputeDetailsOptions& options, const Progress& progress,
+                              LearningData* data) {
+  constexpr int kBlockFrames = 128;
+  PrincipalComponents& details = data->details;
+  const int num_frames = track.num_frames();
+  details.scores.resize(num_frames, details.basis.cols());
+  double energy = 0;
+  for (int begin = 0; begin < num_frames; begin += kBlockFrames) {
+    std::vector<int> block(std::min(kBlockFrames, num_frames - begin));
+    std::iota(block.begin(), block.end(), begin);
+    PLEAT_ASSIGN_OR_RETURN(
+        Eigen::MatrixXd rows,
+        DetailsOfFrames(rigged, track, block, data->control_vertices, options, {}));
+    if (data->differential) rows = data->differential->Encode(rows);
+    rows.rowwise() -= details.mean.transpose();
+    energy += rows.squaredNorm();
+    // Items of fixed size: the result does not depend on the number of threads.
+    constexpr int kItemFrames = 32;
+    const auto num_rows = static_cast<int>(rows.rows());
+    ParallelFor((num_rows + kItemFrames - 1) / kItemFrames, options.num_threads, [&](int item) {
+      const int first = item * kItemFrames, count = std::min(kItemFrames, num_rows - first);
+      details.scores.middleRows(begin + first, count).noalias() =
+          rows.middleRows(first, count) * details.basis;
+    });
+    PLEAT_RETURN_IF_ERROR(progress.Report(double(begin + rows.rows()) / num_frames));
+  }
+  if (energy > 0) details.kept_energy = std::min(1.0, details.scores.squaredNorm() / energy);
+  return absl::OkStatus();
+}
+
 // Fills details and upsampler of `data`, whose control vertices are known. Refined upsampling
-// learns its weights from the details of all vertices in the training frames.
+// learns its weights from the details of all vertices in the training frames. Never more than
+// kMaxBasisFrames frames of details are in memory.
 absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& track,
                                    const TrainOptions& options, const TrainResources& resources,
                                    const Progress& progress, LearningData* data) {
@@ -60,26 +125,27 @@ absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& 
     vertices.resize(sequence.num_vertices());
     std::iota(vertices.begin(), vertices.end(), 0);
   }
+  const int num_frames = sequence.num_frames(), num_basis = std::min(num_frames, kMaxBasisFrames);
+  std::vector<int> basis_frames;
+  for (int i = 0; i < num_basis; ++i) {
+    basis_frames.push_back(static_cast<int>(int64_t{i} * num_frames / num_basis));
+  }
   PLEAT_ASSIGN_OR_RETURN(
       Eigen::MatrixXd details,
-      ComputeDetails(sequence, rigged.rig, track, vertices, detail_options, progress));
+      DetailsOfFrames(rigged, track, basis_frames, vertices, detail_options, progress));
   if (decimated) {
     PLEAT_ASSIGN_OR_RETURN(data->upsampler,
                            MakeUpsampler(rigged, data->control_vertices, resources, progress));
   }
-  if (!refined) {
-    data->details = std::move(details);
-    return absl::OkStatus();
+  if (refined) {
+    PLEAT_ASSIGN_OR_RETURN(details, RefineUpsampler(details, resources, progress, data));
   }
-  UpsamplingRefinementOptions refinement;
-  refinement.num_threads = resources.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(data->upsampler, data->upsampler->Refine(details, data->control_vertices,
-                                                                  refinement, progress));
-  data->details.resize(details.rows(), 3 * data->control_vertices.size());
-  for (size_t c = 0; c < data->control_vertices.size(); ++c) {
-    data->details.middleCols<3>(3 * c) = details.middleCols<3>(3 * data->control_vertices[c]);
-  }
-  return absl::OkStatus();
+  if (data->differential) details = data->differential->Encode(details);
+  data->details = ComputePca(
+      details, {.max_components = options.max_components, .min_energy = options.detail_energy});
+  if (num_basis == num_frames) return absl::OkStatus();
+  details.resize(0, 0);
+  return ProjectAllFrames(rigged, track, detail_options, progress, data);
 }
 
 }  // namespace
@@ -131,8 +197,11 @@ absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const Train
   if (options.yaw_degrees >= 0) rig_options.yaw_degrees = options.yaw_degrees;
   rig_options.num_threads = resources.num_threads;
   AutoRigSummary summary;
-  PLEAT_ASSIGN_OR_RETURN(
-      Rig rig, AutoRig(frames.sequence.Subset(rig_frames), rig_options, &summary, progress));
+  // A copy of thousands of frames would not fit where they just do.
+  const MeshSequence first_clip = frames.num_rig_frames == frames.sequence.num_frames()
+                                      ? frames.sequence
+                                      : frames.sequence.Subset(rig_frames);
+  PLEAT_ASSIGN_OR_RETURN(Rig rig, AutoRig(first_clip, rig_options, &summary, progress));
   return RiggedFrames{.frames = frames,
                       .rig = std::move(rig),
                       .rig_summary = std::move(summary),
@@ -174,6 +243,11 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
                    progress.Stage("fit", .8, 1));
 }
 
+Eigen::VectorXd LearningData::DetailOf(const Eigen::VectorXd& scores) const {
+  const Eigen::VectorXd detail = details.mean + details.basis * scores;
+  return differential ? Eigen::VectorXd(differential->DecodeColumns(detail)) : detail;
+}
+
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
                                                  const TrainOptions& options,
                                                  const TrainResources& resources,
@@ -184,12 +258,12 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   PLEAT_ASSIGN_OR_RETURN(data.control_vertices,
                          SelectControlVertices(sequence.topology(), rigged.rig.rest_positions,
                                                options.resolution_percent / 100));
-  PLEAT_RETURN_IF_ERROR(ComputeControlDetails(rigged, track, options, resources, progress, &data));
   if (options.detail_coordinates == "differential") {
     PLEAT_ASSIGN_OR_RETURN(data.differential, DifferentialCoordinates::Build(
                                                   sequence.topology(), rigged.rig.rest_positions,
                                                   data.control_vertices));
   }
+  PLEAT_RETURN_IF_ERROR(ComputeControlDetails(rigged, track, options, resources, progress, &data));
   const PoseFeatureOptions feature_options = FeatureOptionsOf(options);
   // A single held-out frame is bridged from its neighbours, so that the frame after it has a speed.
   const FilledTrack filled = FillGaps(track, rigged.frames.frame_numbers, kMaxBridgedFrames);

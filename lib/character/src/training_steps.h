@@ -14,6 +14,7 @@
 #include "pleat/character/train_character.h"
 #include "pleat/fitting/pose_fit.h"
 #include "pleat/geometry/differential_coordinates.h"
+#include "pleat/math/pca.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/auto_rig.h"
 #include "pleat/skeleton/pose.h"
@@ -61,12 +62,16 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
 struct LearningData {
   Eigen::VectorXd feature_reference;
   Eigen::MatrixXd features;  // T x D_S
-  Eigen::MatrixXd details;   // T x 3C, metres
+  // T rows of scores, 3C values each: offsets in metres, or those that `differential` encodes.
+  PrincipalComponents details;
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
   std::optional<RbfUpsampler> upsampler;
   std::optional<DifferentialCoordinates> differential;  // learn in these, with that option
   std::vector<DetailRegion> regions;  // one for each bone that moves a control vertex
+
+  // The offsets (3C, metres) that one row of scores stands for.
+  Eigen::VectorXd DetailOf(const Eigen::VectorXd& scores) const;
 };
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
                                                  const TrainOptions& options,

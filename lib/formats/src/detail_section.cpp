@@ -155,6 +155,60 @@ absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader) {
   return regional;
 }
 
+void WriteBasis(const DetailBasisParameters& basis, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(basis.mean.size()));
+  writer->Write(static_cast<uint32_t>(basis.num_components));
+  writer->Write(static_cast<uint32_t>(basis.components.size()));
+  WriteMatrix(basis.mean, writer);
+  for (size_t p = 0; p < basis.components.size(); ++p) {
+    writer->Write(static_cast<uint32_t>(basis.components[p]));
+    writer->Write(basis.scales[p]);
+  }
+  WriteMatrix(basis.values, writer);
+}
+
+absl::StatusOr<DetailBasisParameters> ReadBasis(ByteReader* reader) {
+  constexpr uint32_t kMaxComponents = 1 << 24;
+  DetailBasisParameters basis;
+  std::array<uint32_t, 3> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of the basis"));
+  const auto [num_details, num_components, num_planes] = counts;
+  if (num_components > kMaxComponents) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(num_components, " components, the limit is ", kMaxComponents));
+  }
+  basis.num_components = static_cast<int>(num_components);
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, 1, "mean detail", &basis.mean));
+  PLEAT_RETURN_IF_ERROR(
+      reader->Require(num_planes, sizeof(uint32_t) + sizeof(float), "planes of the basis"));
+  for (uint32_t p = 0; p < num_planes; ++p) {
+    PLEAT_ASSIGN_OR_RETURN(const uint32_t component,
+                           reader->Read<uint32_t>("component of a plane"));
+    if (component >= num_components) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("plane ", p, " belongs to component ", component, " of ", num_components));
+    }
+    basis.components.push_back(static_cast<int>(component));
+    PLEAT_ASSIGN_OR_RETURN(const float scale, reader->Read<float>("scale of a plane"));
+    basis.scales.push_back(scale);
+  }
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, num_planes, "planes", &basis.values));
+  return basis;
+}
+
+absl::StatusOr<DetailBasisParameters> ReadFloatBasis(ByteReader* reader) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_details, reader->Read<uint32_t>("detail size"));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_components, reader->Read<uint32_t>("component count"));
+  Eigen::VectorXf mean;
+  Eigen::MatrixXf basis;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, 1, "mean detail", &mean));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, num_components, "detail basis", &basis));
+  PLEAT_ASSIGN_OR_RETURN(
+      const DetailBasis rounded,
+      DetailBasis::Quantise(mean, basis.cast<double>(), Eigen::VectorXd::Zero(num_components)));
+  return rounded.parameters();
+}
+
 absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
   for (const Learner learner : kAllLearners) {
     if (LearnerName(learner) == name) return learner;
@@ -167,10 +221,7 @@ absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
 void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer) {
   writer->WriteString(LearnerName(parameters.learner));
   writer->Write(parameters.fade_confidence);
-  writer->Write(static_cast<uint32_t>(parameters.basis.rows()));
-  writer->Write(static_cast<uint32_t>(parameters.basis.cols()));
-  WriteMatrix(parameters.mean, writer);
-  WriteMatrix(parameters.basis, writer);
+  WriteBasis(parameters.basis, writer);
   writer->Write(static_cast<uint32_t>(parameters.stages.size()));
   for (const GpRegressionParameters& stage : parameters.stages) WriteStage(stage, writer);
   if (parameters.regional) {
@@ -179,16 +230,14 @@ void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer) {
   }
 }
 
-absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint64_t max_unfolded_bytes) {
+absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t version,
+                                                 uint64_t max_unfolded_bytes) {
   DetailModelParameters parameters;
   PLEAT_ASSIGN_OR_RETURN(const std::string learner, reader->ReadString(64, "learner"));
   PLEAT_ASSIGN_OR_RETURN(parameters.learner, LearnerFromName(learner));
   PLEAT_ASSIGN_OR_RETURN(parameters.fade_confidence, reader->Read<double>("fade confidence"));
-  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_details, reader->Read<uint32_t>("detail size"));
-  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_components, reader->Read<uint32_t>("component count"));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, 1, "mean detail", &parameters.mean));
-  PLEAT_RETURN_IF_ERROR(
-      ReadMatrix(reader, num_details, num_components, "detail basis", &parameters.basis));
+  PLEAT_ASSIGN_OR_RETURN(parameters.basis,
+                         version == 1 ? ReadFloatBasis(reader) : ReadBasis(reader));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_stages, reader->Read<uint32_t>("stage count"));
   if (num_stages == 0 || num_stages > kMaxStages) {
     return absl::InvalidArgumentError(

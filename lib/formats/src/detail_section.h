@@ -8,7 +8,9 @@
 namespace pleat {
 
 void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer);
+// version: of the file; version 1 has a basis of floats, which is rounded as finely as planes can.
 // max_unfolded_bytes: for the whiteners, which the file holds as triangles.
-absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint64_t max_unfolded_bytes);
+absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t version,
+                                                 uint64_t max_unfolded_bytes);
 
 }  // namespace pleat

@@ -17,7 +17,7 @@
 namespace pleat {
 namespace {
 
-constexpr SealedFileKind kKind = {"PLEATMDL", 1, "model file"};
+constexpr SealedFileKind kKind = {"PLEATMDL", 2, 1, "model file"};
 constexpr uint32_t kNumSections = 10;
 constexpr uint64_t kTableEntryBytes = 24;
 constexpr uint64_t kFirstSectionOffset = kSealedHeaderBytes + 4 + kNumSections * kTableEntryBytes;
@@ -129,8 +129,8 @@ absl::Status ReadMeshSections(const Sections& sections, const MeshFileLimits& li
   });
 }
 
-absl::Status ReadLearntSections(const Sections& sections, const ModelFileLimits& limits,
-                                CharacterModel::Parts* parts) {
+absl::Status ReadLearntSections(const Sections& sections, uint32_t version,
+                                const ModelFileLimits& limits, CharacterModel::Parts* parts) {
   const std::string_view options = sections[5];
   PLEAT_ASSIGN_OR_RETURN(parts->options,
                          ParseTrainOptions(absl::string_view(options.data(), options.size())));
@@ -144,8 +144,8 @@ absl::Status ReadLearntSections(const Sections& sections, const ModelFileLimits&
   }));
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 8, [&](ByteReader* reader) -> absl::Status {
     PLEAT_ASSIGN_OR_RETURN(DetailModelParameters parameters,
-                           ReadDetail(reader, limits.max_unfolded_bytes));
-    const auto num_components = static_cast<uint64_t>(parameters.basis.cols());
+                           ReadDetail(reader, version, limits.max_unfolded_bytes));
+    const auto num_components = static_cast<uint64_t>(parameters.basis.num_components);
     PLEAT_RETURN_IF_ERROR(CheckUnfoldedSize(*parts, num_components, limits.max_unfolded_bytes));
     PLEAT_ASSIGN_OR_RETURN(DetailModel model, DetailModel::FromParameters(std::move(parameters)));
     parts->detail_model = std::make_shared<const DetailModel>(std::move(model));
@@ -180,7 +180,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> DecodeModel(std::string_vi
   PLEAT_ASSIGN_OR_RETURN(const Sections sections, CutSections(content));
   CharacterModel::Parts parts;
   PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, limits.mesh, &parts));
-  PLEAT_RETURN_IF_ERROR(ReadLearntSections(sections, limits, &parts));
+  PLEAT_RETURN_IF_ERROR(ReadLearntSections(sections, SealedFileVersion(content), limits, &parts));
   return CharacterModel::Create(std::move(parts));
 }
 

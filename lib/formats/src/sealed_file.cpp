@@ -36,9 +36,11 @@ absl::StatusOr<std::string_view> OpenSealedFile(const SealedFileKind& kind,
         "not a Pleat ", kind.name, ": it does not begin with ", std::string(kind.magic)));
   }
   PLEAT_ASSIGN_OR_RETURN(const uint32_t version, reader.Read<uint32_t>("version"));
-  if (version != kind.version) {
-    return absl::InvalidArgumentError(absl::StrCat(kind.name, " version ", version,
-                                                   "; this program reads version ", kind.version));
+  if (version < kind.oldest_version || version > kind.version) {
+    std::string readable = absl::StrCat("version ", kind.oldest_version);
+    if (kind.version > kind.oldest_version) absl::StrAppend(&readable, " to ", kind.version);
+    return absl::InvalidArgumentError(
+        absl::StrCat(kind.name, " version ", version, "; this program reads ", readable));
   }
   PLEAT_RETURN_IF_ERROR(reader.Require(kChecksumBytes, 1, "checksum"));
   const std::string_view content = bytes.substr(0, bytes.size() - kChecksumBytes);
@@ -48,6 +50,11 @@ absl::StatusOr<std::string_view> OpenSealedFile(const SealedFileKind& kind,
                                             " does not fit its content: it is cut off or corrupt"));
   }
   return content;
+}
+
+uint32_t SealedFileVersion(std::string_view content) {
+  ByteReader reader(content.substr(kSealedHeaderBytes - sizeof(uint32_t)));
+  return reader.Read<uint32_t>("version").value();
 }
 
 }  // namespace pleat

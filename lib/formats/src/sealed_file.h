@@ -11,9 +11,10 @@
 namespace pleat {
 
 struct SealedFileKind {
-  std::string_view magic;  // 8 bytes
-  uint32_t version;
-  const char* name;  // for messages: "sequence file"
+  std::string_view magic;   // 8 bytes
+  uint32_t version;         // that is written
+  uint32_t oldest_version;  // that is still read
+  const char* name;         // for messages: "sequence file"
 };
 
 // Magic and version; the writer goes on with the content.
@@ -26,5 +27,8 @@ std::string SealFile(ByteWriter* writer);
 absl::StatusOr<std::string_view> OpenSealedFile(const SealedFileKind& kind, std::string_view bytes);
 
 inline constexpr size_t kSealedHeaderBytes = 12;
+
+// Of what OpenSealedFile returned.
+uint32_t SealedFileVersion(std::string_view content);
 
 }  // namespace pleat

@@ -15,7 +15,7 @@
 namespace pleat {
 namespace {
 
-constexpr SealedFileKind kKind = {"PLEATSEQ", 1, "sequence file"};
+constexpr SealedFileKind kKind = {"PLEATSEQ", 1, 1, "sequence file"};
 constexpr size_t kMaxNameBytes = 4096;
 constexpr uint32_t kHasCornerTexcoords = 1, kHasFaceMaterials = 2;
 

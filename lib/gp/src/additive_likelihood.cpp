@@ -42,6 +42,11 @@ Eigen::VectorXd AdditiveLikelihood::Start() const {
   return start;
 }
 
+double AdditiveLikelihood::Noise(const Eigen::VectorXd& values) {
+  const Eigen::Index scales = (values.size() - 2) / 3;
+  return values[3 * scales] + kNoiseFloor * values.segment(scales, scales).sum();
+}
+
 // K, its Cholesky factor and the factor's inverse.
 bool AdditiveLikelihood::Factor(const Eigen::VectorXd& values) {
   const int scales = num_scales();
@@ -52,8 +57,7 @@ bool AdditiveLikelihood::Factor(const Eigen::VectorXd& values) {
     rbf_[e] *= values[scales + e];
     kernel_ += rbf_[e] + values[2 * scales + e] * products_[e];
   }
-  kernel_.diagonal().array() +=
-      values[3 * scales] + kNoiseFloor * values.segment(scales, scales).sum();
+  kernel_.diagonal().array() += Noise(values);
   return solver_.FactorAndInvert(kernel_, whitener_);
 }
 

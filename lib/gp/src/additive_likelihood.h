@@ -28,6 +28,8 @@ class AdditiveLikelihood : public Objective {
   double Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) override;
 
   Eigen::VectorXd Start() const;
+  // The whole noise variance, s^2 + floor; values: exp of the logs.
+  static double Noise(const Eigen::VectorXd& values);
   // After Evaluate: K^-1 y for other right-hand sides (N x r).
   void Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution);
 

@@ -59,14 +59,11 @@ absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters pa
     return Refuse(absl::StrCat("the first stage has ", model.stages_[0].num_outputs(),
                                " outputs, the second ", model.stages_[1].num_inputs(), " inputs"));
   }
-  if (parameters.basis.cols() != model.stages_.back().num_outputs() ||
-      parameters.basis.rows() != parameters.mean.size() || parameters.mean.size() < 1) {
-    return Refuse(absl::StrCat("basis is ", parameters.basis.rows(), " x ", parameters.basis.cols(),
-                               ", expected ", parameters.mean.size(), " x ",
-                               model.stages_.back().num_outputs()));
-  }
-  if (!parameters.basis.allFinite() || !parameters.mean.allFinite()) {
-    return Refuse("an entry of basis or mean is not finite");
+  PLEAT_ASSIGN_OR_RETURN(model.basis_, DetailBasis::FromParameters(parameters.basis));
+  if (model.basis_.num_components() != model.stages_.back().num_outputs()) {
+    return Refuse(absl::StrCat("the basis has ", model.basis_.num_components(),
+                               " components, the last stage ", model.stages_.back().num_outputs(),
+                               " outputs"));
   }
   if (!(parameters.fade_confidence >= 0 && parameters.fade_confidence <= 1)) {
     return Refuse("the fading confidence is not between 0 and 1");
@@ -85,8 +82,6 @@ absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters pa
   }
   model.regional_share_ = parameters.regional_share;
   model.learner_ = parameters.learner;
-  model.mean_ = std::move(parameters.mean);
-  model.basis_ = std::move(parameters.basis);
   model.fade_confidence_ = parameters.fade_confidence;
   return model;
 }
@@ -95,8 +90,7 @@ DetailModelParameters DetailModel::parameters() const {
   DetailModelParameters p;
   p.learner = learner_;
   for (const GpRegression& stage : stages_) p.stages.push_back(stage.parameters());
-  p.mean = mean_;
-  p.basis = basis_;
+  p.basis = basis_.parameters();
   p.fade_confidence = fade_confidence_;
   p.regional_share = regional_share_;
   if (regional_) p.regional = regional_->parameters();
@@ -145,8 +139,8 @@ double DetailModel::Predict(const Eigen::Ref<const Eigen::VectorXd>& features, W
   assert(detail.size() == num_details());
   workspace->single.resize(num_components());
   const double confidence = PredictCoefficients(features, workspace, workspace->single);
-  detail = mean_;
-  detail.noalias() += basis_ * workspace->single;
+  basis_.SetCoefficients(workspace->single, &workspace->query);
+  basis_.Expand(workspace->query, detail);
   return confidence;
 }
 

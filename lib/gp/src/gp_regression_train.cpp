@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "dense.h"
+#include "inducing.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/gp_regression.h"
 #include "pleat/gp/gram_term.h"
@@ -105,6 +106,33 @@ absl::Status Solve(const Progress& progress, GpRegressionParameters* p) {
   return absl::OkStatus();
 }
 
+// The same from all rows through the inducing rows `rows`, which are what is kept.
+absl::Status SolveInducedRows(const std::vector<Eigen::Index>& rows, const Progress& progress,
+                              GpRegressionParameters* p) {
+  const KernelValues values = KernelValuesOf(p->kernel_options, p->kernel);
+  const std::vector<AdditiveTerm> terms = {
+      {.inverse_width = values.g, .amplitude = values.a, .linear = values.c}};
+  const std::vector<Eigen::MatrixXd> inducing = {TakeRows(p->inputs, rows)};
+  const auto cross = [&](Eigen::Index begin, Eigen::Index count) {
+    return AdditiveCovariance({p->inputs.middleRows(begin, count)}, inducing, terms, values.b);
+  };
+  InducedWeights weights;
+  const double noise = values.s2 + p->kernel_options.relative_noise_floor * values.a +
+                       p->kernel_options.absolute_jitter;
+  const bool solved = SolveInduced(
+      AdditiveCovariance(inducing, inducing, terms, values.b), noise, p->alpha, cross,
+      [&] { return progress.cancelled(); }, true, &weights);
+  PLEAT_RETURN_IF_ERROR(progress.Report(1));
+  if (!solved) {
+    return absl::InvalidArgumentError(
+        "GP regression: the kernel matrix cannot be factored; raise the noise floor");
+  }
+  p->inputs = inducing[0];
+  p->alpha = std::move(weights.alpha);
+  p->whitener = std::move(weights.whitener);
+  return absl::OkStatus();
+}
+
 KernelLogs StartingLogs(double median) {
   return {.inverse_width = -std::log(median),
           .amplitude = std::log(.5),
@@ -149,11 +177,9 @@ absl::StatusOr<GpRegression> GpRegression::Train(const Eigen::Ref<const Eigen::M
 
   const auto rows = SpreadRows(inputs.rows(), options.max_rows);
   report.num_rows = static_cast<int>(rows.size());
-  if (report.num_rows < inputs.rows()) {
-    p.inputs = TakeRows(p.inputs, rows);
-    p.alpha = TakeRows(p.alpha, rows);
-  }
-  PLEAT_RETURN_IF_ERROR(Solve(progress.Stage("gp", .9, 1), &p));
+  const Progress solving = progress.Stage("gp", .9, 1);
+  PLEAT_RETURN_IF_ERROR(report.num_rows < inputs.rows() ? SolveInducedRows(rows, solving, &p)
+                                                        : Solve(solving, &p));
   return GpRegression(std::move(p));
 }
 

@@ -8,6 +8,7 @@
 #include "dense.h"
 #include "feature_sets.h"
 #include "pleat/base/status.h"
+#include "weighted_rows.h"
 
 namespace pleat {
 namespace {
@@ -63,40 +64,49 @@ absl::StatusOr<RegionalGp> RegionalGp::FromParameters(RegionalGpParameters param
 }
 
 RegionalGp::RegionalGp(RegionalGpParameters parameters) : parameters_(std::move(parameters)) {
-  std::vector<std::vector<int>> sets_of_column(num_inputs());
-  int num_sets = 0;
-  for (const RegionalGpParameters::Region& region : parameters_.regions) {
+  const Eigen::Index n = parameters_.inputs.rows();
+  alphas_.resize(n * static_cast<Eigen::Index>(parameters_.regions.size()), num_outputs());
+  std::map<std::vector<int>, int> set_of_columns;
+  for (size_t r = 0; r < parameters_.regions.size(); ++r) {
+    RegionalGpParameters::Region& region = parameters_.regions[r];
+    alphas_.middleRows(n * static_cast<Eigen::Index>(r), n) = region.alpha;
+    region.alpha.resize(0, 0);
+    scale_set_.emplace_back();
     for (const RegionalGpParameters::Scale& scale : region.scales) {
-      for (const int column : scale.columns) sets_of_column[column].push_back(num_sets);
-      ++num_sets;
+      const auto next = static_cast<int>(set_of_columns.size());
+      scale_set_.back().push_back(set_of_columns.try_emplace(scale.columns, next).first->second);
     }
   }
+  std::vector<std::vector<int>> sets_of_column(num_inputs());
+  for (const auto& [columns, set] : set_of_columns) {
+    for (const int column : columns) sets_of_column[column].push_back(set);
+  }
+  set_atoms_.resize(set_of_columns.size());
   std::map<std::vector<int>, int> atom_of_sets;
-  std::vector<std::vector<int>> atoms_of_set(num_sets);
   for (int column = 0; column < num_inputs(); ++column) {
     const std::vector<int>& sets = sets_of_column[column];
     if (sets.empty()) continue;
     const auto [entry, is_new] = atom_of_sets.try_emplace(sets, static_cast<int>(atoms_.size()));
     if (is_new) {
-      for (const int set : sets) atoms_of_set[set].push_back(entry->second);
+      for (const int set : sets) set_atoms_[set].push_back(entry->second);
       atoms_.emplace_back();
     }
     atoms_[entry->second].push_back(column);
   }
-  int set = 0;
-  for (const RegionalGpParameters::Region& region : parameters_.regions) {
-    scale_atoms_.emplace_back(atoms_of_set.begin() + set,
-                              atoms_of_set.begin() + set + region.scales.size());
-    set += static_cast<int>(region.scales.size());
+}
+
+RegionalGpParameters RegionalGp::parameters() const {
+  RegionalGpParameters p = parameters_;
+  const Eigen::Index n = p.inputs.rows();
+  for (size_t r = 0; r < p.regions.size(); ++r) {
+    p.regions[r].alpha = alphas_.middleRows(n * static_cast<Eigen::Index>(r), n);
   }
+  return p;
 }
 
 size_t RegionalGp::memory_bytes() const {
-  size_t bytes = static_cast<size_t>(parameters_.inputs.size()) * sizeof(double);
-  for (const RegionalGpParameters::Region& region : parameters_.regions) {
-    bytes += static_cast<size_t>(region.alpha.size()) * sizeof(float);
-  }
-  return bytes;
+  return static_cast<size_t>(parameters_.inputs.size()) * sizeof(double) +
+         static_cast<size_t>(alphas_.size()) * sizeof(float);
 }
 
 void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
@@ -106,32 +116,36 @@ void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace
   const Eigen::Index n = p.inputs.rows();
   assert(row.size() == num_inputs() && mean.size() == num_outputs());
   w.row = (row - p.input_mean) / p.input_scale;
-  w.distances.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
-  w.products.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
+  w.atom_distances.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
+  w.atom_products.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
   for (size_t a = 0; a < atoms_.size(); ++a) {
     for (const int column : atoms_[a]) {
-      w.distances.col(a).array() += (p.inputs.col(column).array() - w.row[column]).square();
-      w.products.col(a) += w.row[column] * p.inputs.col(column);
+      w.atom_distances.col(a).array() += (p.inputs.col(column).array() - w.row[column]).square();
+      w.atom_products.col(a) += w.row[column] * p.inputs.col(column);
     }
+  }
+  w.distances.setZero(n, static_cast<Eigen::Index>(set_atoms_.size()));
+  w.products.setZero(n, static_cast<Eigen::Index>(set_atoms_.size()));
+  for (size_t set = 0; set < set_atoms_.size(); ++set) {
+    for (const int atom : set_atoms_[set]) {
+      w.distances.col(set) += w.atom_distances.col(atom);
+      w.products.col(set) += w.atom_products.col(atom);
+    }
+  }
+  w.factors.resize(alphas_.rows());
+  for (size_t r = 0; r < p.regions.size(); ++r) {
+    w.kernel.setConstant(n, p.regions[r].bias);
+    for (size_t s = 0; s < p.regions[r].scales.size(); ++s) {
+      const RegionalGpParameters::Scale& scale = p.regions[r].scales[s];
+      const int set = scale_set_[r][s];
+      w.rbf = -.5 * scale.inverse_width * w.distances.col(set);
+      ChosenDenseOps().exp_in_place(w.rbf.data(), n);
+      w.kernel += scale.amplitude * w.rbf + scale.linear * w.products.col(set);
+    }
+    w.factors.segment(n * static_cast<Eigen::Index>(r), n) = w.kernel.cast<float>();
   }
   w.sum.setZero(num_outputs());
-  for (size_t region = 0; region < p.regions.size(); ++region) {
-    w.kernel.setConstant(n, p.regions[region].bias);
-    for (size_t s = 0; s < p.regions[region].scales.size(); ++s) {
-      const RegionalGpParameters::Scale& scale = p.regions[region].scales[s];
-      w.rbf.setZero(n);
-      w.linear.setZero(n);
-      for (const int atom : scale_atoms_[region][s]) {
-        w.rbf += w.distances.col(atom);
-        w.linear += w.products.col(atom);
-      }
-      w.rbf *= -.5 * scale.inverse_width;
-      ChosenDenseOps().exp_in_place(w.rbf.data(), n);
-      w.kernel += scale.amplitude * w.rbf + scale.linear * w.linear;
-    }
-    w.kernel_f = w.kernel.cast<float>();
-    w.sum.noalias() += p.regions[region].alpha.transpose() * w.kernel_f;
-  }
+  AddWeightedRows(w.factors.data(), alphas_.data(), alphas_.rows(), alphas_.cols(), w.sum.data());
   mean = p.output_mean + w.sum.cast<double>();
 }
 

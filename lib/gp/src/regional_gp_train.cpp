@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "additive_likelihood.h"
 #include "feature_sets.h"
+#include "inducing.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/regional_gp.h"
@@ -56,6 +57,47 @@ ScaledSet TakeSet(const Eigen::MatrixXd& inputs, const std::vector<Eigen::Index>
   return set;
 }
 
+// alpha = K^-1 y, K over the rows of `sets`.
+bool SolveRegion(const std::vector<Eigen::MatrixXd>& sets, const Eigen::VectorXd& logs,
+                 const Eigen::MatrixXd& outputs, const Progress& progress, Eigen::MatrixXd* alpha) {
+  AdditiveLikelihood likelihood(sets, GramData{Eigen::MatrixXd::Zero(outputs.rows(), 1), false, 1},
+                                0, progress);
+  if (!std::isfinite(likelihood.Evaluate(logs, nullptr))) return false;
+  likelihood.Solve(outputs, *alpha);
+  return true;
+}
+
+// The same through the inducing rows `inducing` from all rows of inputs and outputs.
+// values: of the kernel, in the order of AdditiveLikelihood.
+bool SolveInducedRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
+                        const std::vector<double>& set_units,
+                        const std::vector<Eigen::MatrixXd>& inducing, const Eigen::VectorXd& values,
+                        const Eigen::MatrixXd& outputs, const Progress& progress,
+                        Eigen::MatrixXd* alpha) {
+  const auto scales = static_cast<int>(inducing.size());
+  std::vector<AdditiveTerm> terms;
+  for (int e = 0; e < scales; ++e) {
+    terms.push_back({values[e], values[scales + e], values[2 * scales + e]});
+  }
+  const double noise = AdditiveLikelihood::Noise(values), bias = values[3 * scales + 1];
+  const auto cross = [&](Eigen::Index begin, Eigen::Index count) {
+    std::vector<Eigen::MatrixXd> rows;
+    for (int e = 0; e < scales; ++e) {
+      rows.push_back(inputs(Eigen::seqN(begin, count), region.feature_sets[e]).eval() /
+                     set_units[e]);
+    }
+    return AdditiveCovariance(rows, inducing, terms, bias);
+  };
+  InducedWeights weights;
+  if (!SolveInduced(
+          AdditiveCovariance(inducing, inducing, terms, bias), noise, outputs, cross,
+          [&] { return progress.cancelled(); }, false, &weights)) {
+    return false;
+  }
+  *alpha = std::move(weights.alpha);
+  return true;
+}
+
 // Learns one region: hyperparameters on `learning_rows`, weights on all rows of `inputs`.
 absl::Status TrainRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
                          const std::vector<Eigen::Index>& learning_rows,
@@ -80,20 +122,19 @@ absl::Status TrainRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
       MinimizeLbfgs(likelihood, likelihood.Start(),
                     {.max_iterations = options.max_iterations, .objective_tolerance = 1e-9}));
 
+  const Eigen::VectorXd values =
+      logs.cwiseMax(-kMaxKernelLog).cwiseMin(kMaxKernelLog).array().exp();
   for (int e = 0; e < scales; ++e) sets[e] = inputs(rows, region.feature_sets[e]) / set_units[e];
-  const Eigen::MatrixXd right = outputs(rows, Eigen::all);
-  AdditiveLikelihood all_rows(
-      sets, GramData{Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), 1), false, 1}, 0,
-      progress);
-  if (!std::isfinite(all_rows.Evaluate(logs, nullptr))) {
+  Eigen::MatrixXd alpha;
+  const bool solved =
+      static_cast<Eigen::Index>(rows.size()) < inputs.rows()
+          ? SolveInducedRegion(inputs, region, set_units, sets, values, outputs, progress, &alpha)
+          : SolveRegion(sets, logs, outputs, progress, &alpha);
+  if (!solved) {
     PLEAT_RETURN_IF_ERROR(progress.Report(0));
     return absl::InvalidArgumentError("the kernel matrix cannot be factored");
   }
-  Eigen::MatrixXd alpha;
-  all_rows.Solve(right, alpha);
   result->alpha = (unit * alpha).cast<float>();
-  const Eigen::VectorXd values =
-      logs.cwiseMax(-kMaxKernelLog).cwiseMin(kMaxKernelLog).array().exp();
   result->bias = values[3 * scales + 1];
   for (int e = 0; e < scales; ++e) {
     const double square = set_units[e] * set_units[e];

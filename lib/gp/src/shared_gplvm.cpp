@@ -123,6 +123,17 @@ DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, View
   return view;
 }
 
+DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& basis,
+                          const Eigen::Ref<const Eigen::MatrixXd>& scores, ViewScaling scaling) {
+  if (scaling == ViewScaling::kPerColumn) {
+    return MakeDetailView(Eigen::MatrixXd(scores * basis.transpose()), scaling);
+  }
+  // Distances and products are the same in any orthonormal basis.
+  DetailView view = MakeDetailView(scores, scaling);
+  view.num_outputs = static_cast<double>(basis.rows());
+  return view;
+}
+
 absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::MatrixXd>& poses,
                                              const DetailView& details,
                                              const std::vector<int>& clip_starts,

@@ -88,26 +88,22 @@ class CharacterModel {
   FrameRate frame_rate() const { return parts_.frame_rate; }
   int num_vertices() const { return parts_.topology.num_vertices(); }
 
-  // Control-to-full upsampling folded into the detail basis: details of all vertices =
-  // full_mean + full_basis * coefficients (3V, 3V x r; xyz of vertex 0, of vertex 1, ...).
-  const Eigen::MatrixXf& full_basis() const {
+  // Control-to-full upsampling folded into the detail basis: it gives the details of all vertices
+  // (3V; xyz of vertex 0, of vertex 1, ...).
+  const DetailBasis& full_basis() const {
     return parts_.upsampler ? upsampled_basis_ : parts_.detail_model->basis();
-  }
-  const Eigen::VectorXf& full_mean() const {
-    return parts_.upsampler ? upsampled_mean_ : parts_.detail_model->mean();
   }
 
   // Resident size, what the cache is charged.
   size_t memory_bytes() const;
 
  private:
-  CharacterModel(Parts parts, PoseFeatures features);
+  CharacterModel(Parts parts, PoseFeatures features, DetailBasis upsampled_basis);
   CharacterModel(const CharacterModel&) = default;
 
   Parts parts_;
   PoseFeatures features_;
-  Eigen::MatrixXf upsampled_basis_;  // empty at full resolution
-  Eigen::VectorXf upsampled_mean_;
+  DetailBasis upsampled_basis_;  // empty at full resolution
 };
 
 }  // namespace pleat

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -17,6 +18,15 @@ struct EvaluatedFrame {
   Eigen::Matrix3Xf positions;  // 3 x V, metres, world
   // How near the pose is to what training has seen: 1 = seen, 0 = unknown, the mean detail shows.
   double confidence = 0;
+};
+
+// One of several queries that are answered together.
+struct PoseQuery {
+  const std::vector<const Pose*>* poses = nullptr;   // as for PoseEvaluator::Evaluate
+  const std::vector<double>* bone_scales = nullptr;  // null: ones
+  bool skinned_only = false;                         // without the learnt detail
+  EvaluatedFrame* frame = nullptr;
+  absl::Status status{};  // set by the evaluation; when it is not OK the frame is untouched
 };
 
 // One evaluator per thread: it owns the scratch memory, the model is shared.
@@ -40,7 +50,10 @@ class PoseEvaluator {
   absl::Status EvaluateSkinned(const Pose& pose, const std::vector<double>& bone_scales,
                                EvaluatedFrame* frame);
 
-  // Batch form: every frame of `track` in order, history taken from the track itself (interpolated
+  // Queries together read the model once: cheaper per query, the same bits in every frame.
+  void EvaluateBatch(std::span<PoseQuery> queries);
+
+  // Every frame of `track` in order, history taken from the track itself (interpolated
   // where its frame rate differs from the model's). `consume` may stop the clip with an error.
   absl::Status EvaluateClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
@@ -48,12 +61,12 @@ class PoseEvaluator {
       const Progress& progress = {});
 
  private:
-  struct Scratch;
-  // Checks and skins history pose 0, into the scratch memory.
-  absl::Status Skin(const Pose& pose, const std::vector<double>& bone_scales);
+  struct Scratch;  // of one query
+  absl::Status Prepare(const PoseQuery& query, Scratch* scratch) const;
+  void FillFrames(std::span<Scratch* const> scratches, std::span<EvaluatedFrame* const> frames);
 
   std::shared_ptr<const CharacterModel> model_;
-  std::unique_ptr<Scratch> scratch_;
+  std::vector<std::unique_ptr<Scratch>> scratches_;  // as many as the largest batch so far
 };
 
 }  // namespace pleat

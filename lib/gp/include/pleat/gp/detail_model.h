@@ -18,10 +18,12 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
+#include "pleat/gp/detail_basis.h"
 #include "pleat/gp/gp_regression.h"
 #include "pleat/gp/regional_gp.h"
 #include "pleat/gp/ridge.h"
 #include "pleat/gp/shared_gplvm.h"
+#include "pleat/math/pca.h"
 
 namespace pleat {
 
@@ -51,13 +53,18 @@ struct DetailModelOptions {
   RidgeOptions ridge{};                 // of the linear learner
   RegionalGpOptions regional{};         // of the regional learner
   std::vector<DetailRegion> regions{};  // what it needs; may be empty for the others
+  // Frames that get a latent point each: all, or so many of them, spread evenly.
+  int max_latents = 600;
   // Of Y_S -> X, after training. With back-constraints the constraint itself is the map.
   GpRegressionOptions back_map{.kernel = {.bias = true, .linear = false}};
 
-  // Details are predicted in the basis of their principal components: as many as this share of
-  // the energy needs, up to a cap.
+  // Where the details themselves are given: as many principal components as this share of their
+  // energy needs, up to a cap.
   double pca_energy = .9999;
   int max_components = 128;
+  // The basis is rounded to integers, each component so that its RMS error over the training frames
+  // is at most this share of the RMS detail.
+  double rounding = 1e-3;
 
   // Y_M may be in other coordinates than the predictions shall be: this linear map of columns
   // (D_M x k) takes mean and basis there. None: as they are.
@@ -88,8 +95,7 @@ struct DetailModelSummary {
 struct DetailModelParameters {
   Learner learner = Learner::kGp;
   std::vector<GpRegressionParameters> stages;  // one or two, applied in this order
-  Eigen::VectorXf mean;                        // D_M, unit of Y_M
-  Eigen::MatrixXf basis;                       // D_M x r; orthonormal as trained
+  DetailBasisParameters basis;                 // of details; nearly orthonormal as trained
   double fade_confidence = .02;
   double regional_share = 0;                     // of `regional` in the prediction, 0..1
   std::optional<RegionalGpParameters> regional;  // with Learner::kRegional only
@@ -104,6 +110,7 @@ class DetailModel {
     Eigen::VectorXd latent;        // q
     Eigen::VectorXd coefficients;  // r
     Eigen::VectorXf single;        // r
+    DetailBasis::Query query;
     RegionalGp::Workspace regional;
     Eigen::VectorXd regional_coefficients;  // r
   };
@@ -113,11 +120,10 @@ class DetailModel {
   DetailModelParameters parameters() const;
 
   Learner learner() const { return learner_; }
-  int num_features() const { return stages_.front().num_inputs(); }       // D_S
-  int num_components() const { return static_cast<int>(basis_.cols()); }  // r
-  int num_details() const { return static_cast<int>(basis_.rows()); }     // D_M
-  const Eigen::VectorXf& mean() const { return mean_; }
-  const Eigen::MatrixXf& basis() const { return basis_; }
+  int num_features() const { return stages_.front().num_inputs(); }  // D_S
+  int num_components() const { return basis_.num_components(); }     // r
+  int num_details() const { return basis_.num_details(); }           // D_M
+  const DetailBasis& basis() const { return basis_; }
   const std::vector<GpRegression>& stages() const { return stages_; }
   double fade_confidence() const { return fade_confidence_; }
   const std::optional<RegionalGp>& regional() const { return regional_; }
@@ -136,8 +142,7 @@ class DetailModel {
 
   Learner learner_ = Learner::kGp;
   std::vector<GpRegression> stages_;
-  Eigen::VectorXf mean_;
-  Eigen::MatrixXf basis_;
+  DetailBasis basis_;
   double fade_confidence_ = 0;
   double regional_share_ = 0;
   std::optional<RegionalGp> regional_;
@@ -145,8 +150,17 @@ class DetailModel {
   friend class DetailModelTrainer;
 };
 
-// Learns from features Y_S (N x D_S) and details Y_M (N x D_M), row t = frame t; `clip_starts`
-// holds the first row of each clip. Errors: kInvalidArgument for sizes or values; kCancelled.
+// Learns from features Y_S (N x D_S) and the principal components of the details Y_M (N scores of r
+// components), row t = frame t; `clip_starts` holds the first row of each clip. Errors:
+// kInvalidArgument for sizes or values; kCancelled.
+absl::StatusOr<DetailModel> TrainDetailModel(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                                             const PrincipalComponents& details,
+                                             const std::vector<int>& clip_starts,
+                                             const DetailModelOptions& options = {},
+                                             DetailModelSummary* summary = nullptr,
+                                             const Progress& progress = {});
+
+// The same from the details themselves (N x D_M), in the basis that `options` asks for.
 absl::StatusOr<DetailModel> TrainDetailModel(const Eigen::Ref<const Eigen::MatrixXd>& features,
                                              const Eigen::Ref<const Eigen::MatrixXd>& details,
                                              const std::vector<int>& clip_starts,

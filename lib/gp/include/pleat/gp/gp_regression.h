@@ -1,4 +1,5 @@
-// Exact Gaussian process regression of several outputs that share one kernel.
+// Gaussian process regression of several outputs that share one kernel: exact, or through inducing
+// rows where there are many.
 // Source: Rasmussen and Williams, "Gaussian Processes for Machine Learning" (2006), chapters 2, 5.
 #pragma once
 
@@ -24,15 +25,17 @@ struct GpRegressionOptions {
   // out inside the training frames of captured clips (docs/performance.md, "Choices").
   double prior_precision = .003;
   double prior_width_factor = 1;
-  // Hyperparameters are learnt on at most this many rows and predictions made from at most
-  // `max_rows`, both spread evenly: cost and memory grow with the cube and the square.
+  // Hyperparameters are learnt on at most this many rows, spread evenly: the cost grows with the
+  // cube.
   int max_hyperparameter_rows = 800;
-  int max_rows = 2000;
+  // More rows than this are not kept: all of them are learnt through this many inducing rows,
+  // spread evenly, at a cost that grows linearly.
+  int max_rows = 600;
 };
 
 struct GpRegressionSummary {
   OptimizationSummary optimization;
-  int num_rows = 0;  // that predictions are made from
+  int num_rows = 0;  // that predictions are made from: all, or the inducing ones
   int num_hyperparameter_rows = 0;
 };
 

@@ -28,10 +28,8 @@ struct RegionalGpOptions {
   int max_iterations = 60;  // of L-BFGS on the marginal likelihood, per region
   // As in GpRegressionOptions, for every set of features.
   double prior_precision = .003;
-  // Hyperparameters are learnt on at most this many rows and predictions made from at most
-  // `max_rows`, both spread evenly: cost grows with the cube.
-  int max_hyperparameter_rows = 400;
-  int max_rows = 2000;
+  int max_hyperparameter_rows = 400;  // as in GpRegressionOptions
+  int max_rows = 600;
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
 
@@ -60,12 +58,12 @@ class RegionalGp {
  public:
   // What one thread needs for its queries. Sized by the first query, reused without allocation.
   struct Workspace {
-    Eigen::VectorXd row;                  // D, normalised
-    Eigen::MatrixXd distances;            // N x atoms
-    Eigen::MatrixXd products;             // N x atoms
-    Eigen::VectorXd rbf, linear, kernel;  // N
-    Eigen::VectorXf kernel_f;             // N
-    Eigen::VectorXf sum;                  // r
+    Eigen::VectorXd row;                            // D, normalised
+    Eigen::MatrixXd atom_distances, atom_products;  // N x atoms
+    Eigen::MatrixXd distances, products;            // N x sets
+    Eigen::VectorXd rbf, kernel;                    // N
+    Eigen::VectorXf factors;                        // R N, all kernels
+    Eigen::VectorXf sum;                            // r
   };
 
   // inputs: N x D, rows are samples. kInvalidArgument when sizes differ, a column is out of range
@@ -78,7 +76,7 @@ class RegionalGp {
   // From a file: checks sizes, columns and that every number is finite (kInvalidArgument).
   static absl::StatusOr<RegionalGp> FromParameters(RegionalGpParameters parameters);
 
-  const RegionalGpParameters& parameters() const { return parameters_; }
+  RegionalGpParameters parameters() const;
   int num_inputs() const { return static_cast<int>(parameters_.inputs.cols()); }
   int num_outputs() const { return static_cast<int>(parameters_.output_mean.size()); }
   size_t memory_bytes() const;
@@ -90,10 +88,14 @@ class RegionalGp {
  private:
   explicit RegionalGp(RegionalGpParameters parameters);
 
-  RegionalGpParameters parameters_;
-  // Columns that belong to the same sets are one atom: distances are summed over them only once.
-  std::vector<std::vector<int>> atoms_;                     // columns
-  std::vector<std::vector<std::vector<int>>> scale_atoms_;  // [region][scale]: atoms
+  RegionalGpParameters parameters_;  // without the alphas
+  // R N x r: the alphas of all regions, so that a query reads them once from front to back.
+  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> alphas_;
+  // Columns that belong to the same sets are one atom: distances are summed over them only once,
+  // and the sum over a set that several scales share is formed only once.
+  std::vector<std::vector<int>> atoms_;      // columns
+  std::vector<std::vector<int>> set_atoms_;  // of each different set: atoms
+  std::vector<std::vector<int>> scale_set_;  // [region][scale]: set
 };
 
 }  // namespace pleat

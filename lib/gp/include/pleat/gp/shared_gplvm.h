@@ -109,6 +109,9 @@ struct DetailView {
 
 // Gram matrix of the centred (and with kPerColumn scaled) columns of `outputs` (N x D_M).
 DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling);
+// The same of the outputs scores * basis^T (basis: D_M x r, orthonormal; scores: N x r).
+DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& basis,
+                          const Eigen::Ref<const Eigen::MatrixXd>& scores, ViewScaling scaling);
 
 // Trains on N frames: `poses` is Y_S (N x D_S). Errors: kInvalidArgument for sizes that do not
 // agree, values that are not finite, fewer than two frames; kCancelled. `summary` may be null.

@@ -1,0 +1,28 @@
+// Sums of integer planes, on the widest registers of this processor.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace pleat {
+
+inline constexpr int kPlaneLanes = 16;  // rows of a group
+inline constexpr int kMaxTogether = 4;  // queries that are summed in one pass
+
+// details[q][l] = mean[l] + units[q] * sum_p weights[q][p] values[p / 2][l][p % 2] for one group of
+// 16 rows l: values are num_pairs x 16 x 2, weights[q] 2 num_pairs. The sums must fit in 32 bits.
+// All kernels give the same bits.
+struct PlaneKernel {
+  const char* name;
+  // [k]: for k + 1 queries.
+  using Function = void (*)(const int8_t* values, const float* mean, ptrdiff_t num_pairs,
+                            const int16_t* const* weights, const float* units,
+                            float* const* details);
+  Function expand[kMaxTogether];
+};
+
+// Those this processor can run, the fastest first.
+std::span<const PlaneKernel* const> UsablePlaneKernels();
+
+}  // namespace pleat
