@@ -82,6 +82,9 @@ for input in "${inputs[@]}"; do
   done
 done
 
+echo "== scale_curve (PNG in build/bench)"
+build/bin/scale_curve build/bench
+
 # The paper's figures: tables here, tables and plots in build/bench/experiments.
 figures=build/bench/experiments
 experiments() {  # experiments NAME INPUT [flags...]: all four, on training frames and on unseen ones

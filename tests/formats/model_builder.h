@@ -121,9 +121,9 @@ class SmallModelBuilder {
       detail.regional_share = 0.5;
       detail.regional = Regional(kFeatures, kComponents);
     }
-    detail.basis = DetailBasis::Quantise(Vector(3 * num_control).cast<float>() * 0.01f,
-                                         Matrix(3 * num_control, kComponents),
-                                         Eigen::VectorXd::Constant(kComponents, 1e-4))
+    const Eigen::VectorXf mean = Vector(3 * num_control).cast<float>() * 0.01f;
+    const Eigen::MatrixXd basis = Matrix(3 * num_control, kComponents);
+    detail.basis = DetailBasis::Quantise(mean, basis, Eigen::VectorXd::Constant(kComponents, 1e-4))
                        .value()
                        .parameters();
     return detail;

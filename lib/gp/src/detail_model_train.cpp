@@ -197,7 +197,7 @@ class DetailModelTrainer {
     const Eigen::MatrixXd scores = details_.scores(part.rows, Eigen::all);
     PLEAT_ASSIGN_OR_RETURN(
         const SharedGplvm latent,
-        TrainSharedGplvm(features, MakeDetailView(details_.basis, scores, options.scaling),
+        TrainSharedGplvm(features, MakeDetailView(details_, part.rows, options.scaling),
                          part.clip_starts, options, &summary_.sgplvm,
                          progress_.Stage("sgplvm", .1, .85)));
     if (options.back_constraints) {

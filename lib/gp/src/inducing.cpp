@@ -1,5 +1,7 @@
 #include "inducing.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 
 namespace pleat {
@@ -8,19 +10,18 @@ namespace {
 constexpr double kJitter = 1e-7;  // share of the mean variance, on the diagonal of Kzz
 constexpr Eigen::Index kBlockRows = 512;
 
-// The lower triangle mirrored.
-void MakeSymmetric(Eigen::MatrixXd* m) {
-  m->triangularView<Eigen::StrictlyUpper>() = m->transpose();
-}
-
-// Lower W with W^T W = `v` (symmetric, nearly singular): the Cholesky factor from the last row up.
-bool FactorFromBelow(const Eigen::MatrixXd& v, DenseSolver* solver, Eigen::MatrixXf* whitener) {
-  Eigen::MatrixXd reversed = v.reverse(), unused;
-  reversed.diagonal().array() += 1e-10 * v.trace() / static_cast<double>(v.rows());
-  if (!solver->FactorAndInvert(reversed, unused)) return false;
-  const Eigen::MatrixXd lower = reversed.triangularView<Eigen::Lower>();
-  *whitener = lower.reverse().transpose().cast<float>();
-  return true;
+// Lower W with W^T W = L^-T (I - B^-1) L^-1, from L^-1 and gain = B - I. By eigenvectors and an
+// orthogonal triangulation: the matrix itself is too near to singular to be factored.
+Eigen::MatrixXf WhitenerOf(const Eigen::MatrixXd& inverse_factor, const Eigen::MatrixXd& gain) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gain);
+  const Eigen::ArrayXd values = solver.eigenvalues().array().max(0);
+  const Eigen::MatrixXd half = (values / (1 + values)).sqrt().matrix().asDiagonal() *
+                               solver.eigenvectors().transpose() * inverse_factor;
+  // half = Q R reversed, so that R becomes lower triangular.
+  const Eigen::MatrixXd reversed = half.rowwise().reverse();
+  const Eigen::MatrixXd r =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(reversed).matrixQR().triangularView<Eigen::Upper>();
+  return r.reverse().cast<float>();
 }
 
 }  // namespace
@@ -52,46 +53,41 @@ bool SolveInduced(
     const std::function<bool()>& cancelled, bool with_whitener, InducedWeights* weights) {
   const Eigen::Index m = covariance.rows(), num_outputs = outputs.cols();
   DenseSolver solver;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(m, m);             // Kzx Kxz, lower
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(m, num_outputs);  // Kzx y
+  Eigen::MatrixXd factor = covariance, w;  // L, L^-1
+  factor.diagonal().array() += kJitter * covariance.trace() / static_cast<double>(m);
+  if (!solver.FactorAndInvert(factor, w)) return false;
+
+  // With the whitened rows G = Kxz L^-T both sums are of full precision: B - I = G^T G / s^2.
+  Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(m, m);             // G^T G, lower
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(m, num_outputs);  // G^T y
+  Eigen::MatrixXd whitened;
   for (Eigen::Index begin = 0; begin < outputs.rows(); begin += kBlockRows) {
     if (cancelled()) return false;
     const Eigen::Index count = std::min(kBlockRows, outputs.rows() - begin);
     const Eigen::MatrixXd block = cross(begin, count);
-    const DenseView rows = ViewOf(block);
-    solver.MultiplyAdd(1, rows.Transposed(), rows, gram.data(), m, m, m, count, true);
+    whitened.setZero(count, m);
+    solver.MultiplyAdd(1, ViewOf(block), ViewOf(w).Transposed(), whitened.data(), count, count, m,
+                       m);
+    const DenseView rows = ViewOf(whitened);
+    solver.MultiplyAdd(1, rows.Transposed(), rows, gain.data(), m, m, m, count, true);
     const DenseView targets{outputs.data() + begin, 1, outputs.outerStride()};
     solver.MultiplyAdd(1, rows.Transposed(), targets, right.data(), m, m, num_outputs, count);
   }
-  MakeSymmetric(&gram);
+  gain.triangularView<Eigen::StrictlyUpper>() = gain.transpose();
+  gain /= noise;
 
-  Eigen::MatrixXd factor = covariance, w;  // L, L^-1
-  factor.diagonal().array() += kJitter * covariance.trace() / static_cast<double>(m);
-  if (!solver.FactorAndInvert(factor, w)) return false;
-  Eigen::MatrixXd half, b;
-  solver.MultiplyByFactor(w, false, gram, false, half);
-  solver.MultiplyByFactor(w, false, Eigen::MatrixXd(half.transpose()), false, b);
-  b = .5 / noise * (b + Eigen::MatrixXd(b.transpose()));
+  Eigen::MatrixXd b = gain, b_whitener;
   b.diagonal().array() += 1;
-  Eigen::MatrixXd b_whitener;
   if (cancelled() || !solver.FactorAndInvert(b, b_whitener)) return false;
-
   Eigen::MatrixXd x, y;
-  solver.MultiplyByFactor(w, false, right, false, x);
-  solver.MultiplyByFactor(b_whitener, false, x, false, y);
+  solver.MultiplyByFactor(b_whitener, false, right, false, y);
   solver.MultiplyByFactor(b_whitener, true, y, false, x);
   solver.MultiplyByFactor(w, true, x, false, y);
   weights->alpha = y / noise;
   if (!with_whitener) return true;
 
-  Eigen::MatrixXd known = Eigen::MatrixXd::Zero(m, m);  // I - B^-1
-  solver.InverseFromFactor(b_whitener, known);
-  MakeSymmetric(&known);
-  known = Eigen::MatrixXd::Identity(m, m) - known;
-  solver.MultiplyByFactor(w, true, known, false, half);
-  solver.MultiplyByFactor(w, true, Eigen::MatrixXd(half.transpose()), false, known);
-  return FactorFromBelow(.5 * (known + Eigen::MatrixXd(known.transpose())), &solver,
-                         &weights->whitener);
+  weights->whitener = WhitenerOf(w, gain);
+  return true;
 }
 
 }  // namespace pleat

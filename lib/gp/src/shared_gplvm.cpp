@@ -123,14 +123,19 @@ DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, View
   return view;
 }
 
-DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& basis,
-                          const Eigen::Ref<const Eigen::MatrixXd>& scores, ViewScaling scaling) {
+DetailView MakeDetailView(const PrincipalComponents& outputs, const std::vector<Eigen::Index>& rows,
+                          ViewScaling scaling) {
+  const Eigen::MatrixXd scores = outputs.scores(rows, Eigen::all);
   if (scaling == ViewScaling::kPerColumn) {
-    return MakeDetailView(Eigen::MatrixXd(scores * basis.transpose()), scaling);
+    return MakeDetailView(Eigen::MatrixXd(scores * outputs.basis.transpose()), scaling);
   }
-  // Distances and products are the same in any orthonormal basis.
+  // Products are the same in any orthonormal basis.
   DetailView view = MakeDetailView(scores, scaling);
-  view.num_outputs = static_cast<double>(basis.rows());
+  view.num_outputs = static_cast<double>(outputs.basis.rows());
+  const double kept = outputs.scores.squaredNorm() / static_cast<double>(outputs.scores.rows());
+  if (outputs.kept_energy > 0) {
+    view.gram.diagonal().array() += kept * (1 / outputs.kept_energy - 1);
+  }
   return view;
 }
 

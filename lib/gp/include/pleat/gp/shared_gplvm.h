@@ -16,6 +16,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/gp/gram_term.h"
 #include "pleat/gp/kernel.h"
+#include "pleat/math/pca.h"
 #include "pleat/optimize/objective.h"
 #include "pleat/optimize/summary.h"
 
@@ -109,9 +110,10 @@ struct DetailView {
 
 // Gram matrix of the centred (and with kPerColumn scaled) columns of `outputs` (N x D_M).
 DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling);
-// The same of the outputs scores * basis^T (basis: D_M x r, orthonormal; scores: N x r).
-DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& basis,
-                          const Eigen::Ref<const Eigen::MatrixXd>& scores, ViewScaling scaling);
+// The same of the rows `rows` of `outputs`. What the components leave out is taken to be spread
+// evenly over the rows: without it the noise would be learnt too small.
+DetailView MakeDetailView(const PrincipalComponents& outputs, const std::vector<Eigen::Index>& rows,
+                          ViewScaling scaling);
 
 // Trains on N frames: `poses` is Y_S (N x D_S). Errors: kInvalidArgument for sizes that do not
 // agree, values that are not finite, fewer than two frames; kCancelled. `summary` may be null.
