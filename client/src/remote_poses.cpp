@@ -7,6 +7,7 @@
 #include "pleat/codec/frame_decoder.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
+#include "remote_live_session.h"
 #include "state.h"
 
 namespace pleat {
@@ -19,76 +20,6 @@ v1::Character CharacterOf(const ClipQuery& query) {
 absl::Status BrokenStream(absl::string_view why) {
   return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
 }
-
-class RemoteLiveSession final : public LiveSession {
- public:
-  explicit RemoteLiveSession(std::shared_ptr<grpc::Channel> channel)
-      : channel_(std::move(channel)), stub_(v1::PoseService::NewStub(channel_)) {}
-  ~RemoteLiveSession() override {
-    context_.TryCancel();
-    if (stream_ != nullptr && !finished_) stream_->Finish();
-  }
-
-  absl::Status Open(const ClipQuery& character, const FrameEncoderOptions& encoding) {
-    stream_ = stub_->LiveSession(&context_);
-    v1::LiveSessionRequest request;
-    *request.mutable_start()->mutable_character() = CharacterOf(character);
-    *request.mutable_start()->mutable_options() = ToProto(encoding);
-    stream_->Write(request);  // a failure shows in the read
-    v1::LiveSessionResponse response;
-    if (!stream_->Read(&response)) return End();
-    if (!response.has_header()) return BrokenStream("no header");
-    PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(response.header()));
-    PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(header)));
-    decoder_.emplace(std::move(decoder));
-    return absl::OkStatus();
-  }
-
-  const FrameDecoder& decoder() const override { return *decoder_; }
-
-  absl::Status Send(uint64_t number, const Pose& pose, const std::vector<Pose>& history,
-                    bool restart, bool keyframe) override {
-    v1::LiveSessionRequest request;
-    v1::LiveSessionRequest::LivePose* message = request.mutable_pose();
-    message->set_number(number);
-    *message->mutable_pose() = ToProto(pose);
-    for (const Pose& earlier : history) *message->add_history() = ToProto(earlier);
-    message->set_restart(restart);
-    message->set_keyframe(keyframe);
-    if (stream_->Write(request)) return absl::OkStatus();
-    return absl::UnavailableError("the live session has ended; Receive says why");
-  }
-
-  absl::Status Receive(LiveFrame* frame) override {
-    v1::LiveSessionResponse response;
-    if (!stream_->Read(&response)) return End();
-    if (!response.has_frame()) return BrokenStream("a second header");
-    frame->number = response.frame().number();
-    frame->confidence = response.frame().confidence();
-    frame->draco = std::move(*response.mutable_frame()->mutable_draco());
-    frame->mark = MarkOf(response.frame());
-    return decoder_->Decode(frame->draco, frame->mark, &frame->positions);
-  }
-
-  void SendDone() override { stream_->WritesDone(); }
-
- private:
-  // Why there is no more to read.
-  absl::Status End() {
-    if (!finished_) end_ = FromGrpcStatus(stream_->Finish());
-    finished_ = true;
-    return end_.ok() ? absl::OutOfRangeError("the live session has ended") : end_;
-  }
-
-  std::shared_ptr<grpc::Channel> channel_;
-  std::unique_ptr<v1::PoseService::Stub> stub_;
-  grpc::ClientContext context_;
-  std::unique_ptr<grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>>
-      stream_;
-  std::optional<FrameDecoder> decoder_;
-  bool finished_ = false;
-  absl::Status end_;
-};
 
 }  // namespace
 
@@ -172,13 +103,11 @@ absl::StatusOr<EvaluatedFrame> RemoteCharacterService::EvaluatePose(
 }
 
 absl::StatusOr<std::unique_ptr<LiveSession>> RemoteCharacterService::OpenLiveSession(
-    const ClipQuery& character, const FrameEncoderOptions& encoding) {
+    const ClipQuery& character, const LiveSessionOptions& options) {
   std::shared_ptr<grpc::Channel> channel =
       state_->address.empty() ? state_->channel
                               : MakeChannel(state_->address, state_->options, ChannelUse::kLive);
-  auto session = std::make_unique<RemoteLiveSession>(std::move(channel));
-  PLEAT_RETURN_IF_ERROR(session->Open(character, encoding));
-  return session;
+  return OpenRemoteLiveSession(std::move(channel), CharacterOf(character), options);
 }
 
 }  // namespace pleat

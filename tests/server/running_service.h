@@ -25,13 +25,14 @@ inline std::string ReachName(Reach reach) {
 class RunningService {
  public:
   explicit RunningService(Reach reach, ServiceLimits limits = {},
-                          GrpcServerOptions grpc = {.num_pose_threads = 2}) {
+                          GrpcServerOptions grpc = {.num_pose_threads = 2})
+      : grpc_(std::move(grpc)) {
     local_ = LocalCharacterService::Open(
                  {.data_dir = folder_.path(), .limits = limits, .train = trainer_.function()})
                  .value();
     if (reach == Reach::kLocal) return;
     spdlog::set_level(spdlog::level::err);  // refused requests are what these tests are about
-    server_ = GrpcServer::Start(local_.get(), grpc).value();
+    server_ = GrpcServer::Start(local_.get(), grpc_).value();
     remote_ = reach == Reach::kInProcess
                   ? RemoteCharacterService::OverChannel(server_->InProcessChannel())
                   : RemoteCharacterService::Connect(address()).value();
@@ -46,9 +47,16 @@ class RunningService {
   FakeTrainer& trainer() { return trainer_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(server_->port()); }
 
-  // A model of MakeSwayingTube(5).
-  std::string TrainModel() {
-    const std::string sequence_id = service().UploadSequence(MakeSwayingTube(5), {})->id;
+  // Ends the server, giving its calls `drain_seconds`, and starts it again at the same port.
+  void RestartServer(double drain_seconds) {
+    GrpcServerOptions options = grpc_;
+    options.listen = address();
+    server_->Shutdown(drain_seconds);
+    server_ = GrpcServer::Start(local_.get(), options).value();
+  }
+
+  std::string TrainModel(const MeshSequence& clip = MakeSwayingTube(5)) {
+    const std::string sequence_id = service().UploadSequence(clip, {})->id;
     const std::string job_id = service().CreateTrainingJob({sequence_id}, {}, "")->id;
     std::string model_id;
     const absl::Status status = service().WatchJob(job_id, [&](const JobInfo& info) {
@@ -59,6 +67,7 @@ class RunningService {
   }
 
  private:
+  const GrpcServerOptions grpc_;
   TemporaryFolder folder_;
   FakeTrainer trainer_;
   std::unique_ptr<LocalCharacterService> local_;

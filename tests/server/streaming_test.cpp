@@ -1,4 +1,4 @@
-// Streams over a real socket: live sessions, slow readers, broken uploads, limits, shutdown.
+// Streams over a real socket: slow readers, broken uploads, limits, shutdown.
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,6 @@
 #include <chrono>
 #include <thread>
 
-#include "pleat/codec/frame_decoder.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
@@ -41,54 +40,6 @@ class StreamingTest : public testing::Test {
       {},
       {.num_pose_threads = 2, .max_receive_bytes = 4 << 20, .max_open_streams = 8}};
 };
-
-TEST_F(StreamingTest, ALiveSessionShowsEveryPose) {
-  const std::string id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(id).value();
-  const PoseTrack track = MakeMotion(model->skeleton(), 50);
-  for (const FrameEncoding encoding :
-       {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
-    PLEAT_ASSERT_OK_AND_ASSIGN(
-        const auto session,
-        running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}},
-                                          {.encoding = encoding}));
-    EXPECT_EQ(session->decoder().header().num_vertices, 96);
-    PoseEvaluator evaluator(model);
-    for (int t = 0; t < track.num_frames(); ++t) {
-      ASSERT_THAT(session->Send(1000 + t, track.poses[t]), IsOk());
-      LiveFrame frame;
-      ASSERT_THAT(session->Receive(&frame), IsOk());
-      EXPECT_EQ(frame.number, 1000u + t);
-      EvaluatedFrame truth;
-      ASSERT_THAT(
-          evaluator.Evaluate({&track.poses[t], &track.poses[std::max(0, t - 1)]}, {}, &truth),
-          IsOk());
-      EXPECT_LE((frame.positions - truth.positions).cwiseAbs().maxCoeff(),
-                .505 * session->decoder().header().box.step_m());
-      EXPECT_EQ(frame.confidence, truth.confidence);
-    }
-    session->SendDone();
-    LiveFrame frame;
-    EXPECT_THAT(session->Receive(&frame), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
-  }
-}
-
-TEST_F(StreamingTest, ABadPoseEndsTheSessionWithAReason) {
-  const std::string id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(id).value();
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const auto session,
-      running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}));
-  Pose pose = Pose::Rest(model->skeleton());
-  pose.rotations.pop_back();
-  ASSERT_THAT(session->Send(1, pose), IsOk());
-  LiveFrame frame;
-  EXPECT_THAT(session->Receive(&frame),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("2 rotations")));
-  EXPECT_THAT(running_.remote().OpenLiveSession(
-                  {.model_id = std::string(64, '0'), .track = {}, .bone_scales = {}}),
-              HasStatus(absl::StatusCode::kNotFound, testing::_));
-}
 
 TEST_F(StreamingTest, OnePoseGivesOneFrame) {
   const std::string id = running_.TrainModel();
@@ -206,9 +157,6 @@ TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
 TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   const std::string id = running_.TrainModel();
   const auto model = running_.local().AcquireModel(id).value();
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const auto live,
-      running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}));
   const std::string sequence_id = running_.service().ListSequences()->at(0).id;
   running_.trainer().step_ms = 200;
   const std::string job_id = running_.service().CreateTrainingJob({sequence_id}, {}, "")->id;
@@ -245,10 +193,6 @@ TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   EXPECT_EQ(watched.error_code(), grpc::StatusCode::UNAVAILABLE);
   clip.join();
   EXPECT_EQ(num_frames, 400);
-  // The live session is told at its next pose.
-  EXPECT_THAT(live->Send(1, Pose::Rest(model->skeleton())), IsOk());
-  LiveFrame frame;
-  EXPECT_THAT(live->Receive(&frame), HasStatus(absl::StatusCode::kUnavailable, testing::_));
   stopper.join();
 }
 

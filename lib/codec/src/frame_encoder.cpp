@@ -13,6 +13,7 @@
 #include "draco_encode.h"
 #include "pleat/base/status.h"
 #include "pleat/codec/frame_decoder.h"
+#include "residual_writer.h"
 
 namespace pleat {
 namespace {
@@ -131,7 +132,8 @@ struct FrameEncoder::State {
 
   // For kDracoDelta:
   std::optional<DeltaPredictor> predictor;
-  std::unique_ptr<draco::PointCloud> residual_cloud;
+  ResidualWriter writer;
+  std::unique_ptr<draco::PointCloud> residual_cloud;  // for residuals too large for `writer`
   Eigen::Matrix3Xi last, now, residuals;  // 3 x V, on the grid; `last` is empty before a key frame
   Eigen::Matrix3Xf placed;
   size_t key_bytes = 0;  // of the last key frame
@@ -163,8 +165,10 @@ struct FrameEncoder::State {
     std::string bytes;
     if (!mark.keyframe) {
       predictor->Residuals(last, now, &residuals);
-      SetDracoResiduals(residuals, residual_cloud.get());
-      PLEAT_ASSIGN_OR_RETURN(bytes, EncodeDracoResiduals(*residual_cloud, speed));
+      if (!writer.Write(residuals, &bytes)) {
+        SetDracoResiduals(residuals, residual_cloud.get());
+        PLEAT_ASSIGN_OR_RETURN(bytes, EncodeDracoResiduals(*residual_cloud, speed));
+      }
     }
     // After a cut a key frame may be smaller.
     if (mark.keyframe || bytes.size() > key_bytes - key_bytes / 8) {

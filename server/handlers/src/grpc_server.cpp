@@ -26,6 +26,7 @@ namespace {
 constexpr int kKeepaliveMs = 60'000;  // how often an idle connection is asked
 constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
 constexpr auto kDrainPoll = std::chrono::milliseconds(10);
+constexpr auto kSlowReaderTime = std::chrono::seconds(1);  // to take the frame that is written
 constexpr auto kCloseTime = std::chrono::milliseconds(100);
 constexpr int kKeepaliveTimeoutMs = 20'000;  // how long it may take to answer
 
@@ -108,10 +109,17 @@ class GrpcServerImpl final : public GrpcServer {
     if (server_ == nullptr) return;
     context_.draining = true;
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
-    const auto deadline = std::chrono::steady_clock::now() +
-                          std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
+    context_.live_sessions.DrainAll();
+    const auto start = std::chrono::steady_clock::now();
+    const auto deadline =
+        start + std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
+    bool abandoned = false;
     while (context_.num_calls > 0 && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(kDrainPoll);
+      if (!abandoned && std::chrono::steady_clock::now() > start + kSlowReaderTime) {
+        context_.live_sessions.AbandonAll();
+        abandoned = true;
+      }
     }
     // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
     server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);

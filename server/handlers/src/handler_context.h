@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "live_registry.h"
 #include "pleat/jobs/executor.h"
 #include "pleat/service/local_character_service.h"
 
@@ -16,6 +17,7 @@ struct HandlerContext {
   std::atomic<int> num_open_streams = 0;
   std::atomic<int> num_calls = 0;      // under way, streams included
   std::atomic<bool> draining = false;  // the server shuts down: new calls are refused
+  LiveRegistry live_sessions;
 };
 
 // Counts one call as long as it lives.

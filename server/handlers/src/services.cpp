@@ -102,8 +102,8 @@ class PoseServiceImpl final : public v1::PoseService::CallbackService {
     return pleat::EvaluateClip(context_, *request);
   }
   grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
-      grpc::CallbackServerContext*) override {
-    return pleat::LiveSession(context_);
+      grpc::CallbackServerContext* call) override {
+    return pleat::LiveSession(context_, call);
   }
 
  private:

@@ -1,8 +1,12 @@
 #include "session_messages.h"
 
+#include <ctime>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "grpc_status.h"
 #include "pleat/base/status.h"
+#include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
 
 namespace pleat {
@@ -25,6 +29,68 @@ v1::Frame ToProto(uint64_t number, EncodedFrame frame) {
   message.set_confidence(frame.confidence);
   message.set_difference(!frame.mark.keyframe);
   message.set_checksum(frame.mark.checksum);
+  return message;
+}
+
+absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start) {
+  LiveRules rules;
+  rules.latest_wins = start.latest_wins();
+  if (start.max_in_flight() == 0) return rules;
+  if (start.max_in_flight() < 0 || start.max_in_flight() > LiveRules::kMaxInFlight) {
+    return absl::InvalidArgumentError(absl::StrCat("max_in_flight is ", start.max_in_flight(),
+                                                   ", allowed are 0 to ", LiveRules::kMaxInFlight));
+  }
+  rules.max_in_flight = start.max_in_flight();
+  return rules;
+}
+
+namespace {
+
+absl::Status Read(const v1::LiveSessionRequest::LivePose& message, LivePose* pose) {
+  if (message.history_size() >= kMaxHistory) {
+    return absl::InvalidArgumentError("pose.history has more than 7 entries");
+  }
+  PLEAT_ASSIGN_OR_RETURN(pose->pose, FromProto(message.pose()));
+  PLEAT_ASSIGN_OR_RETURN(pose->history, FromProto(message.history(), "pose.history"));
+  return absl::OkStatus();
+}
+
+// Of the whole process.
+uint64_t ProcessorMicroseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<uint64_t>(time.tv_sec) * 1'000'000 +
+         static_cast<uint64_t>(time.tv_nsec) / 1000;
+}
+
+}  // namespace
+
+LivePose FromProto(const v1::LiveSessionRequest::LivePose& message) {
+  LivePose pose{
+      .number = message.number(), .restart = message.restart(), .keyframe = message.keyframe()};
+  pose.status = Read(message, &pose);
+  return pose;
+}
+
+v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status) {
+  v1::PoseRejection message;
+  message.set_number(number);
+  message.set_code(static_cast<int>(status.code()));
+  message.set_message(ToGrpcStatus(status).error_message());
+  return message;
+}
+
+v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duration waited,
+                        const EncodedFrame* frame) {
+  v1::LiveReport message;
+  message.set_num_superseded(static_cast<uint32_t>(turn.num_superseded));
+  message.set_queue_us(
+      static_cast<uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(waited).count()));
+  if (frame != nullptr) {
+    message.set_evaluate_us(static_cast<uint32_t>(frame->evaluate_us));
+    message.set_encode_us(static_cast<uint32_t>(frame->encode_us));
+  }
+  message.set_server_cpu_us(ProcessorMicroseconds());
   return message;
 }
 

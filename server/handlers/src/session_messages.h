@@ -1,16 +1,16 @@
 // Pose sessions on the wire.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "pleat/service/live_queue.h"
 #include "pleat/service/pose_session.h"
 #include "pleat/v1/pose_service.pb.h"
 
 namespace pleat {
-
-inline constexpr int kMaxHistory = 8;  // poses per query, the shown one included
 
 struct SessionRequest {
   std::string model_id;
@@ -20,5 +20,14 @@ absl::StatusOr<SessionRequest> FromProto(const v1::Character& character,
                                          const v1::StreamOptions& options);
 
 v1::Frame ToProto(uint64_t number, EncodedFrame frame);
+
+// kInvalidArgument when the credits are out of range.
+absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start);
+// What is wrong with the pose is its status.
+LivePose FromProto(const v1::LiveSessionRequest::LivePose& message);
+v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status);
+// frame: null when the pose was rejected.
+v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duration waited,
+                        const EncodedFrame* frame);
 
 }  // namespace pleat

@@ -27,6 +27,6 @@ grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
 grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
     HandlerContext* context, const v1::EvaluateClipRequest& request);
 grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
-    HandlerContext* context);
+    HandlerContext* context, grpc::CallbackServerContext* call);
 
 }  // namespace pleat

@@ -32,7 +32,8 @@ LocalCharacterService::LocalCharacterService(LocalServiceOptions options,
     : options_(std::move(options)),
       store_(std::move(store)),
       cache_(options_.cache_bytes),
-      decode_memory_(options_.decode_bytes, "--decode-bytes") {
+      decode_memory_(options_.decode_bytes, "--decode-bytes"),
+      encoders_(options_.encoder_bytes) {
   jobs_ = std::make_unique<JobManager>(
       JobManagerOptions{.num_workers = options_.num_workers},
       [this](const JobInfo& job, const Progress& progress) { return Run(job, progress); },
@@ -142,14 +143,19 @@ absl::Status LocalCharacterService::CheckClip(const PoseTrack& track) const {
 absl::StatusOr<std::unique_ptr<PoseSession>> LocalCharacterService::OpenSession(
     const std::string& model_id, PoseSessionOptions options) {
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, AcquireModel(model_id));
-  return PoseSession::Open(std::move(model), std::move(options));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
+                         encoders_.Take(model_id, *model, options.encoder));
+  return PoseSession::Open(std::move(model), std::move(options), std::move(encoder));
 }
 
 absl::StatusOr<std::unique_ptr<ClipSession>> LocalCharacterService::OpenClip(
     const std::string& model_id, PoseTrack track, PoseSessionOptions options) {
   PLEAT_RETURN_IF_ERROR(CheckClip(track));
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, AcquireModel(model_id));
-  return ClipSession::Open(std::move(model), std::move(track), std::move(options));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
+                         encoders_.Take(model_id, *model, options.encoder));
+  return ClipSession::Open(std::move(model), std::move(track), std::move(options),
+                           std::move(encoder));
 }
 
 absl::Status LocalCharacterService::EvaluateClip(

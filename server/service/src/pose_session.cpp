@@ -1,6 +1,6 @@
 #include "pleat/service/pose_session.h"
 
-#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -8,47 +8,67 @@
 
 namespace pleat {
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double MicrosecondsBetween(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::micro>(end - start).count();
+}
+
+}  // namespace
+
 absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseSessionOptions options) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
+                         EncoderPool::Make(*model, options.encoder));
+  return Open(std::move(model), std::move(options), std::move(encoder));
+}
+
+absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
+    std::unique_ptr<EncoderPool::Lease> encoder) {
   // Fails early, before the first pose, when the scales do not fit.
   PoseEvaluator evaluator(model);
   EvaluatedFrame frame;
   PLEAT_RETURN_IF_ERROR(
       evaluator.EvaluateSkinned(Pose::Rest(model->skeleton()), options.bone_scales, &frame));
-  PLEAT_ASSIGN_OR_RETURN(
-      FrameEncoder encoder,
-      FrameEncoder::Create(model->topology(), model->rig().rest_positions.cast<float>(),
-                           options.encoder));
   return std::unique_ptr<PoseSession>(
-      new PoseSession(std::move(model), std::move(options), std::move(encoder)));
+      new PoseSession(std::move(evaluator), std::move(options), std::move(encoder)));
 }
 
-PoseSession::PoseSession(std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
-                         FrameEncoder encoder)
-    : options_(std::move(options)), evaluator_(std::move(model)), encoder_(std::move(encoder)) {}
+PoseSession::PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
+                         std::unique_ptr<EncoderPool::Lease> encoder)
+    : options_(std::move(options)),
+      evaluator_(std::move(evaluator)),
+      encoder_(std::move(encoder)) {}
 
 absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& poses) {
+  const Clock::time_point start = Clock::now();
   if (options_.skinned_only && !poses.empty()) {
     PLEAT_RETURN_IF_ERROR(evaluator_.EvaluateSkinned(*poses[0], options_.bone_scales, &frame_));
   } else {
     PLEAT_RETURN_IF_ERROR(evaluator_.Evaluate(poses, options_.bone_scales, &frame_));
   }
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes, encoder_.Encode(frame_.positions));
-  return EncodedFrame{std::move(bytes), frame_.confidence, encoder_.mark()};
-}
-
-absl::StatusOr<EncodedFrame> PoseSession::ShowNext(const Pose& pose, bool restart) {
-  if (restart) shown_.clear();
-  shown_.insert(shown_.begin(), pose);
-  const size_t depth = static_cast<size_t>(evaluator_.model().options().history);
-  if (shown_.size() > depth) shown_.resize(depth);
-  std::vector<const Pose*> poses;
-  for (const Pose& shown : shown_) poses.push_back(&shown);
-  return Show(poses);
+  const Clock::time_point evaluated = Clock::now();
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes, (*encoder_)->Encode(frame_.positions));
+  return EncodedFrame{.draco = std::move(bytes),
+                      .confidence = frame_.confidence,
+                      .mark = (*encoder_)->mark(),
+                      .evaluate_us = MicrosecondsBetween(start, evaluated),
+                      .encode_us = MicrosecondsBetween(evaluated, Clock::now())};
 }
 
 absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
+                         EncoderPool::Make(*model, options.encoder));
+  return Open(std::move(model), std::move(track), std::move(options), std::move(encoder));
+}
+
+absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options,
+    std::unique_ptr<EncoderPool::Lease> encoder) {
   // The history interpolates between poses, so all of them must fit before the first is shown.
   const size_t num_joints = model->skeleton().joints().size();
   for (int t = 0; t < track.num_frames(); ++t) {
@@ -59,7 +79,7 @@ absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
     }
   }
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<PoseSession> session,
-                         PoseSession::Open(model, std::move(options)));
+                         PoseSession::Open(model, std::move(options), std::move(encoder)));
   return std::unique_ptr<ClipSession>(
       new ClipSession(std::move(session), std::move(track), *model));
 }

@@ -209,7 +209,7 @@ TEST_F(LocalCharacterServiceTest, ADeletedModelStaysUsableForThoseWhoHoldIt) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, service_->OpenSession(id, {}));
   ASSERT_THAT(service_->DeleteModel(id), IsOk());
   const Pose rest = Pose::Rest(MakeFakeModel(MakeSwayingTube(5), {})->skeleton());
-  EXPECT_THAT(session->ShowNext(rest, false), IsOk());
+  EXPECT_THAT(session->Show({&rest}), IsOk());
   EXPECT_THAT(service_->AcquireModel(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(service_->DeleteModel(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
 }

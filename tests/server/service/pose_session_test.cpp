@@ -55,18 +55,6 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
   }
 }
 
-TEST_F(PoseSessionTest, LivePosesAreTheirOwnHistory) {
-  const PoseSessionOptions options{.encoder = {.position_bits = 20}};
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto live, PoseSession::Open(model_, options));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto single, PoseSession::Open(model_, options));
-  ASSERT_THAT(live->ShowNext(track_.poses[0], false), IsOk());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame next, live->ShowNext(track_.poses[6], false));
-  EXPECT_EQ(next.draco, single->Show({&track_.poses[6], &track_.poses[0]})->draco);
-  EXPECT_NE(next.draco, single->Show({&track_.poses[6]})->draco);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame cut, live->ShowNext(track_.poses[6], true));
-  EXPECT_EQ(cut.draco, single->Show({&track_.poses[6]})->draco);
-}
-
 TEST_F(PoseSessionTest, SkinnedOnlyLeavesTheDetailOut) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const auto session,
@@ -90,7 +78,7 @@ TEST_F(PoseSessionTest, RefusesWhatDoesNotFit) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 4")));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, PoseSession::Open(model_, {}));
   EXPECT_FALSE(session->Show({}).ok());
-  EXPECT_FALSE(session->ShowNext(wrong.poses[4], false).ok());
+  EXPECT_FALSE(session->Show({&wrong.poses[4]}).ok());
   PoseTrack far = track_;
   far.poses[2].root_position.x() = 1e6;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto clip, ClipSession::Open(model_, far, {}));

@@ -7,9 +7,32 @@
 
 #include "absl/status/status.h"
 #include "pleat/codec/frame_decoder.h"
+#include "pleat/codec/frame_encoder.h"
 #include "pleat/skeleton/pose.h"
 
 namespace pleat {
+
+struct LiveSessionOptions {
+  FrameEncoderOptions stream{};
+  // Poses without an answer that may be under way, 1 to 64: more hide the way to the server, fewer
+  // make an edit show sooner.
+  int max_in_flight = 4;
+  // A pose that waits for its turn is replaced by a newer one: the frames are as many as server,
+  // network and reader can take, and always of the newest pose. For editing by hand.
+  bool latest_wins = false;
+  // false: LiveFrame::positions stay empty, for those who forward or count frames.
+  bool decode = true;
+  // Attempts in a row to go on after the connection or the server has ended. The session then
+  // starts anew with a key frame and the poses that have no answer yet.
+  int max_reconnects = 5;
+};
+
+// What the server says about its work on one frame, microseconds.
+struct LiveTimes {
+  uint32_t queue_us = 0;  // until the evaluation started
+  uint32_t evaluate_us = 0, encode_us = 0;
+  uint64_t server_cpu_us = 0;  // processor time of the whole server since its start
+};
 
 struct LiveFrame {
   uint64_t number = 0;         // of the pose
@@ -17,11 +40,13 @@ struct LiveFrame {
   double confidence = 0;
   std::string draco;  // what came over the wire
   FrameMark mark;
+  int num_superseded = 0;  // poses before this one that get no frame
+  LiveTimes times;
+  bool resumed = false;  // the first frame after a new connection
 };
 
-// Send and Receive may run on two threads, each on one. The server answers every pose with one
-// frame and reads no further pose while the client does not read, so a client that sends without
-// receiving blocks after some poses.
+// Send and Receive may run on two threads, each on one. Every pose gets one answer, in order; with
+// latest_wins only the newest of those that wait.
 class LiveSession {
  public:
   virtual ~LiveSession() = default;  // ends the session, waiting for nothing
@@ -31,13 +56,17 @@ class LiveSession {
 
   // history: the poses 1, 2, ... training-frame intervals earlier; empty = the poses sent before.
   // restart: forget those (a cut). keyframe: of kDracoDelta streams, answer with a key frame.
-  // kUnavailable when the session has ended: Receive says why.
+  // Waits while max_in_flight poses have no answer (not with latest_wins) and while the session
+  // reconnects. kUnavailable when the session has ended: Receive says why.
   virtual absl::Status Send(uint64_t number, const Pose& pose,
                             const std::vector<Pose>& history = {}, bool restart = false,
                             bool keyframe = false) = 0;
 
-  // The next frame. kOutOfRange when the server has ended the session without error.
+  // The next frame. When ended(), an error is the end: kOutOfRange after SendDone. Else it is about
+  // pose frame->number alone and the session goes on: the server cannot show it, or kDataLoss, the
+  // frame does not decode (then ask for a key frame).
   virtual absl::Status Receive(LiveFrame* frame) = 0;
+  virtual bool ended() const = 0;
 
   // Says that no pose will follow; Receive gives the frames that are still to come.
   virtual void SendDone() = 0;

@@ -104,7 +104,7 @@ class RemoteCharacterService final : public CharacterService {
 
   // Poses in, frames out, as they happen. character.track is not used.
   absl::StatusOr<std::unique_ptr<LiveSession>> OpenLiveSession(
-      const ClipQuery& character, const FrameEncoderOptions& encoding = {});
+      const ClipQuery& character, const LiveSessionOptions& options = {});
 
  private:
   struct State;

@@ -37,7 +37,8 @@ class GrpcServer {
   // A channel without network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
   // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then
-  // cancels what is left. A live session is refused at its next pose.
+  // cancels what is left. Live sessions end at once with kUnavailable, so that their clients can
+  // go on elsewhere.
   virtual void Shutdown(double drain_seconds) = 0;
 };
 

@@ -12,6 +12,7 @@
 #include "pleat/character/train_character.h"
 #include "pleat/jobs/job_manager.h"
 #include "pleat/service/decode_session.h"
+#include "pleat/service/encoder_pool.h"
 #include "pleat/service/memory_budget.h"
 #include "pleat/service/pose_session.h"
 #include "pleat/store/store.h"
@@ -37,6 +38,7 @@ struct LocalServiceOptions {
   int num_threads_per_job = 0;                   // 0 = one per core
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
   uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences
+  uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
   ServiceLimits limits{};
   TrainFunction train = TrainCharacter;
 };
@@ -119,6 +121,7 @@ class LocalCharacterService final : public CharacterService {
   const ServiceLimits& limits() const { return options_.limits; }
   ByteCacheStats cache_stats() const { return cache_.stats(); }
   uint64_t decoder_bytes() const { return decode_memory_.used_bytes(); }
+  const EncoderPool& encoders() const { return encoders_; }
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
 
   // Stops the workers; running jobs are queued for the next process. Watchers end.
@@ -148,6 +151,7 @@ class LocalCharacterService final : public CharacterService {
   std::unique_ptr<Store> store_;
   ByteCache<CharacterModel> cache_;
   MemoryBudget decode_memory_;
+  EncoderPool encoders_;
   std::mutex content_mutex_;  // file and row appear and go together
   std::unique_ptr<JobManager> jobs_;
 };

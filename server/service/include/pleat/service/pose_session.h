@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/codec/frame_encoder.h"
+#include "pleat/service/encoder_pool.h"
 #include "pleat/skeleton/pose_history.h"
 
 namespace pleat {
@@ -22,6 +23,7 @@ struct EncodedFrame {
   std::string draco;
   double confidence = 0;
   FrameMark mark{};
+  double evaluate_us = 0, encode_us = 0;  // elapsed time, microseconds
 };
 
 // Keeps the model in use as long as it lives. Not for two threads at once.
@@ -29,28 +31,28 @@ class PoseSession {
  public:
   static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseSessionOptions options);
+  // The same with an encoder of `model` and options.encoder that is there already.
+  static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
+      std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
+      std::unique_ptr<EncoderPool::Lease> encoder);
 
-  const StreamHeader& header() const { return encoder_.header(); }
+  const CharacterModel& model() const { return evaluator_.model(); }
+  const StreamHeader& header() const { return (*encoder_)->header(); }
 
   // poses[0] is shown, poses[h] is the pose h training-frame intervals earlier.
   absl::StatusOr<EncodedFrame> Show(const std::vector<const Pose*>& poses);
 
-  // Shows `pose`; its history are the poses shown by this function before, one training-frame
-  // interval apart each, unless `restart` forgets them.
-  absl::StatusOr<EncodedFrame> ShowNext(const Pose& pose, bool restart);
-
   // The next frame of a kDracoDelta session will be a key frame.
-  void RequestKeyframe() { encoder_.RequestKeyframe(); }
+  void RequestKeyframe() { (*encoder_)->RequestKeyframe(); }
 
  private:
-  PoseSession(std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
-              FrameEncoder encoder);
+  PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
+              std::unique_ptr<EncoderPool::Lease> encoder);
 
   PoseSessionOptions options_;
   PoseEvaluator evaluator_;
-  FrameEncoder encoder_;
+  std::unique_ptr<EncoderPool::Lease> encoder_;
   EvaluatedFrame frame_;
-  std::vector<Pose> shown_;  // newest first, at most as many as the model's history needs
 };
 
 // The frames of one clip, one after the other, as fast as the caller takes them.
@@ -59,6 +61,10 @@ class ClipSession {
   // kInvalidArgument names the first pose that does not fit the skeleton.
   static absl::StatusOr<std::unique_ptr<ClipSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options);
+  // The same with an encoder of `model` and options.encoder that is there already.
+  static absl::StatusOr<std::unique_ptr<ClipSession>> Open(
+      std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options,
+      std::unique_ptr<EncoderPool::Lease> encoder);
 
   const StreamHeader& header() const { return session_->header(); }
   bool done() const { return next_ >= track_.num_frames(); }

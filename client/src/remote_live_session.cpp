@@ -1,0 +1,307 @@
+#include "remote_live_session.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "channel.h"
+#include "pleat/base/status.h"
+#include "pleat/v1/pose_service.grpc.pb.h"
+#include "pleat/wire/skeleton_messages.h"
+#include "pleat/wire/stream_messages.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kMaxInFlight = 64;
+constexpr size_t kMaxEarlierPoses = 7;  // history of one pose
+constexpr auto kConnectTime = std::chrono::seconds(2);
+
+using Stream = grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>;
+using LivePoseMessage = v1::LiveSessionRequest::LivePose;
+
+absl::Status BrokenStream(absl::string_view why) {
+  return absl::DataLossError(absl::StrCat("the server's live session is wrong: ", why));
+}
+
+// Poses that were sent and have no answer yet, and what a new connection must be told of them.
+class Unanswered {
+ public:
+  explicit Unanswered(bool latest_wins) : latest_wins_(latest_wins) {}
+
+  size_t size() const { return poses_.size(); }
+
+  void Add(LivePoseMessage pose) {
+    poses_.push_back(std::move(pose));
+    // Where the newest wins, older ones only matter as its history.
+    if (latest_wins_ && poses_.size() > kMaxEarlierPoses + 1) {
+      Remember(PopFront());
+      ++num_dropped_;
+    }
+  }
+
+  // The reply to a pose and the `num_superseded` before it has come. A rejected pose is no history.
+  void Answered(int num_superseded, bool rejected) {
+    num_dropped_ -= num_superseded + 1;
+    for (; num_dropped_ < 0 && !poses_.empty(); ++num_dropped_) {
+      LivePoseMessage pose = PopFront();
+      if (!rejected || num_dropped_ < -1) Remember(std::move(pose));
+    }
+    num_dropped_ = std::max(num_dropped_, 0);
+  }
+
+  // All that a session that begins anew must get: the first pose brings its history along.
+  std::vector<LivePoseMessage> ForNewSession() {
+    num_dropped_ = 0;
+    std::vector<LivePoseMessage> messages(poses_.begin(), poses_.end());
+    if (messages.empty()) return messages;
+    LivePoseMessage& first = messages.front();
+    if (first.history_size() == 0 && !first.restart()) {
+      for (const v1::Pose& earlier : earlier_) *first.add_history() = earlier;
+    }
+    for (LivePoseMessage& message : messages) message.set_frames_received(0);
+    return messages;
+  }
+
+ private:
+  LivePoseMessage PopFront() {
+    LivePoseMessage pose = std::move(poses_.front());
+    poses_.pop_front();
+    return pose;
+  }
+  void Remember(LivePoseMessage pose) {
+    if (pose.restart() || pose.history_size() > 0) earlier_.clear();
+    earlier_.push_front(std::move(*pose.mutable_pose()));
+    for (v1::Pose& before : *pose.mutable_history()) earlier_.push_back(std::move(before));
+    if (earlier_.size() > kMaxEarlierPoses) earlier_.resize(kMaxEarlierPoses);
+  }
+
+  const bool latest_wins_;
+  std::deque<LivePoseMessage> poses_;  // oldest first
+  std::deque<v1::Pose> earlier_;       // poses before the first of poses_, newest first
+  int num_dropped_ = 0;                // poses before the first of poses_ that have no answer
+};
+
+class RemoteLiveSession final : public LiveSession {
+ public:
+  RemoteLiveSession(std::shared_ptr<grpc::Channel> channel, v1::LiveSessionRequest start,
+                    const LiveSessionOptions& options)
+      : channel_(std::move(channel)),
+        stub_(v1::PoseService::NewStub(channel_)),
+        start_(std::move(start)),
+        options_(options),
+        unanswered_(options.latest_wins) {}
+  ~RemoteLiveSession() override {
+    if (context_ != nullptr) context_->TryCancel();
+    if (stream_ != nullptr) FinishStream().IgnoreError();
+  }
+
+  // Starts a stream and reads its header. With write_mutex_ or before there is a second thread.
+  absl::Status Connect() {
+    stream_.reset();
+    finished_ = false;
+    context_ = std::make_unique<grpc::ClientContext>();
+    stream_ = stub_->LiveSession(context_.get());
+    stream_->Write(start_);  // a failure shows in the read
+    v1::LiveSessionResponse response;
+    if (!stream_->Read(&response)) return FinishStream();
+    if (!response.has_header()) return BrokenStream("no header");
+    PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(response.header()));
+    num_received_ = num_acknowledged_ = 0;
+    if (!decoder_.has_value()) {
+      PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(header)));
+      decoder_.emplace(std::move(decoder));
+      return absl::OkStatus();
+    }
+    const StreamHeader& old = decoder_->header();
+    if (header.topology != old.topology || header.vertex_order != old.vertex_order ||
+        !(header.box == old.box)) {
+      return BrokenStream("the header is another one after reconnecting");
+    }
+    return absl::OkStatus();
+  }
+
+  const FrameDecoder& decoder() const override { return *decoder_; }
+  bool ended() const override { return ended_; }
+
+  absl::Status Send(uint64_t number, const Pose& pose, const std::vector<Pose>& history,
+                    bool restart, bool keyframe) override {
+    v1::LiveSessionRequest request;
+    LivePoseMessage* message = request.mutable_pose();
+    message->set_number(number);
+    *message->mutable_pose() = ToProto(pose);
+    for (const Pose& earlier : history) *message->add_history() = ToProto(earlier);
+    message->set_restart(restart);
+    message->set_keyframe(keyframe);
+    std::unique_lock write_lock(write_mutex_, std::defer_lock);
+    {
+      std::unique_lock lock(mutex_);
+      answered_.wait(lock, [this] {
+        return ended_ || options_.latest_wins ||
+               unanswered_.size() < static_cast<size_t>(options_.max_in_flight);
+      });
+    }
+    write_lock.lock();
+    {
+      std::lock_guard lock(mutex_);
+      if (ended_) return absl::UnavailableError("the live session has ended; Receive says why");
+      message->set_frames_received(num_received_);
+      num_acknowledged_ = num_received_;
+      unanswered_.Add(*message);
+    }
+    stream_->Write(request);  // when it fails, Receive sees the end and sends the pose again
+    return absl::OkStatus();
+  }
+
+  absl::Status Receive(LiveFrame* frame) override {
+    frame->resumed = false;
+    v1::LiveSessionResponse response;
+    while (!ended_ && !stream_->Read(&response)) {
+      PLEAT_RETURN_IF_ERROR(Resume());
+      frame->resumed = true;
+    }
+    if (ended_) return end_;
+    if (!response.has_frame() && !response.has_rejection()) return BrokenStream("a second header");
+    TakeAnswer(response.report(), response.has_rejection(), frame);
+    if (response.has_rejection()) {
+      frame->number = response.rejection().number();
+      frame->draco.clear();
+      frame->positions.resize(3, 0);
+      return absl::Status(static_cast<absl::StatusCode>(response.rejection().code()),
+                          response.rejection().message());
+    }
+    frame->number = response.frame().number();
+    frame->confidence = response.frame().confidence();
+    frame->draco = std::move(*response.mutable_frame()->mutable_draco());
+    frame->mark = MarkOf(response.frame());
+    if (!options_.decode) return absl::OkStatus();
+    return decoder_->Decode(frame->draco, frame->mark, &frame->positions);
+  }
+
+  void SendDone() override {
+    std::lock_guard write_lock(write_mutex_);
+    done_ = true;
+    stream_->WritesDone();
+  }
+
+ private:
+  absl::Status FinishStream() {
+    if (!finished_) finish_status_ = FromGrpcStatus(stream_->Finish());
+    finished_ = true;
+    return finish_status_;
+  }
+
+  // Only the server can have cancelled a session that somebody still reads.
+  static bool MayPass(const absl::Status& status) {
+    return IsTransient(status) || status.code() == absl::StatusCode::kCancelled;
+  }
+
+  void TakeAnswer(const v1::LiveReport& report, bool rejected, LiveFrame* frame) {
+    frame->num_superseded = static_cast<int>(report.num_superseded());
+    frame->times = {report.queue_us(), report.evaluate_us(), report.encode_us(),
+                    report.server_cpu_us()};
+    num_failures_ = 0;
+    bool acknowledge = false;
+    {
+      std::lock_guard lock(mutex_);
+      unanswered_.Answered(frame->num_superseded, rejected);
+      ++num_received_;
+      // Poses acknowledge on their way; alone only when the credits run out.
+      acknowledge = options_.latest_wins && 2 * (num_received_ - num_acknowledged_) >=
+                                                static_cast<uint64_t>(options_.max_in_flight);
+    }
+    answered_.notify_one();
+    if (acknowledge) Acknowledge();
+  }
+
+  void Acknowledge() {
+    std::lock_guard write_lock(write_mutex_);
+    if (done_) return;
+    v1::LiveSessionRequest request;
+    {
+      std::lock_guard lock(mutex_);
+      num_acknowledged_ = num_received_;
+      request.mutable_acknowledgement()->set_frames_received(num_received_);
+    }
+    stream_->Write(request);
+  }
+
+  // After the stream has ended: connects again, or says why not.
+  absl::Status Resume() {
+    std::lock_guard write_lock(write_mutex_);
+    absl::Status status = FinishStream();
+    while (MayPass(status) && num_failures_ < options_.max_reconnects) {
+      BackOff(num_failures_++, {});
+      channel_->WaitForConnected(std::chrono::system_clock::now() + kConnectTime);
+      status = Connect();
+      if (!status.ok()) continue;
+      std::lock_guard lock(mutex_);
+      for (LivePoseMessage& pose : unanswered_.ForNewSession()) {
+        v1::LiveSessionRequest request;
+        *request.mutable_pose() = std::move(pose);
+        stream_->Write(request);
+      }
+      if (done_) stream_->WritesDone();
+      return absl::OkStatus();
+    }
+    {
+      std::lock_guard lock(mutex_);
+      end_ = status.ok() ? absl::OutOfRangeError("the live session has ended") : status;
+      ended_ = true;
+    }
+    answered_.notify_all();
+    return end_;
+  }
+
+  const std::shared_ptr<grpc::Channel> channel_;
+  const std::unique_ptr<v1::PoseService::Stub> stub_;
+  const v1::LiveSessionRequest start_;
+  const LiveSessionOptions options_;
+  std::optional<FrameDecoder> decoder_;
+
+  std::mutex write_mutex_;  // one writer at a time, none while the stream is replaced
+  std::unique_ptr<grpc::ClientContext> context_;
+  std::unique_ptr<Stream> stream_;
+  bool finished_ = false;  // stream_ is, with the next as its end
+  absl::Status finish_status_;
+  bool done_ = false;  // SendDone was called; guarded by write_mutex_
+
+  std::mutex mutex_;  // taken after write_mutex_; guards the next four
+  std::condition_variable answered_;
+  Unanswered unanswered_;
+  uint64_t num_received_ = 0, num_acknowledged_ = 0;  // of this stream
+
+  std::atomic<bool> ended_ = false;
+  absl::Status end_;      // of Receive's thread
+  int num_failures_ = 0;  // in a row; of Receive's thread
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<LiveSession>> OpenRemoteLiveSession(
+    std::shared_ptr<grpc::Channel> channel, v1::Character character,
+    const LiveSessionOptions& options) {
+  if (options.max_in_flight < 1 || options.max_in_flight > kMaxInFlight) {
+    return absl::InvalidArgumentError(absl::StrCat("max_in_flight is ", options.max_in_flight,
+                                                   ", allowed are 1 to ", kMaxInFlight));
+  }
+  v1::LiveSessionRequest request;
+  v1::LiveSessionRequest::Start* start = request.mutable_start();
+  *start->mutable_character() = std::move(character);
+  *start->mutable_options() = ToProto(options.stream);
+  start->set_max_in_flight(options.max_in_flight);
+  start->set_latest_wins(options.latest_wins);
+  auto session =
+      std::make_unique<RemoteLiveSession>(std::move(channel), std::move(request), options);
+  PLEAT_RETURN_IF_ERROR(session->Connect());
+  return session;
+}
+
+}  // namespace pleat
