@@ -34,6 +34,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddJobsVerb(*app, session);
   AddModelsVerb(*app, session);
   AddCompressedVerb(*app, session);
+  AddBenchVerb(*app, session);
   AddVersionVerb(*app, session);
   return app;
 }

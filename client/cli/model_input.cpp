@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "absl/strings/match.h"
+#include "cli/input.h"
 #include "cli/progress_display.h"
 #include "cli/service.h"
 #include "pleat/base/status.h"
@@ -33,6 +34,15 @@ absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
                                                 const Session& session) {
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   return FitMotion(model, sequence, {}, InterruptibleProgress(&display));
+}
+
+absl::StatusOr<Motion> LoadMotion(const std::string& source, const std::string& fps,
+                                  const CharacterModel& model, const Session& session) {
+  if (absl::EndsWith(source, ".json")) return ReadMotion(source, model.skeleton());
+  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, source, fps));
+  Motion motion;
+  PLEAT_ASSIGN_OR_RETURN(motion.track, FitMotionWithProgress(model, sequence, session));
+  return motion;
 }
 
 std::vector<std::string> JointNames(const Skeleton& skeleton) {

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "cli/session.h"
 #include "pleat/character/character_model.h"
+#include "pleat/formats/motion_file.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/skeleton/pose.h"
 #include "pleat/skeleton/skeleton.h"
@@ -25,6 +26,11 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> LoadModel(const Session& s
 absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
                                                 const MeshSequence& sequence,
                                                 const Session& session);
+
+// The poses of `source` (a motion file, else a mesh sequence, whose poses are fitted). fps: where a
+// sequence does not say, may be empty.
+absl::StatusOr<Motion> LoadMotion(const std::string& source, const std::string& fps,
+                                  const CharacterModel& model, const Session& session);
 
 // The names of all joints, in order.
 std::vector<std::string> JointNames(const Skeleton& skeleton);

@@ -1,9 +1,7 @@
 // motion MODEL SOURCE -o motion.json: poses of a mesh sequence, or of a motion file, with edits.
 #include <memory>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_format.h"
-#include "cli/input.h"
 #include "cli/model_input.h"
 #include "cli/motion_edit.h"
 #include "cli/verbs.h"
@@ -19,23 +17,11 @@ struct MotionVerbOptions {
   MotionEdits edits;
 };
 
-absl::StatusOr<Motion> LoadMotion(const MotionVerbOptions& options, const CharacterModel& model,
-                                  const Session& session) {
-  if (absl::EndsWith(options.source, ".json")) {
-    return ReadMotion(options.source, model.skeleton());
-  }
-  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
-                         ReadInput(session, options.source, options.fps));
-  Motion motion;
-  PLEAT_ASSIGN_OR_RETURN(motion.track, FitMotionWithProgress(model, sequence, session));
-  return motion;
-}
-
 absl::Status RunMotion(const MotionVerbOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
                          LoadModel(session, options.model));
   const std::vector<std::string> joint_names = JointNames(model->skeleton());
-  PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options, *model, session));
+  PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options.source, options.fps, *model, session));
   for (const std::string& warning : motion.warnings) {
     if (session.talkative()) *session.err << "warning: " << warning << "\n";
   }

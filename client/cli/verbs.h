@@ -35,6 +35,7 @@ void AddRigVerb(CLI::App& app, Session& session);
 void AddTrainVerb(CLI::App& app, Session& session);
 void AddPoseVerb(CLI::App& app, Session& session);
 void AddMotionVerb(CLI::App& app, Session& session);
+void AddBenchVerb(CLI::App& app, Session& session);
 void AddEvaluateVerb(CLI::App& app, Session& session);
 void AddUploadVerb(CLI::App& app, Session& session);
 void AddSequencesVerb(CLI::App& app, Session& session);

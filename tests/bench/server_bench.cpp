@@ -69,7 +69,7 @@ void EvaluateAndEncode(benchmark::State& state, FrameEncoding encoding) {
   size_t t = 0;
   for (auto _ : state) {
     t = (t + 1) % poses.size();
-    benchmark::DoNotOptimize(session->ShowNext(poses[t], t == 0));
+    benchmark::DoNotOptimize(session->Show({&poses[t], &poses[t > 0 ? t - 1 : t]}));
   }
 }
 BENCHMARK_CAPTURE(EvaluateAndEncode, mesh, FrameEncoding::kDracoMesh)
