@@ -57,6 +57,29 @@ build/bin/compress_curves build/bench "${curves[@]}"
 echo "== refinement"
 build/bin/refine_table "${inputs[@]}"
 
+# A server of its own, and load on it. Believe this on an idle machine only.
+echo "== pleat bench (plots in build/bench)"
+build/bin/pleatd --listen 127.0.0.1:0 --data-dir "$out/store" --log-level warning >"$out/pleatd.log" 2>&1 &
+pleatd=$!
+trap 'kill $pleatd 2>/dev/null; rm -rf "$out"' EXIT
+until grep -q "listening on" "$out/pleatd.log"; do sleep .1; done
+address=$(sed -n 's/^listening on //p' "$out/pleatd.log")
+"$pleat" train "${inputs[0]}" --server "$address" -o "$out/live.pleat" --quiet --report "$out/live.json" >/dev/null
+model=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["model_id"])' "$out/live.json")
+"$pleat" motion "$out/live.pleat" "${inputs[0]}" -o "$out/live_motion.json" --quiet
+load() {  # NAME FLAG...
+  local name=$1
+  shift
+  echo "-- $name: $*"
+  "$pleat" bench "$model" --server "$address" --motion "$out/live_motion.json" --plot "build/bench/$name.png" "$@"
+}
+load one_client --clients 1 --rate 30 --seconds 10
+load one_client_points --clients 1 --rate 30 --seconds 10 --encoding points
+load thirty_clients --clients 30 --rate 30 --seconds 10
+load thirty_clients_poisson --clients 30 --rate 30 --seconds 10 --arrivals poisson
+load throughput --clients 4 --seconds 5 --closed-loop
+kill $pleatd
+
 for input in "${inputs[@]}"; do
   echo "== train $input"
   "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --report "$out/train.json"

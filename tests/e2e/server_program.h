@@ -27,6 +27,7 @@ class ServerProgram {
   }
   std::string log() const { return process_.out() + process_.err(); }
 
+  void Signal(int number) const { process_.Signal(number); }
   ProcessResult Stop() {
     process_.Signal(SIGTERM);
     return process_.Wait(20);

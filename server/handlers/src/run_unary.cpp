@@ -3,7 +3,9 @@
 #include <grpcpp/server_context.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdint>
 #include <exception>
+#include <functional>
 #include <new>
 #include <string>
 #include <utility>
@@ -48,7 +50,8 @@ grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServer
                                    Executor* executor, const char* rpc,
                                    std::function<absl::Status()> handler) {
   auto* reactor = new UnaryReactor(context);
-  executor->Post([context, call, reactor, rpc, handler = std::move(handler)] {
+  const uint64_t flow = std::hash<std::string>()(call->peer()) | 1;  // one per connection
+  const auto run = [context, call, reactor, rpc, handler = std::move(handler)] {
     absl::Status status;
     if (context->draining) {
       status = absl::UnavailableError("the server is shutting down");
@@ -59,7 +62,8 @@ grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServer
     }
     LogFailure(rpc, status);
     reactor->Finish(ToGrpcStatus(status));
-  });
+  };
+  executor->Post(run, flow);
   return reactor;
 }
 

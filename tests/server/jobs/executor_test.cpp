@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <future>
 #include <memory>
+#include <thread>
+#include <vector>
 
 namespace pleat {
 namespace {
@@ -37,6 +41,39 @@ TEST(ExecutorTest, TasksMayPostTasks) {
     });
   }
   EXPECT_EQ(count, 2);
+}
+
+// A flow with many tasks delays the others by one task per round.
+TEST(ExecutorTest, FlowsTakeTurns) {
+  std::vector<int> order;
+  {
+    Executor executor(1);
+    std::promise<void> everything_is_posted;
+    executor.Post([&] { everything_is_posted.get_future().wait(); });
+    for (int i = 0; i < 100; ++i) executor.Post([&order, i] { order.push_back(i); }, 7);
+    for (int i = 0; i < 3; ++i) executor.Post([&order, i] { order.push_back(1000 + i); }, 8);
+    executor.Post([&order] { order.push_back(2000); });  // a flow of its own
+    everything_is_posted.set_value();
+  }
+  ASSERT_EQ(order.size(), 104u);
+  EXPECT_EQ(std::vector<int>(order.begin(), order.begin() + 8),
+            (std::vector<int>{0, 1000, 2000, 1, 1001, 2, 1002, 3}));
+  EXPECT_TRUE(std::is_sorted(order.begin() + 7, order.end()));
+}
+
+TEST(ExecutorTest, FlowsOnManyThreadsRunEverythingOnce) {
+  std::atomic<int> count = 0;
+  {
+    Executor executor(4);
+    std::vector<std::thread> posters;
+    for (int p = 0; p < 4; ++p) {
+      posters.emplace_back([&, p] {
+        for (int i = 0; i < 2000; ++i) executor.Post([&] { ++count; }, 1 + (p + i) % 3);
+      });
+    }
+    for (std::thread& poster : posters) poster.join();
+  }
+  EXPECT_EQ(count, 8000);
 }
 
 }  // namespace
