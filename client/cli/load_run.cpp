@@ -140,16 +140,16 @@ std::vector<double> SendTimes(const LoadOptions& options, int client) {
   Random random(options.seed + static_cast<uint64_t>(client));
   // Clients that began at the same moment would all send at the same moment for ever.
   double time = client / (options.rate_fps * options.num_clients);
-  for (; time < options.seconds;) {
-    if (options.arrivals == Arrivals::kPoisson) {
-      time += -std::log1p(-random.Uniform()) / options.rate_fps;
-      if (time < options.seconds) times.push_back(time);
-    } else {
-      times.push_back(time);
-      time += 1 / options.rate_fps;
-    }
+  if (options.arrivals == Arrivals::kFixed) {
+    const auto count = static_cast<int>(std::floor(options.seconds * options.rate_fps + 1e-9));
+    for (int k = 0; k < count; ++k) times.push_back(time + k / options.rate_fps);
+    return times;
   }
-  return times;
+  while (true) {
+    time += -std::log1p(-random.Uniform()) / options.rate_fps;
+    if (time >= options.seconds) return times;
+    times.push_back(time);
+  }
 }
 
 absl::StatusOr<LoadResult> RunLoad(RemoteCharacterService& service, const ClipQuery& character,

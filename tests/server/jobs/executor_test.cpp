@@ -49,7 +49,7 @@ TEST(ExecutorTest, FlowsTakeTurns) {
   {
     Executor executor(1);
     std::promise<void> everything_is_posted;
-    executor.Post([&] { everything_is_posted.get_future().wait(); });
+    executor.Post([posted = everything_is_posted.get_future().share()] { posted.wait(); });
     for (int i = 0; i < 100; ++i) executor.Post([&order, i] { order.push_back(i); }, 7);
     for (int i = 0; i < 3; ++i) executor.Post([&order, i] { order.push_back(1000 + i); }, 8);
     executor.Post([&order] { order.push_back(2000); });  // a flow of its own
