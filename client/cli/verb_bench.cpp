@@ -133,6 +133,11 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
   PLEAT_ASSIGN_OR_RETURN(const std::vector<Eigen::Matrix3Xf> frames,
                          SomeFrames(*remote, character, poses, stream, &topology));
   PLEAT_ASSIGN_OR_RETURN(report.draco, MeasureDraco(frames, topology, stream));
+  if (session.talkative()) {
+    *session.err << "sending poses from " << options.load.num_clients << " clients for "
+                 << options.load.seconds << " s\n"
+                 << std::flush;
+  }
   PLEAT_ASSIGN_OR_RETURN(report.result,
                          RunLoad(*remote, character, poses, report.options, Interrupted));
   report.Summarize();

@@ -80,8 +80,8 @@ TEST_F(Bench, ReportsLatenciesServerTimesAndThroughput) {
 TEST_F(Bench, AStandstillOfTheServerShowsInThePercentiles) {
   const auto run = pleat_.Start(
       Command({"--rate", "60", "--seconds", "1.5", "--max-in-flight", "2", "--encoding", "delta"}));
-  // The session of the run begins when Draco's encoder has been measured.
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ASSERT_TRUE(run->WaitForText("sending poses")) << run->err();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   server_.Signal(SIGSTOP);
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   server_.Signal(SIGCONT);
@@ -101,7 +101,7 @@ TEST_F(Bench, ClosedLoopLatestPoseAndAMotionFromAFile) {
                                File("motion.json"), "--json"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(ParseJson(result.out)["arrivals"], "closed");
-  EXPECT_GT(ParseJson(result.out)["num_frames"], 100);
+  EXPECT_GT(ParseJson(result.out)["num_frames"], 10);
   // More than any server can do: what is not shown has been superseded.
   result = pleat_.Run(Command({"--latest-wins", "--rate", "8000", "--seconds", ".5"}));
   ASSERT_EQ(result.exit_code, 0) << result.err;
