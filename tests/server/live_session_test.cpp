@@ -291,35 +291,35 @@ TEST_F(LiveSessionTest, AReaderThatStopsDelaysNobodyAndGoesAway) {
 
 // One client floods the server with calls, 24 at a time; another one edits.
 TEST_F(LiveSessionTest, AFloodOfCallsStarvesNoSession) {
-  const std::string big = running_.TrainModel(MakeSwayingTube(3, "medium", 150, 80));
+  v1::EvaluatePoseRequest request;
+  request.mutable_character()->set_model_id(
+      running_.TrainModel(MakeSwayingTube(3, "medium", 150, 80)));
+  *request.add_poses() = ToProto(Pose::Rest(model_->skeleton()));
   std::atomic<bool> stop = false;
   std::atomic<int> num_answered = 0;
   std::vector<std::thread> flood;
   for (int i = 0; i < 24; ++i) {
     flood.emplace_back([&] {
-      const std::vector<Pose> poses = {Pose::Rest(model_->skeleton())};
       while (!stop) {
-        num_answered += running_.remote()
-                            .EvaluatePose({.model_id = big, .track = {}, .bone_scales = {}}, poses)
-                            .ok();
+        grpc::ClientContext context;
+        v1::EvaluatePoseResponse response;
+        num_answered += stub_->EvaluatePose(&context, request, &response).ok();
       }
     });
   }
   EXPECT_TRUE(Eventually([&] { return num_answered > 24; }));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, Open());
   LiveFrame frame;
-  uint32_t longest_us = 0;
   const int before = num_answered;
   for (int t = 0; t < 20; ++t) {
     EXPECT_THAT(session->Send(t, Pose::Rest(model_->skeleton())), IsOk());
     EXPECT_THAT(session->Receive(&frame), IsOk());
-    longest_us = std::max(longest_us, frame.times.queue_us);
   }
   const int meanwhile = num_answered - before;
   stop = true;
   for (std::thread& thread : flood) thread.join();
   // Two threads: a pose waits for the calls in work and one more, not for all 24.
-  EXPECT_LE(meanwhile, 20 * 8) << "calls were preferred; longest wait " << longest_us << " us";
+  EXPECT_LE(meanwhile, 20 * 12) << "calls were preferred";
 }
 
 TEST_F(LiveSessionTest, GoesOnAfterTheServerWasStartedAgain) {
