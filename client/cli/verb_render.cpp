@@ -194,6 +194,7 @@ absl::Status RunRender(RenderVerbOptions options, const Session& session) {
   if (!options.frames.empty()) {
     PLEAT_ASSIGN_OR_RETURN(options.sheet.frames, ParseFrameList(options.frames));
   }
+  options.sheet.count = options.count.value_or(options.compare ? 4 : options.sheet.count);
   PLEAT_ASSIGN_OR_RETURN(const std::string png, options.compare ? DrawComparison(options, session)
                                                 : options.rig   ? DrawRigs(options, session)
                                                                 : DrawSheet(options, session));

@@ -87,6 +87,61 @@ TEST(PoseEvaluatorTest, ConfidenceFallsFarFromTraining) {
   EXPECT_TRUE(unseen.positions.allFinite());
 }
 
+// Between `from` and `to`, every joint but the root, whose pose is that of `from`.
+Pose Between(const Pose& from, const Pose& to, double s) {
+  Pose pose = from;
+  for (size_t j = 1; j < pose.rotations.size(); ++j) {
+    pose.rotations[j] = from.rotations[j].slerp(s, to.rotations[j]);
+  }
+  return pose;
+}
+
+// What the detail adds to skinning at `pose`, which has been held: 3 x V.
+Eigen::Matrix3Xf DetailAt(PoseEvaluator& evaluator, const Pose& pose, double* confidence) {
+  EvaluatedFrame hybrid, skinned;
+  EXPECT_THAT(evaluator.Evaluate({&pose}, {}, &hybrid), IsOk());
+  EXPECT_THAT(evaluator.EvaluateSkinned(pose, {}, &skinned), IsOk());
+  *confidence = hybrid.confidence;
+  return hybrid.positions - skinned.positions;
+}
+
+// Largest change of a vertex's detail in one of `num_steps` from pose to pose, metres.
+double LargestDetailStep(PoseEvaluator& evaluator, const Pose& from, const Pose& to,
+                         int num_steps) {
+  double confidence = 0, largest = 0;
+  Eigen::Matrix3Xf last = DetailAt(evaluator, from, &confidence);
+  for (int i = 1; i <= num_steps; ++i) {
+    const Eigen::Matrix3Xf detail =
+        DetailAt(evaluator, Between(from, to, static_cast<double>(i) / num_steps), &confidence);
+    largest = std::max<double>(largest, (detail - last).colwise().norm().maxCoeff());
+    last = detail;
+  }
+  return largest;
+}
+
+TEST(PoseEvaluatorTest, APoseThatLeavesTrainingNeverPops) {
+  PoseEvaluator evaluator(SmallCharacter());
+  const Pose seen = TrainingTrack().poses[10];
+  Pose strange = seen;
+  for (int j = 1; j < kNumHumanJoints; ++j) {
+    strange.rotations[j] = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitX());
+  }
+  // A jump would not get smaller with the steps; what moves steadily does, in proportion.
+  const double coarse = LargestDetailStep(evaluator, seen, strange, 100);
+  const double fine = LargestDetailStep(evaluator, seen, strange, 400);
+  EXPECT_LT(coarse, .02);  // metres, while every joint turns by almost a degree
+  EXPECT_LT(fine, .4 * coarse);
+
+  // The way ends at the mean detail, with no confidence left.
+  double confidence = 1;
+  const Eigen::Matrix3Xf last = DetailAt(evaluator, strange, &confidence);
+  EXPECT_LT(confidence, .02);
+  const Eigen::VectorXf& mean = SmallCharacter()->full_mean();
+  for (int v = 0; v < SmallCharacter()->num_vertices(); ++v) {
+    EXPECT_NEAR(last.col(v).norm(), mean.segment<3>(3 * v).norm(), 2e-4) << v;  // axes turn it
+  }
+}
+
 TEST(PoseEvaluatorTest, FollowsARigidMotionOfTheWholePose) {
   PoseEvaluator evaluator(SmallCharacter());
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.1, Eigen::Vector3d::UnitY()));

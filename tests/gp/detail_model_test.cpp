@@ -114,6 +114,43 @@ TEST_P(DetailModelTest, FadesToTheMeanFarAway) {
   }
 }
 
+// Largest change of the detail between two of `num_steps` features on the way from `from` to `to`.
+double LargestStep(const DetailModel& model, const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                   int num_steps) {
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf detail(model.num_details()), last(model.num_details());
+  double largest = 0;
+  for (int i = 0; i <= num_steps; ++i) {
+    const double s = static_cast<double>(i) / num_steps;
+    model.Predict((1 - s) * from + s * to, &workspace, detail);
+    if (i > 0) largest = std::max<double>(largest, (detail - last).norm());
+    last = detail;
+  }
+  return largest;
+}
+
+TEST_P(DetailModelTest, LeavesTheTrainingWithoutAJump) {
+  const SyntheticMotion seen = MakeSyntheticMotion(80, 10, 30, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
+                             TrainDetailModel(seen.features, seen.details, {0}, Options(seen)));
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf detail(30);
+  for (const int frame : {5, 40, 70}) {
+    const Eigen::VectorXd start = seen.features.row(frame).transpose();
+    const Eigen::VectorXd end = start + 60 * RandomMatrix(10, 1, 80 + frame).normalized();
+    // A jump would not get smaller with the steps; what moves steadily does, in proportion.
+    const double coarse = LargestStep(model, start, end, 2000);
+    const double fine = LargestStep(model, start, end, 8000);
+    EXPECT_GT(coarse, 0);
+    EXPECT_LT(fine, .4 * coarse) << "from frame " << frame;
+    // The way ends at the mean detail, and says that it knows nothing.
+    EXPECT_EQ(model.Predict(end, &workspace, detail), 0);
+    Eigen::VectorXf farther(30);
+    model.Predict(start + 1e4 * (end - start), &workspace, farther);
+    EXPECT_LT((detail - farther).norm(), 1e-5 * farther.norm());
+  }
+}
+
 TEST_P(DetailModelTest, IsDeterministicAndRestorable) {
   const SyntheticMotion seen = MakeSyntheticMotion(60, 10, 30, 1);
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel first,

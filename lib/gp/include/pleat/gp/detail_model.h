@@ -79,8 +79,9 @@ struct DetailModelOptions {
   double regional_share = .75;
 
   // Below this confidence the prediction fades smoothly to the mean detail. The mean of a Gaussian
-  // process falls back by itself; this stops what its linear part could do far away.
-  double fade_confidence = .02;
+  // process falls back by itself; this stops what its linear part could do far away. A narrower
+  // band pops: with .02 a detail could be gone within a fifth of a degree (docs/performance.md).
+  double fade_confidence = .3;
 };
 
 struct DetailModelSummary {
