@@ -126,6 +126,13 @@ for input in "${inputs[@]}"; do
     experiments "$(basename "$input" .pc2)-$protocol" "$input" --protocol $protocol
   done
 done
+# Every learner, the default one against them.
+for input in "${inputs[@]}"; do
+  for protocol in every5th blocks10 last30; do
+    "$pleat" evaluate "$input" --protocol $protocol --learner regional --quiet \
+      --measure gp sgplvm back-constrained ridge
+  done
+done
 if [ -f "$data/skirt/walk_a.pc2" ]; then
   experiments skirt "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2"
 fi
