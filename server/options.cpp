@@ -50,6 +50,10 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
   app->add_option("--pose-threads", grpc->num_pose_threads, "0 = one per core")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  app->add_option("--max-batch", grpc->max_batch,
+                  "Live poses of one model that are evaluated together; 1 = none")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
   app->add_option("--max-message-bytes", grpc->max_receive_bytes, "Largest message from a client")
       ->check(CLI::Range(64 << 10, 256 << 20))
       ->capture_default_str();

@@ -206,7 +206,7 @@ class RemoteLiveSession final : public LiveSession {
   void TakeAnswer(const v1::LiveReport& report, bool rejected, LiveFrame* frame) {
     frame->num_superseded = static_cast<int>(report.num_superseded());
     frame->times = {report.queue_us(), report.evaluate_us(), report.encode_us(),
-                    report.server_cpu_us()};
+                    report.server_cpu_us(), report.evaluated_together()};
     num_failures_ = 0;
     bool acknowledge = false;
     {

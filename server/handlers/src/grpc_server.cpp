@@ -59,9 +59,12 @@ void LogForGrpc(gpr_log_func_args* args) {
 class GrpcServerImpl final : public GrpcServer {
  public:
   GrpcServerImpl(LocalCharacterService* service, const GrpcServerOptions& options)
-      : pose_executor_(options.num_pose_threads), storage_executor_(options.num_storage_threads) {
+      : pose_executor_(options.num_pose_threads),
+        storage_executor_(options.num_storage_threads),
+        batcher_(&pose_executor_, options.max_batch) {
     context_.service = service;
     context_.pose_executor = &pose_executor_;
+    context_.batcher = &batcher_;
     context_.storage_executor = &storage_executor_;
     context_.max_open_streams = options.max_open_streams;
     services_.push_back(MakeSequenceService(&context_));
@@ -131,6 +134,7 @@ class GrpcServerImpl final : public GrpcServer {
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
   Executor pose_executor_, storage_executor_;
+  PoseBatcher batcher_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   std::mutex shutdown_mutex_;
   std::unique_ptr<grpc::Server> server_;

@@ -6,12 +6,14 @@
 #include "live_registry.h"
 #include "pleat/jobs/executor.h"
 #include "pleat/service/local_character_service.h"
+#include "pleat/service/pose_batcher.h"
 
 namespace pleat {
 
 struct HandlerContext {
   LocalCharacterService* service = nullptr;
   Executor* pose_executor = nullptr;     // milliseconds of computation
+  PoseBatcher* batcher = nullptr;        // of live sessions, on pose_executor
   Executor* storage_executor = nullptr;  // disk, catalogue, checking uploads
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;

@@ -25,7 +25,8 @@ namespace {
 // to the transport, so a client that does not read stops its own session and nobody else's.
 class LiveReactor final
     : public grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>,
-      public Drainable {
+      public Drainable,
+      private PoseWork {
  public:
   LiveReactor(HandlerContext* context, grpc::CallbackServerContext* call)
       : slot_(context), context_(context), call_(call), entry_(&context->live_sessions, this) {
@@ -124,30 +125,44 @@ class LiveReactor final
     }
     if (!working_ && !writing_ && HasWork()) {
       working_ = true;
-      context_->pose_executor->Post([this] { Work(); });
+      if (stage_ == Stage::kOpen) {
+        context_->batcher->Submit(&session_->model(), this);
+      } else {
+        context_->pose_executor->Post(
+            [this] { Answered(CallGuarded([this] { return Start(); })); });
+      }
     }
   }
 
-  // On the executor. Nothing else touches session_ and response_ meanwhile.
-  void Work() {
-    std::optional<LiveTurn> turn;
-    bool ended;
+  // From here on to Answered on the executor. Nothing else touches session_, turn_ and response_.
+  bool Prepare(PoseQuery* query) override {
+    turn_.reset();
     {
       std::lock_guard lock(mutex_);
-      ended = Ended();
-      if (!ended && stage_ == Stage::kOpen) turn = queue_->Take();
+      if (!Ended()) turn_ = queue_->Take();
     }
-    absl::Status status;
-    if (!ended) {
-      status = CallGuarded([&] {
-        response_.Clear();
-        return turn.has_value() ? Show(*turn) : Start();
-      });
-    }
+    start_ = std::chrono::steady_clock::now();
+    if (!turn_.has_value() || !turn_->status.ok()) return false;
+    poses_.clear();
+    for (const Pose& pose : turn_->poses) poses_.push_back(&pose);
+    *query = session_->QueryOf(&poses_);
+    return true;
+  }
+  PoseEvaluator& evaluator() override { return session_->evaluator(); }
+  void Evaluated(const PoseQuery* query, double evaluate_us, int num_together) override {
+    if (!turn_.has_value()) return Answered(absl::CancelledError("the session has ended"));
+    Answered(CallGuarded([&] {
+      Show(query, evaluate_us, num_together);
+      return absl::OkStatus();
+    }));
+  }
+
+  // Sends what is in response_, or ends. `this` may be gone when this function returns.
+  void Answered(absl::Status status) {
     std::unique_lock lock(mutex_);
     working_ = false;
     Keep(std::move(status));
-    if (!ended && !cancelled_ && status_.ok()) {
+    if (!cancelled_ && status_.ok()) {
       writing_ = true;
       StartWrite(&response_);
     }
@@ -156,6 +171,7 @@ class LiveReactor final
 
   absl::Status Start() {
     PLEAT_RETURN_IF_ERROR(slot_.status());
+    response_.Clear();
     const v1::LiveSessionRequest::Start& start = request_.start();
     PLEAT_ASSIGN_OR_RETURN(const LiveRules rules, RulesOf(start));
     PLEAT_ASSIGN_OR_RETURN(SessionRequest opening, FromProto(start.character(), start.options()));
@@ -169,29 +185,31 @@ class LiveReactor final
     return absl::OkStatus();
   }
 
-  // A pose that cannot be shown is an answer, not an error.
-  absl::Status Show(const LiveTurn& turn) {
-    const auto start = std::chrono::steady_clock::now();
-    if (turn.keyframe) session_->RequestKeyframe();
-    std::vector<const Pose*> poses;
-    for (const Pose& pose : turn.poses) poses.push_back(&pose);
-    absl::StatusOr<EncodedFrame> frame =
-        turn.status.ok() ? session_->Show(poses) : absl::StatusOr<EncodedFrame>(turn.status);
+  // A pose that cannot be shown is an answer, not an error. query: null when its turn says why not.
+  void Show(const PoseQuery* query, double evaluate_us, int num_together) {
+    response_.Clear();
+    if (turn_->keyframe) session_->RequestKeyframe();
+    absl::StatusOr<EncodedFrame> frame = query != nullptr
+                                             ? session_->Encode(*query, evaluate_us)
+                                             : absl::StatusOr<EncodedFrame>(turn_->status);
     *response_.mutable_report() =
-        ReportOf(turn, start - turn.arrived, frame.ok() ? &*frame : nullptr);
+        ReportOf(*turn_, start_ - turn_->arrived, frame.ok() ? &*frame : nullptr, num_together);
     if (frame.ok()) {
-      *response_.mutable_frame() = ToProto(turn.number, *std::move(frame));
+      *response_.mutable_frame() = ToProto(turn_->number, *std::move(frame));
     } else {
-      *response_.mutable_rejection() = RejectionOf(turn.number, frame.status());
+      *response_.mutable_rejection() = RejectionOf(turn_->number, frame.status());
     }
-    return absl::OkStatus();
   }
 
   StreamSlot slot_;
   HandlerContext* context_;
   grpc::CallbackServerContext* call_;
-  std::unique_ptr<PoseSession> session_;  // used by Work, and by Advance when no work is under way
-  v1::LiveSessionResponse response_;      // used by Work, and while writing_
+  // Used while working_, by Advance when nothing is under way; response_ also while writing_.
+  std::unique_ptr<PoseSession> session_;
+  v1::LiveSessionResponse response_;
+  std::optional<LiveTurn> turn_;
+  std::vector<const Pose*> poses_;  // of turn_
+  std::chrono::steady_clock::time_point start_;
 
   std::mutex mutex_;  // guards all below
   v1::LiveSessionRequest request_;

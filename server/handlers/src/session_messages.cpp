@@ -81,7 +81,7 @@ v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status) {
 }
 
 v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duration waited,
-                        const EncodedFrame* frame) {
+                        const EncodedFrame* frame, int num_together) {
   v1::LiveReport message;
   message.set_num_superseded(static_cast<uint32_t>(turn.num_superseded));
   message.set_queue_us(
@@ -89,6 +89,7 @@ v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duratio
   if (frame != nullptr) {
     message.set_evaluate_us(static_cast<uint32_t>(frame->evaluate_us));
     message.set_encode_us(static_cast<uint32_t>(frame->encode_us));
+    message.set_evaluated_together(static_cast<uint32_t>(num_together));
   }
   message.set_server_cpu_us(ProcessorMicroseconds());
   return message;

@@ -28,6 +28,6 @@ LivePose FromProto(const v1::LiveSessionRequest::LivePose& message);
 v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status);
 // frame: null when the pose was rejected.
 v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duration waited,
-                        const EncodedFrame* frame);
+                        const EncodedFrame* frame, int num_together);
 
 }  // namespace pleat

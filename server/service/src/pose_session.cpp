@@ -45,18 +45,27 @@ PoseSession::PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
 
 absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& poses) {
   const Clock::time_point start = Clock::now();
-  if (options_.skinned_only && !poses.empty()) {
-    PLEAT_RETURN_IF_ERROR(evaluator_.EvaluateSkinned(*poses[0], options_.bone_scales, &frame_));
-  } else {
-    PLEAT_RETURN_IF_ERROR(evaluator_.Evaluate(poses, options_.bone_scales, &frame_));
-  }
-  const Clock::time_point evaluated = Clock::now();
+  PoseQuery query = QueryOf(&poses);
+  evaluator_.EvaluateBatch({&query, 1});
+  return Encode(query, MicrosecondsBetween(start, Clock::now()));
+}
+
+PoseQuery PoseSession::QueryOf(const std::vector<const Pose*>* poses) {
+  return {.poses = poses,
+          .bone_scales = &options_.bone_scales,
+          .skinned_only = options_.skinned_only,
+          .frame = &frame_};
+}
+
+absl::StatusOr<EncodedFrame> PoseSession::Encode(const PoseQuery& query, double evaluate_us) {
+  PLEAT_RETURN_IF_ERROR(query.status);
+  const Clock::time_point start = Clock::now();
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, (*encoder_)->Encode(frame_.positions));
   return EncodedFrame{.draco = std::move(bytes),
                       .confidence = frame_.confidence,
                       .mark = (*encoder_)->mark(),
-                      .evaluate_us = MicrosecondsBetween(start, evaluated),
-                      .encode_us = MicrosecondsBetween(evaluated, Clock::now())};
+                      .evaluate_us = evaluate_us,
+                      .encode_us = MicrosecondsBetween(start, Clock::now())};
 }
 
 absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(

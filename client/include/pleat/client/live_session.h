@@ -31,7 +31,8 @@ struct LiveSessionOptions {
 struct LiveTimes {
   uint32_t queue_us = 0;  // until the evaluation started
   uint32_t evaluate_us = 0, encode_us = 0;
-  uint64_t server_cpu_us = 0;  // processor time of the whole server since its start
+  uint64_t server_cpu_us = 0;       // processor time of the whole server since its start
+  uint32_t evaluated_together = 0;  // poses of the model that were evaluated at once
 };
 
 struct LiveFrame {

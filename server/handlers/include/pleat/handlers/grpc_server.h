@@ -18,6 +18,7 @@ struct GrpcServerOptions {
   // PEM texts; both or none. With client_ca, clients must show a certificate that it signed.
   std::string tls_certificate{}, tls_key{}, tls_client_ca{};
   int num_pose_threads = 0;     // 0 = one per core
+  int max_batch = 8;            // live poses of one model that are evaluated together
   int num_storage_threads = 4;  // disk, catalogue, checking uploads
   // Of one message; 20,000 poses of 18 joints are 14 MB. All that are under way share 1 GiB.
   int max_receive_bytes = 16 << 20;

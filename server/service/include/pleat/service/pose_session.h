@@ -42,6 +42,13 @@ class PoseSession {
   // poses[0] is shown, poses[h] is the pose h training-frame intervals earlier.
   absl::StatusOr<EncodedFrame> Show(const std::vector<const Pose*>& poses);
 
+  // The two halves of Show, for those who evaluate several sessions' poses together: the query of
+  // `poses`, which must live until it is evaluated by any evaluator of the model; and the frame.
+  PoseQuery QueryOf(const std::vector<const Pose*>* poses);
+  PoseEvaluator& evaluator() { return evaluator_; }
+  // evaluate_us: what the evaluation took.
+  absl::StatusOr<EncodedFrame> Encode(const PoseQuery& query, double evaluate_us);
+
   // The next frame of a kDracoDelta session will be a key frame.
   void RequestKeyframe() { (*encoder_)->RequestKeyframe(); }
 
