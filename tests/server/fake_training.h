@@ -95,8 +95,11 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
   DetailModelParameters detail;
   detail.learner = Learner::kGp;
   detail.stages = {stage};
-  detail.mean = matrix(3 * num_vertices, 1).col(0).cast<float>() * .005f;
-  detail.basis = matrix(3 * num_vertices, kComponents).cast<float>() * .005f;
+  const Eigen::VectorXf mean = matrix(3 * num_vertices, 1).col(0).cast<float>() * .005f;
+  detail.basis = DetailBasis::Quantise(mean, matrix(3 * num_vertices, kComponents) * .005,
+                                       Eigen::VectorXd::Constant(kComponents, 1e-6))
+                     .value()
+                     .parameters();
   parts.detail_model =
       std::make_shared<const DetailModel>(DetailModel::FromParameters(std::move(detail)).value());
   parts.record.learner = "gp";
