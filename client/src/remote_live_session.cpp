@@ -97,7 +97,10 @@ class RemoteLiveSession final : public LiveSession {
         stub_(v1::PoseService::NewStub(channel_)),
         start_(std::move(start)),
         options_(options),
-        unanswered_(options.latest_wins) {}
+        unanswered_(options.latest_wins) {
+    const auto& scales = start_.start().character().bone_scales();
+    bone_scales_.assign(scales.begin(), scales.end());
+  }
   ~RemoteLiveSession() override {
     if (context_ != nullptr) context_->TryCancel();
     if (stream_ != nullptr) FinishStream().IgnoreError();
@@ -115,19 +118,21 @@ class RemoteLiveSession final : public LiveSession {
     if (!response.has_header()) return BrokenStream("no header");
     PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(response.header()));
     num_received_ = num_acknowledged_ = 0;
-    if (!decoder_.has_value()) {
-      PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(header)));
+    if (!header_.has_value()) {
+      header_ = std::move(header);
+      if (header_->content == StreamContent::kParameters) return absl::OkStatus();
+      PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(*header_));
       decoder_.emplace(std::move(decoder));
       return absl::OkStatus();
     }
-    const StreamHeader& old = decoder_->header();
-    if (header.topology != old.topology || header.vertex_order != old.vertex_order ||
-        !(header.box == old.box)) {
+    if (header.topology != header_->topology || header.vertex_order != header_->vertex_order ||
+        header.num_vertices != header_->num_vertices || !(header.box == header_->box)) {
       return BrokenStream("the header is another one after reconnecting");
     }
     return absl::OkStatus();
   }
 
+  const StreamHeader& header() const override { return *header_; }
   const FrameDecoder& decoder() const override { return *decoder_; }
   bool ended() const override { return ended_; }
 
@@ -181,6 +186,9 @@ class RemoteLiveSession final : public LiveSession {
     frame->confidence = response.frame().confidence();
     frame->draco = std::move(*response.mutable_frame()->mutable_draco());
     frame->mark = MarkOf(response.frame());
+    if (header_->content == StreamContent::kParameters) {
+      return TakeParameters(response.frame(), frame);
+    }
     if (!options_.decode) return absl::OkStatus();
     return decoder_->Decode(frame->draco, frame->mark, &frame->positions);
   }
@@ -196,6 +204,16 @@ class RemoteLiveSession final : public LiveSession {
     if (!finished_) finish_status_ = FromGrpcStatus(stream_->Finish());
     finished_ = true;
     return finish_status_;
+  }
+
+  absl::Status TakeParameters(const v1::Frame& message, LiveFrame* frame) {
+    PLEAT_ASSIGN_OR_RETURN(frame->parameters, FromProto(message.parameters()));
+    frame->parameters->confidence = frame->confidence;
+    if (!options_.decode || options_.model == nullptr) return absl::OkStatus();
+    if (!evaluator_.has_value()) evaluator_.emplace(options_.model);
+    PLEAT_RETURN_IF_ERROR(evaluator_->Show(*frame->parameters, bone_scales_, &evaluated_));
+    frame->positions = evaluated_.positions;
+    return absl::OkStatus();
   }
 
   // Only the server can have cancelled a session that somebody still reads.
@@ -264,7 +282,11 @@ class RemoteLiveSession final : public LiveSession {
   const std::unique_ptr<v1::PoseService::Stub> stub_;
   const v1::LiveSessionRequest start_;
   const LiveSessionOptions options_;
-  std::optional<FrameDecoder> decoder_;
+  std::vector<double> bone_scales_;      // of the character
+  std::optional<StreamHeader> header_;   // after the first Connect
+  std::optional<FrameDecoder> decoder_;  // not of streams of parameters
+  std::optional<PoseEvaluator> evaluator_;
+  EvaluatedFrame evaluated_;
 
   std::mutex write_mutex_;  // one writer at a time, none while the stream is replaced
   std::unique_ptr<grpc::ClientContext> context_;

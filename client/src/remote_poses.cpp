@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/codec/frame_decoder.h"
+#include "pleat/formats/model_file.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
 #include "remote_live_session.h"
@@ -21,11 +22,38 @@ absl::Status BrokenStream(absl::string_view why) {
   return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
 }
 
+absl::StatusOr<FrameParameters> ParametersOf(const v1::Frame& frame) {
+  PLEAT_ASSIGN_OR_RETURN(FrameParameters parameters, FromProto(frame.parameters()));
+  parameters.confidence = frame.confidence();
+  return parameters;
+}
+
+absl::Status TakeParameters(int number, const v1::Frame& frame, const ClipStreamSink& sink) {
+  PLEAT_ASSIGN_OR_RETURN(const FrameParameters parameters, ParametersOf(frame));
+  return sink.on_parameters(number, parameters);
+}
+
 }  // namespace
+
+absl::StatusOr<std::shared_ptr<const CharacterModel>> RemoteCharacterService::State::Model(
+    RemoteCharacterService* service, const std::string& id) {
+  std::lock_guard lock(model_mutex);
+  if (model == nullptr || model_id != id) {
+    PLEAT_ASSIGN_OR_RETURN(const std::string bytes, service->DownloadModel(id, {}));
+    PLEAT_ASSIGN_OR_RETURN(model, DecodeModel(bytes));
+    model_id = id;
+  }
+  return model;
+}
 
 absl::Status RemoteCharacterService::StreamClip(const ClipQuery& query,
                                                 const FrameEncoderOptions& encoding,
                                                 const ClipStreamSink& sink) {
+  const bool has_parameters = encoding.content == StreamContent::kParameters;
+  if (has_parameters ? !sink.on_parameters : !sink.on_frame) {
+    return absl::InvalidArgumentError(
+        "the sink takes no frames: set on_parameters of streams of parameters, else on_frame");
+  }
   v1::EvaluateClipRequest request;
   *request.mutable_character() = CharacterOf(query);
   *request.mutable_track() = ToProto(query.track);
@@ -46,6 +74,8 @@ absl::Status RemoteCharacterService::StreamClip(const ClipQuery& query,
       if (status.ok() && sink.on_header) status = sink.on_header(*header);
     } else if (response.frame().number() != static_cast<uint64_t>(next)) {
       status = BrokenStream("a frame is missing");
+    } else if (has_parameters) {
+      status = TakeParameters(next++, response.frame(), sink);
     } else {
       status = sink.on_frame(next++, response.frame().draco(), MarkOf(response.frame()),
                              response.frame().confidence());
@@ -61,8 +91,19 @@ absl::Status RemoteCharacterService::StreamClip(const ClipQuery& query,
 absl::Status RemoteCharacterService::EvaluateClip(
     const ClipQuery& query,
     const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume) {
-  std::optional<FrameDecoder> decoder;
   EvaluatedFrame frame;
+  if (state_->options.stream.content == StreamContent::kParameters) {
+    PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
+                           state_->Model(this, query.model_id));
+    PoseEvaluator evaluator(std::move(model));
+    return StreamClip(
+        query, state_->options.stream,
+        {.on_parameters = [&](int t, const FrameParameters& parameters) -> absl::Status {
+          PLEAT_RETURN_IF_ERROR(evaluator.Show(parameters, query.bone_scales, &frame));
+          return consume(t, frame);
+        }});
+  }
+  std::optional<FrameDecoder> decoder;
   return StreamClip(query, state_->options.stream,
                     {.on_header = [&](const StreamHeader& header) -> absl::Status {
                        PLEAT_ASSIGN_OR_RETURN(FrameDecoder created, FrameDecoder::Create(header));
@@ -79,6 +120,22 @@ absl::Status RemoteCharacterService::EvaluateClip(
 
 absl::StatusOr<EvaluatedFrame> RemoteCharacterService::EvaluatePose(
     const ClipQuery& character, const std::vector<Pose>& poses) {
+  v1::EvaluatePoseRequest request;
+  v1::EvaluatePoseResponse response;
+  *request.mutable_character() = CharacterOf(character);
+  for (const Pose& pose : poses) *request.add_poses() = ToProto(pose);
+  *request.mutable_options() = ToProto(state_->options.stream);
+  EvaluatedFrame frame;
+  if (state_->options.stream.content == StreamContent::kParameters) {
+    PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
+                           state_->Model(this, character.model_id));
+    PLEAT_RETURN_IF_ERROR(state_->Call(state_->poses.get(), &v1::PoseService::Stub::EvaluatePose,
+                                       request, &response));
+    PLEAT_ASSIGN_OR_RETURN(const FrameParameters parameters, ParametersOf(response.frame()));
+    PLEAT_RETURN_IF_ERROR(
+        PoseEvaluator(std::move(model)).Show(parameters, character.bone_scales, &frame));
+    return frame;
+  }
   v1::GetStreamHeaderRequest header_request;
   v1::GetStreamHeaderResponse header_response;
   header_request.set_model_id(character.model_id);
@@ -87,15 +144,8 @@ absl::StatusOr<EvaluatedFrame> RemoteCharacterService::EvaluatePose(
                                      header_request, &header_response));
   PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(header_response.header()));
   PLEAT_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(std::move(header)));
-
-  v1::EvaluatePoseRequest request;
-  v1::EvaluatePoseResponse response;
-  *request.mutable_character() = CharacterOf(character);
-  for (const Pose& pose : poses) *request.add_poses() = ToProto(pose);
-  *request.mutable_options() = ToProto(state_->options.stream);
   PLEAT_RETURN_IF_ERROR(
       state_->Call(state_->poses.get(), &v1::PoseService::Stub::EvaluatePose, request, &response));
-  EvaluatedFrame frame;
   frame.confidence = response.frame().confidence();
   PLEAT_RETURN_IF_ERROR(
       decoder.Decode(response.frame().draco(), MarkOf(response.frame()), &frame.positions));

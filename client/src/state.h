@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "channel.h"
@@ -24,6 +25,13 @@ struct RemoteCharacterService::State {
   std::unique_ptr<v1::ModelService::Stub> models;
   std::unique_ptr<v1::CompressedSequenceService::Stub> compressed;
   std::unique_ptr<v1::PoseService::Stub> poses;
+
+  // The model downloaded last, for streams of parameters.
+  std::mutex model_mutex;
+  std::string model_id;                         // guarded by model_mutex
+  std::shared_ptr<const CharacterModel> model;  // guarded by model_mutex
+  absl::StatusOr<std::shared_ptr<const CharacterModel>> Model(RemoteCharacterService* service,
+                                                              const std::string& id);
 
   State(std::string server_address, std::shared_ptr<grpc::Channel> server_channel,
         RemoteOptions remote_options)

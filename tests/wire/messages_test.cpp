@@ -345,11 +345,43 @@ TEST(MessagesTest, StreamsComeBack) {
   bad.set_encoding(static_cast<v1::FrameEncoding>(99));
   EXPECT_FALSE(FromProto(bad).ok());
 
+  header.content = StreamContent::kControlMesh;
+  header.control_vertices = {4, 7, 9};
+  EXPECT_EQ(FromProto(Reparse(ToProto(header)))->control_vertices, header.control_vertices);
+  EXPECT_EQ(FromProto(ToProto(header))->content, StreamContent::kControlMesh);
+  EXPECT_EQ(FromProto(v1::StreamOptions())->content, StreamContent::kMesh);
+  EXPECT_FALSE(FromProto(static_cast<v1::StreamContent>(99)).ok());
+
   const CharacterQuery query{kId, {1, 1.5}, true};
   PLEAT_ASSERT_OK_AND_ASSIGN(const CharacterQuery q, FromProto(Reparse(ToProto(query))));
   EXPECT_EQ(q.bone_scales, query.bone_scales);
   EXPECT_TRUE(q.skinned_only);
   EXPECT_FALSE(FromProto(v1::Character()).ok());
+}
+
+TEST(MessagesTest, FrameParametersComeBackBitForBit) {
+  Random random(3);
+  FrameParameters parameters;
+  parameters.pose = RandomPose(&random, 18);
+  for (Eigen::Quaterniond& rotation : parameters.pose.rotations) {
+    const Eigen::Quaternionf rounded = rotation.cast<float>();
+    rotation = rounded.cast<double>();
+  }
+  parameters.coefficients = Eigen::VectorXf::Random(40);
+  const v1::FrameParameters message = ToProto(parameters);
+  EXPECT_LT(message.ByteSizeLong(), 500u);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const FrameParameters back, FromProto(Reparse(message)));
+  EXPECT_TRUE(SamePose(back.pose, parameters.pose));
+  EXPECT_EQ(back.coefficients, parameters.coefficients);
+  v1::FrameParameters bad = message;
+  bad.add_rotations(1);
+  EXPECT_THAT(FromProto(bad),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rotations")));
+  EXPECT_FALSE(FromProto(v1::FrameParameters()).ok());
+  bad = message;
+  for (int i = 0; i < 5000; ++i) bad.add_coefficients(1);
+  EXPECT_THAT(FromProto(bad),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("coefficients")));
 }
 
 TEST(MessagesTest, RandomBytesNeverCrashARecordReader) {

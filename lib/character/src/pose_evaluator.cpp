@@ -147,6 +147,17 @@ absl::Status PoseEvaluator::EvaluateSkinned(const Pose& pose,
   return query.status;
 }
 
+void PoseEvaluator::TakeParameters(const Scratch& scratch, FrameParameters* parameters) {
+  parameters->pose = scratch.history[0];
+  for (Eigen::Quaterniond& rotation : parameters->pose.rotations) {
+    const Eigen::Quaternionf rounded = rotation.cast<float>();
+    rotation = rounded.cast<double>();
+  }
+  parameters->confidence = scratch.confidence;
+  parameters->coefficients.resize(0);
+  if (scratch.has_details) parameters->coefficients = scratch.coefficients;
+}
+
 void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
   while (scratches_.size() < std::min(queries.size(), kMostTogether)) {
     scratches_.push_back(std::make_unique<Scratch>(*model_));
@@ -162,6 +173,10 @@ void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
         Scratch* scratch = scratches_[count].get();
         queries[q].status = Prepare(queries[q], scratch);
         if (!queries[q].status.ok()) continue;
+        if (queries[q].parameters != nullptr) {
+          TakeParameters(*scratch, queries[q].parameters);
+          continue;
+        }
         frames[count] = queries[q].frame;
         scratches[count++] = scratch;
       }
@@ -184,20 +199,57 @@ absl::Status PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) co
     PLEAT_RETURN_IF_ERROR(CheckPose(pose, num_joints));
     CopyNormalized(pose, &s.history[h]);
   }
-  ComputeBoneTransforms(model_->skeleton(), s.history[0], scales, &s.transforms);
-  SetAxes(DetailAxesOf(model_->options()), s.transforms, &s.axes);
   s.has_details = !query.skinned_only;
-  if (s.has_details && DetailBaseOf(model_->options()) == DetailBase::kRoot) {
-    MoveAllWithRoot(&s.transforms);
-  }
-  s.motions.Set(s.transforms, s.axes);
   s.confidence = 1;
   if (s.has_details) {
     model_->features().ComputeRow(s.history_pointers, s.features);
     s.confidence =
         model_->detail_model().PredictCoefficients(s.features, &s.workspace, s.coefficients);
-    model_->full_basis().SetCoefficients(s.coefficients, &s.expansion);
   }
+  if (query.parameters == nullptr) Place(scales, &s);
+  return absl::OkStatus();
+}
+
+void PoseEvaluator::Place(const std::vector<double>& bone_scales, Scratch* scratch) const {
+  Scratch& s = *scratch;
+  ComputeBoneTransforms(model_->skeleton(), s.history[0], bone_scales, &s.transforms);
+  SetAxes(DetailAxesOf(model_->options()), s.transforms, &s.axes);
+  if (s.has_details && DetailBaseOf(model_->options()) == DetailBase::kRoot) {
+    MoveAllWithRoot(&s.transforms);
+  }
+  s.motions.Set(s.transforms, s.axes);
+  if (s.has_details) model_->full_basis().SetCoefficients(s.coefficients, &s.expansion);
+}
+
+absl::Status PoseEvaluator::Predict(const std::vector<const Pose*>& poses, bool skinned_only,
+                                    FrameParameters* parameters) {
+  PoseQuery query{.poses = &poses, .skinned_only = skinned_only, .parameters = parameters};
+  EvaluateBatch({&query, 1});
+  return query.status;
+}
+
+absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
+                                 const std::vector<double>& bone_scales, EvaluatedFrame* frame) {
+  const Eigen::VectorXf& coefficients = parameters.coefficients;
+  const int num_joints = model_->skeleton().num_joints();
+  PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
+  PLEAT_RETURN_IF_ERROR(CheckPose(parameters.pose, num_joints));
+  if (coefficients.size() != 0 && coefficients.size() != model_->full_basis().num_components()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(coefficients.size(), " detail coefficients for a model of ",
+                     model_->full_basis().num_components(), "; is it another model?"));
+  }
+  if (!coefficients.allFinite()) {
+    return absl::InvalidArgumentError("a detail coefficient is not finite");
+  }
+  if (scratches_.empty()) scratches_.push_back(std::make_unique<Scratch>(*model_));
+  Scratch* scratch = scratches_[0].get();
+  CopyNormalized(parameters.pose, &scratch->history[0]);
+  scratch->has_details = coefficients.size() > 0;
+  scratch->confidence = parameters.confidence;
+  if (scratch->has_details) scratch->coefficients = coefficients;
+  Place(bone_scales, scratch);
+  FillFrames({&scratch, 1}, {&frame, 1});
   return absl::OkStatus();
 }
 

@@ -8,7 +8,29 @@
 #include "pleat/base/status.h"
 
 namespace pleat {
+namespace {
+
+absl::Status CheckControlVertices(const StreamHeader& header) {
+  const bool is_control = header.content == StreamContent::kControlMesh;
+  const size_t expected = is_control ? static_cast<size_t>(header.num_vertices) : 0;
+  if (header.control_vertices.size() != expected) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the stream names ", header.control_vertices.size(), " control vertices, not ", expected));
+  }
+  int32_t last = -1;
+  for (const int32_t v : header.control_vertices) {
+    if (v <= last) return absl::InvalidArgumentError("control vertices do not ascend");
+    last = v;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
 absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLimits& limits) {
+  if (header.content == StreamContent::kParameters) {
+    return absl::InvalidArgumentError("a stream of parameters holds no Draco frames");
+  }
   if (header.encoding != FrameEncoding::kDracoMesh &&
       header.encoding != FrameEncoding::kDracoPointCloud &&
       header.encoding != FrameEncoding::kDracoDelta) {
@@ -26,6 +48,7 @@ absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLim
                                                    limits.max_triangles));
   }
   PLEAT_RETURN_IF_ERROR(header.box.Validate());
+  PLEAT_RETURN_IF_ERROR(CheckControlVertices(header));
   if (header.vertex_order.size() != static_cast<size_t>(header.num_vertices)) {
     return absl::InvalidArgumentError(absl::StrCat("the vertex order has ",
                                                    header.vertex_order.size(), " entries, not ",

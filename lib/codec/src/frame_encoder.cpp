@@ -204,8 +204,11 @@ void FrameEncoder::RequestKeyframe() { state_->last.resize(3, 0); }
 
 absl::StatusOr<FrameEncoder> FrameEncoder::Create(
     const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
-    const FrameEncoderOptions& options) {
+    const FrameEncoderOptions& options, std::vector<int32_t> control_vertices) {
   PLEAT_RETURN_IF_ERROR(CheckOptions(options));
+  if (options.content == StreamContent::kParameters) {
+    return absl::InvalidArgumentError("a stream of parameters holds no frames to encode");
+  }
   if (reference.cols() != topology.num_vertices() || reference.cols() == 0) {
     return absl::InvalidArgumentError(absl::StrCat("the reference frame has ", reference.cols(),
                                                    " vertices, the topology ",
@@ -218,6 +221,8 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(
   state->speed = options.speed;
   StreamHeader& header = state->header;
   header.encoding = options.encoding;
+  header.content = options.content;
+  header.control_vertices = std::move(control_vertices);
   header.num_vertices = topology.num_vertices();
   header.box = MakeBox(reference, options);
   PLEAT_RETURN_IF_ERROR(CheckPositions(reference, header.box));

@@ -6,6 +6,10 @@
 
 namespace pleat {
 
+namespace {
+constexpr int kMaxWireCoefficients = 4096;
+}
+
 v1::Character ToProto(const CharacterQuery& query) {
   v1::Character message;
   message.set_model_id(query.model_id);
@@ -55,8 +59,77 @@ absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding) {
   }
 }
 
+v1::StreamContent ToProto(StreamContent content) {
+  switch (content) {
+    case StreamContent::kMesh:
+      return v1::STREAM_CONTENT_MESH;
+    case StreamContent::kControlMesh:
+      return v1::STREAM_CONTENT_CONTROL_MESH;
+    case StreamContent::kParameters:
+      break;
+  }
+  return v1::STREAM_CONTENT_PARAMETERS;
+}
+
+absl::StatusOr<StreamContent> FromProto(v1::StreamContent content) {
+  switch (content) {
+    case v1::STREAM_CONTENT_UNSPECIFIED:
+    case v1::STREAM_CONTENT_MESH:
+      return StreamContent::kMesh;
+    case v1::STREAM_CONTENT_CONTROL_MESH:
+      return StreamContent::kControlMesh;
+    case v1::STREAM_CONTENT_PARAMETERS:
+      return StreamContent::kParameters;
+    default:
+      return absl::InvalidArgumentError(
+          absl::StrCat("content is ", static_cast<int>(content), ", which is unknown"));
+  }
+}
+
+v1::FrameParameters ToProto(const FrameParameters& parameters) {
+  v1::FrameParameters message;
+  const Eigen::Vector3d& root = parameters.pose.root_position;
+  message.mutable_root_position()->set_x(root.x());
+  message.mutable_root_position()->set_y(root.y());
+  message.mutable_root_position()->set_z(root.z());
+  for (const Eigen::Quaterniond& rotation : parameters.pose.rotations) {
+    for (const double value : {rotation.w(), rotation.x(), rotation.y(), rotation.z()}) {
+      message.add_rotations(static_cast<float>(value));
+    }
+  }
+  message.mutable_coefficients()->Add(parameters.coefficients.begin(),
+                                      parameters.coefficients.end());
+  return message;
+}
+
+absl::StatusOr<FrameParameters> FromProto(const v1::FrameParameters& message) {
+  const int num_joints = message.rotations_size() / 4;
+  if (message.rotations_size() % 4 != 0 || num_joints < 1 || num_joints > kMaxWireJoints) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("parameters.rotations has ", message.rotations_size(),
+                     " entries, not four for each of 1 to ", kMaxWireJoints, " joints"));
+  }
+  if (message.coefficients_size() > kMaxWireCoefficients) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("parameters.coefficients has ", message.coefficients_size(),
+                     " entries, the limit is ", kMaxWireCoefficients));
+  }
+  FrameParameters parameters;
+  const v1::Vector3& root = message.root_position();
+  parameters.pose.root_position << root.x(), root.y(), root.z();
+  for (int j = 0; j < num_joints; ++j) {
+    parameters.pose.rotations.emplace_back(message.rotations(4 * j), message.rotations(4 * j + 1),
+                                           message.rotations(4 * j + 2),
+                                           message.rotations(4 * j + 3));
+  }
+  parameters.coefficients =
+      Eigen::Map<const Eigen::VectorXf>(message.coefficients().data(), message.coefficients_size());
+  return parameters;
+}
+
 v1::StreamOptions ToProto(const FrameEncoderOptions& options) {
   v1::StreamOptions message;
+  message.set_content(ToProto(options.content));
   message.set_encoding(ToProto(options.encoding));
   if (options.max_error_mm > 0) {
     message.set_max_error_mm(options.max_error_mm);
@@ -70,6 +143,7 @@ v1::StreamOptions ToProto(const FrameEncoderOptions& options) {
 absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message) {
   FrameEncoderOptions options;
   PLEAT_ASSIGN_OR_RETURN(options.encoding, FromProto(message.encoding()));
+  PLEAT_ASSIGN_OR_RETURN(options.content, FromProto(message.content()));
   if (message.position_bits() != 0) options.position_bits = message.position_bits();
   if (options.position_bits < QuantizationBox::kMinBits ||
       options.position_bits > QuantizationBox::kMaxBits) {
@@ -101,6 +175,9 @@ FrameMark MarkOf(const v1::Frame& frame) {
 v1::StreamHeader ToProto(const StreamHeader& header) {
   v1::StreamHeader message;
   message.set_encoding(ToProto(header.encoding));
+  message.set_content(ToProto(header.content));
+  message.mutable_control_vertices()->Add(header.control_vertices.begin(),
+                                          header.control_vertices.end());
   message.set_num_vertices(header.num_vertices);
   message.set_num_points(header.num_points);
   message.set_num_triangles(header.num_triangles);
@@ -118,6 +195,9 @@ v1::StreamHeader ToProto(const StreamHeader& header) {
 absl::StatusOr<StreamHeader> FromProto(const v1::StreamHeader& message) {
   StreamHeader header;
   PLEAT_ASSIGN_OR_RETURN(header.encoding, FromProto(message.encoding()));
+  PLEAT_ASSIGN_OR_RETURN(header.content, FromProto(message.content()));
+  header.control_vertices.assign(message.control_vertices().begin(),
+                                 message.control_vertices().end());
   header.num_vertices = message.num_vertices();
   header.num_points = message.num_points();
   header.num_triangles = message.num_triangles();

@@ -26,6 +26,7 @@ v1::Frame ToProto(uint64_t number, EncodedFrame frame) {
   v1::Frame message;
   message.set_number(number);
   *message.mutable_draco() = std::move(frame.draco);
+  if (frame.parameters) *message.mutable_parameters() = ToProto(*frame.parameters);
   message.set_confidence(frame.confidence);
   message.set_difference(!frame.mark.keyframe);
   message.set_checksum(frame.mark.checksum);

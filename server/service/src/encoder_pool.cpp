@@ -1,23 +1,43 @@
 #include "pleat/service/encoder_pool.h"
 
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
+#include "pleat/geometry/control_mesh.h"
+#include "pleat/geometry/control_topology.h"
 
 namespace pleat {
 namespace {
 
 // Topology mesh, cloud, header and the integers of two frames; measured once, not exact.
 constexpr uint64_t kBytesPerVertex = 300;
+constexpr double kControlShare = .05;  // of the vertices
 
 uint64_t ChargeOf(const FrameEncoder& encoder) {
   return kBytesPerVertex * static_cast<uint64_t>(encoder.header().num_vertices);
 }
 
 std::string KeyOf(const std::string& model_id, const FrameEncoderOptions& options) {
-  return absl::StrCat(model_id, "/", static_cast<int>(options.encoding), "/", options.position_bits,
-                      "/", options.max_error_mm, "/", options.speed, "/", options.box_margin);
+  return absl::StrCat(model_id, "/", static_cast<int>(options.content), "/",
+                      static_cast<int>(options.encoding), "/", options.position_bits, "/",
+                      options.max_error_mm, "/", options.speed, "/", options.box_margin);
+}
+
+// Of the model's mesh, or of its control mesh.
+absl::StatusOr<FrameEncoder> MakeEncoder(const CharacterModel& model,
+                                         const FrameEncoderOptions& options) {
+  const Eigen::Matrix3Xd& rest = model.rig().rest_positions;
+  if (options.content == StreamContent::kMesh) {
+    return FrameEncoder::Create(model.topology(), rest.cast<float>(), options);
+  }
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<int> vertices,
+                         SelectControlVertices(model.topology(), rest, kControlShare));
+  PLEAT_ASSIGN_OR_RETURN(const Topology topology,
+                         ControlTopology(model.topology(), rest, vertices));
+  return FrameEncoder::Create(topology, rest(Eigen::all, vertices).cast<float>(), options,
+                              {vertices.begin(), vertices.end()});
 }
 
 }  // namespace
@@ -31,6 +51,7 @@ EncoderPool::Lease::~Lease() {
 
 absl::StatusOr<std::unique_ptr<EncoderPool::Lease>> EncoderPool::Take(
     const std::string& model_id, const CharacterModel& model, const FrameEncoderOptions& options) {
+  if (options.content == StreamContent::kParameters) return nullptr;
   std::string key = KeyOf(model_id, options);
   {
     std::lock_guard lock(mutex_);
@@ -44,17 +65,14 @@ absl::StatusOr<std::unique_ptr<EncoderPool::Lease>> EncoderPool::Take(
     }
     ++num_made_;
   }
-  PLEAT_ASSIGN_OR_RETURN(
-      FrameEncoder encoder,
-      FrameEncoder::Create(model.topology(), model.rig().rest_positions.cast<float>(), options));
+  PLEAT_ASSIGN_OR_RETURN(FrameEncoder encoder, MakeEncoder(model, options));
   return std::make_unique<Lease>(this, std::move(key), std::move(encoder));
 }
 
 absl::StatusOr<std::unique_ptr<EncoderPool::Lease>> EncoderPool::Make(
     const CharacterModel& model, const FrameEncoderOptions& options) {
-  PLEAT_ASSIGN_OR_RETURN(
-      FrameEncoder encoder,
-      FrameEncoder::Create(model.topology(), model.rig().rest_positions.cast<float>(), options));
+  if (options.content == StreamContent::kParameters) return nullptr;
+  PLEAT_ASSIGN_OR_RETURN(FrameEncoder encoder, MakeEncoder(model, options));
   return std::make_unique<Lease>(nullptr, std::string(), std::move(encoder));
 }
 

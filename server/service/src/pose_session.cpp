@@ -39,9 +39,10 @@ absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
 
 PoseSession::PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
                          std::unique_ptr<EncoderPool::Lease> encoder)
-    : options_(std::move(options)),
-      evaluator_(std::move(evaluator)),
-      encoder_(std::move(encoder)) {}
+    : options_(std::move(options)), evaluator_(std::move(evaluator)), encoder_(std::move(encoder)) {
+  parameters_header_.content = StreamContent::kParameters;
+  parameters_header_.num_vertices = evaluator_.model().num_vertices();
+}
 
 absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& poses) {
   const Clock::time_point start = Clock::now();
@@ -54,13 +55,22 @@ PoseQuery PoseSession::QueryOf(const std::vector<const Pose*>* poses) {
   return {.poses = poses,
           .bone_scales = &options_.bone_scales,
           .skinned_only = options_.skinned_only,
-          .frame = &frame_};
+          .frame = &frame_,
+          .parameters = encoder_ == nullptr ? &parameters_ : nullptr};
 }
 
 absl::StatusOr<EncodedFrame> PoseSession::Encode(const PoseQuery& query, double evaluate_us) {
   PLEAT_RETURN_IF_ERROR(query.status);
+  if (encoder_ == nullptr) {
+    return EncodedFrame{.parameters = parameters_,
+                        .confidence = parameters_.confidence,
+                        .evaluate_us = evaluate_us};
+  }
   const Clock::time_point start = Clock::now();
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes, (*encoder_)->Encode(frame_.positions));
+  const std::vector<int32_t>& vertices = header().control_vertices;
+  if (!vertices.empty()) control_ = frame_.positions(Eigen::all, vertices);
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes,
+                         (*encoder_)->Encode(vertices.empty() ? frame_.positions : control_));
   return EncodedFrame{.draco = std::move(bytes),
                       .confidence = frame_.confidence,
                       .mark = (*encoder_)->mark(),

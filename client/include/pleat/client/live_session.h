@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "pleat/character/pose_evaluator.h"
 #include "pleat/codec/frame_decoder.h"
 #include "pleat/codec/frame_encoder.h"
 #include "pleat/skeleton/pose.h"
@@ -14,6 +17,9 @@ namespace pleat {
 
 struct LiveSessionOptions {
   FrameEncoderOptions stream{};
+  // Of streams of parameters: evaluates them, so that LiveFrame::positions are the mesh. Without it
+  // the parameters are all there is.
+  std::shared_ptr<const CharacterModel> model{};
   // Poses without an answer that may be under way, 1 to 64: more hide the way to the server, fewer
   // make an edit show sooner.
   int max_in_flight = 4;
@@ -36,8 +42,10 @@ struct LiveTimes {
 };
 
 struct LiveFrame {
-  uint64_t number = 0;         // of the pose
-  Eigen::Matrix3Xf positions;  // 3 x V, metres, the character's vertex order
+  uint64_t number = 0;  // of the pose
+  // 3 x V, metres, the character's vertex order (or that of its control mesh).
+  Eigen::Matrix3Xf positions;
+  std::optional<FrameParameters> parameters;  // of streams of parameters
   double confidence = 0;
   std::string draco;  // what came over the wire
   FrameMark mark;
@@ -52,7 +60,9 @@ class LiveSession {
  public:
   virtual ~LiveSession() = default;  // ends the session, waiting for nothing
 
-  // Connectivity, vertex order and grid, from the first reply.
+  // What the first reply says.
+  virtual const StreamHeader& header() const = 0;
+  // Connectivity, vertex order and grid; not of streams of parameters.
   virtual const FrameDecoder& decoder() const = 0;
 
   // history: the poses 1, 2, ... training-frame intervals earlier; empty = the poses sent before.

@@ -32,10 +32,12 @@ struct RemoteOptions {
 
 // What a stream of one clip gives, in this order; an error from either ends the stream.
 struct ClipStreamSink {
-  std::function<absl::Status(const StreamHeader&)> on_header;  // may be null
+  std::function<absl::Status(const StreamHeader&)> on_header{};  // may be null
   std::function<absl::Status(int frame_index, std::string_view draco, const FrameMark& mark,
                              double confidence)>
-      on_frame;
+      on_frame{};
+  // In its place for streams of parameters.
+  std::function<absl::Status(int frame_index, const FrameParameters&)> on_parameters{};
 };
 
 // Thread-safe. Errors of the connection are kUnavailable (nobody answers) or kDeadlineExceeded;
@@ -89,7 +91,8 @@ class RemoteCharacterService final : public CharacterService {
                             const DecodedFramesSink& sink) override;
 
   // Frames are decoded from RemoteOptions::stream, so positions differ from a local evaluation by
-  // up to half a step of its grid.
+  // up to half a step of its grid. A stream of parameters downloads the model once and evaluates it
+  // here; one of the control mesh gives its vertices only.
   absl::Status EvaluateClip(
       const ClipQuery& query,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume) override;

@@ -20,12 +20,20 @@ struct EvaluatedFrame {
   double confidence = 0;
 };
 
+// What shows a frame to somebody who has the model: hundreds of bytes in place of a mesh.
+struct FrameParameters {
+  Pose pose;                     // normalised; rotations are float32 numbers, as they travel
+  Eigen::VectorXf coefficients;  // of the detail basis, or none: skinned only
+  double confidence = 0;
+};
+
 // One of several queries that are answered together.
 struct PoseQuery {
   const std::vector<const Pose*>* poses = nullptr;   // as for PoseEvaluator::Evaluate
   const std::vector<double>* bone_scales = nullptr;  // null: ones
   bool skinned_only = false;                         // without the learnt detail
   EvaluatedFrame* frame = nullptr;
+  FrameParameters* parameters = nullptr;  // where given: these are filled in place of the frame
   absl::Status status{};  // set by the evaluation; when it is not OK the frame is untouched
 };
 
@@ -53,6 +61,15 @@ class PoseEvaluator {
   // Queries together read the model once: cheaper per query, the same bits in every frame.
   void EvaluateBatch(std::span<PoseQuery> queries);
 
+  // Evaluate in two halves, for two machines: what the poses give, then the mesh. `Show` gives the
+  // same bits wherever the library runs; they differ from Evaluate's by the rounding of the
+  // rotations, under two micrometres on a person.
+  absl::Status Predict(const std::vector<const Pose*>& poses, bool skinned_only,
+                       FrameParameters* parameters);
+  // kInvalidArgument names what does not fit the model.
+  absl::Status Show(const FrameParameters& parameters, const std::vector<double>& bone_scales,
+                    EvaluatedFrame* frame);
+
   // Every frame of `track` in order, history taken from the track itself (interpolated
   // where its frame rate differs from the model's). `consume` may stop the clip with an error.
   absl::Status EvaluateClip(
@@ -63,6 +80,9 @@ class PoseEvaluator {
  private:
   struct Scratch;  // of one query
   absl::Status Prepare(const PoseQuery& query, Scratch* scratch) const;
+  // The motions of the bones in history[0] and the expansion of the coefficients.
+  void Place(const std::vector<double>& bone_scales, Scratch* scratch) const;
+  static void TakeParameters(const Scratch& scratch, FrameParameters* parameters);
   void FillFrames(std::span<Scratch* const> scratches, std::span<EvaluatedFrame* const> frames);
 
   std::shared_ptr<const CharacterModel> model_;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "pleat/codec/stream_header.h"
@@ -13,6 +14,7 @@ namespace pleat {
 
 struct FrameEncoderOptions {
   FrameEncoding encoding = FrameEncoding::kDracoPointCloud;
+  StreamContent content = StreamContent::kMesh;
   int position_bits = 12;  // grid: 12 bits are about .5 mm on a person
   // Where positive: the grid is as fine as this bound on every vertex needs, and position_bits is
   // not used. 1e-3 mm to 1e6 mm, at most 2^20 steps per box edge.
@@ -28,10 +30,12 @@ struct FrameEncoderOptions {
 class FrameEncoder {
  public:
   // reference: 3 x V, metres, usually the rest pose; it gives the box and the vertex order.
+  // control_vertices: of kControlMesh, whose own topology and frames these are; for the header.
   // kInvalidArgument names a wrong option, count or vertex.
   static absl::StatusOr<FrameEncoder> Create(const Topology& topology,
                                              const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
-                                             const FrameEncoderOptions& options = {});
+                                             const FrameEncoderOptions& options = {},
+                                             std::vector<int32_t> control_vertices = {});
   ~FrameEncoder();
   FrameEncoder(FrameEncoder&&) noexcept;
   FrameEncoder& operator=(FrameEncoder&&) noexcept;

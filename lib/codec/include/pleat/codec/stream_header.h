@@ -18,6 +18,14 @@ enum class FrameEncoding {
   kDracoDelta,
 };
 
+// What of the character frames hold.
+enum class StreamContent {
+  kMesh,         // every vertex
+  kControlMesh,  // a twentieth of the vertices with triangles of their own, encoded alike
+  // Pose and detail coefficients (FrameParameters), for readers that have the model: no Draco.
+  kParameters,
+};
+
 // What a reader needs beside the bytes of a frame of a kDracoDelta stream.
 struct FrameMark {
   bool keyframe = true;   // else a difference to the frame before
@@ -48,7 +56,8 @@ struct QuantizationBox {
 
 struct StreamHeader {
   FrameEncoding encoding = FrameEncoding::kDracoPointCloud;
-  int num_vertices = 0;   // V, of the character
+  StreamContent content = StreamContent::kMesh;
+  int num_vertices = 0;   // V, of the character or of its control mesh
   int num_points = 0;     // of the topology mesh: V, or more where Draco splits a vertex
   int num_triangles = 0;  // of the topology mesh
   QuantizationBox box;
@@ -59,6 +68,9 @@ struct StreamHeader {
   // which the topology mesh first shows the vertices (neighbours follow each other, which codes
   // samba in 24.5 kB in place of 34.6), then the vertices it does not show.
   std::vector<int32_t> vertex_order;
+  // Of kControlMesh, V: vertex i of the control mesh is vertex control_vertices[i] of the
+  // character, ascending. kParameters has none of this but num_vertices.
+  std::vector<int32_t> control_vertices{};
 };
 
 }  // namespace pleat

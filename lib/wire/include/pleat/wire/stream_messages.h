@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/character/character_service.h"
+#include "pleat/character/pose_evaluator.h"
 #include "pleat/codec/frame_encoder.h"
 #include "pleat/codec/stream_header.h"
 #include "pleat/v1/pose_service.pb.h"
@@ -24,6 +25,13 @@ absl::StatusOr<CharacterQuery> FromProto(const v1::Character& message);
 
 v1::FrameEncoding ToProto(FrameEncoding encoding);
 absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding);  // unspecified: point cloud
+
+v1::StreamContent ToProto(StreamContent content);
+absl::StatusOr<StreamContent> FromProto(v1::StreamContent content);  // unspecified: the mesh
+
+v1::FrameParameters ToProto(const FrameParameters& parameters);  // without confidence
+// Checks numbers only: PoseEvaluator::Show compares them with its model.
+absl::StatusOr<FrameParameters> FromProto(const v1::FrameParameters& message);
 
 v1::StreamOptions ToProto(const FrameEncoderOptions& options);  // box_margin is the server's own
 absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message);

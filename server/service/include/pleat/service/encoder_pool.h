@@ -36,7 +36,8 @@ class EncoderPool {
     FrameEncoder encoder_;
   };
 
-  // An encoder of `model`, whose content id is `model_id`, for one user at a time.
+  // An encoder of `model`, whose content id is `model_id`, for one user at a time; of kControlMesh
+  // it takes the control vertices alone. Null for kParameters, which need none.
   absl::StatusOr<std::unique_ptr<Lease>> Take(const std::string& model_id,
                                               const CharacterModel& model,
                                               const FrameEncoderOptions& options);

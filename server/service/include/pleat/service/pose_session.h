@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct PoseSessionOptions {
 };
 
 struct EncodedFrame {
-  std::string draco;
+  std::string draco{};                          // empty in a stream of parameters
+  std::optional<FrameParameters> parameters{};  // of such a stream
   double confidence = 0;
   FrameMark mark{};
   double evaluate_us = 0, encode_us = 0;  // elapsed time, microseconds
@@ -31,13 +33,15 @@ class PoseSession {
  public:
   static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseSessionOptions options);
-  // The same with an encoder of `model` and options.encoder that is there already.
+  // The same with an encoder of `model` and options.encoder that is there already (EncoderPool).
   static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
       std::unique_ptr<EncoderPool::Lease> encoder);
 
   const CharacterModel& model() const { return evaluator_.model(); }
-  const StreamHeader& header() const { return (*encoder_)->header(); }
+  const StreamHeader& header() const {
+    return encoder_ == nullptr ? parameters_header_ : (*encoder_)->header();
+  }
 
   // poses[0] is shown, poses[h] is the pose h training-frame intervals earlier.
   absl::StatusOr<EncodedFrame> Show(const std::vector<const Pose*>& poses);
@@ -50,7 +54,9 @@ class PoseSession {
   absl::StatusOr<EncodedFrame> Encode(const PoseQuery& query, double evaluate_us);
 
   // The next frame of a kDracoDelta session will be a key frame.
-  void RequestKeyframe() { (*encoder_)->RequestKeyframe(); }
+  void RequestKeyframe() {
+    if (encoder_ != nullptr) (*encoder_)->RequestKeyframe();
+  }
 
  private:
   PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
@@ -58,8 +64,11 @@ class PoseSession {
 
   PoseSessionOptions options_;
   PoseEvaluator evaluator_;
-  std::unique_ptr<EncoderPool::Lease> encoder_;
+  std::unique_ptr<EncoderPool::Lease> encoder_;  // null in a stream of parameters
+  StreamHeader parameters_header_;
   EvaluatedFrame frame_;
+  FrameParameters parameters_;
+  Eigen::Matrix3Xf control_;  // 3 x V of the control mesh, in a stream of it
 };
 
 // The frames of one clip, one after the other, as fast as the caller takes them.
