@@ -78,5 +78,15 @@ TEST(MeshSequenceTest, SubsetTakesFramesInTheGivenOrder) {
   EXPECT_EQ(subset.name(), "s");
 }
 
+TEST(MeshSequenceTest, JoinedClipsShareTheirFrames) {
+  const MeshSequence first = *MeshSequence::Create(Triangle(), Frames(2), {.name = "first"});
+  const MeshSequence second = *MeshSequence::Create(Triangle(), Frames(3), {.name = "second"});
+  const MeshSequence joined = MeshSequence::Join({first, second});
+  ASSERT_EQ(joined.num_frames(), 5);
+  EXPECT_EQ(joined.name(), "first");
+  EXPECT_EQ(&joined.frame(1), &first.frame(1));
+  EXPECT_EQ(&joined.frame(4), &second.frame(2));
+}
+
 }  // namespace
 }  // namespace pleat

@@ -160,7 +160,6 @@ absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips)
   if (clips.size() == 1) {
     return TrainingFrames{clips[0], clip_starts, clips[0].num_frames(), frame_numbers};
   }
-  std::vector<Eigen::Matrix3Xf> frames;
   for (const MeshSequence& clip : clips) {
     if (!(clip.topology() == clips[0].topology())) {
       return ConnectivityDiffers(clip.name(), clips[0].topology(), clip.topology());
@@ -171,15 +170,8 @@ absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips)
                        " frames per second, the first ", clips[0].frame_rate().fps(),
                        "; give all clips one rate"));
     }
-    for (int t = 0; t < clip.num_frames(); ++t) frames.push_back(clip.frame(t));
   }
-  PLEAT_ASSIGN_OR_RETURN(MeshSequence joined,
-                         MeshSequence::Create(clips[0].topology(), std::move(frames),
-                                              {.name = clips[0].name(),
-                                               .frame_rate = clips[0].frame_rate(),
-                                               .appearance = clips[0].appearance(),
-                                               .frame_names = {}}));
-  return TrainingFrames{std::move(joined), std::move(clip_starts), clips[0].num_frames(),
+  return TrainingFrames{MeshSequence::Join(clips), std::move(clip_starts), clips[0].num_frames(),
                         std::move(frame_numbers)};
 }
 

@@ -53,8 +53,11 @@ absl::StatusOr<MeshSequence> MeshSequence::Create(Topology topology,
       return status;
     }
   }
-  return MeshSequence(std::make_shared<const Data>(
-      Data{std::move(topology), std::move(frames), std::move(options)}));
+  Data data{std::move(topology), {}, std::move(options)};
+  for (Eigen::Matrix3Xf& frame : frames) {
+    data.frames.push_back(std::make_shared<const Eigen::Matrix3Xf>(std::move(frame)));
+  }
+  return MeshSequence(std::make_shared<const Data>(std::move(data)));
 }
 
 MeshSequence MeshSequence::Subset(const std::vector<int>& frame_indices) const {
@@ -63,6 +66,17 @@ MeshSequence MeshSequence::Subset(const std::vector<int>& frame_indices) const {
   subset.options.frame_names.clear();
   for (int t : frame_indices) subset.frames.push_back(data_->frames[t]);
   return MeshSequence(std::make_shared<const Data>(std::move(subset)));
+}
+
+MeshSequence MeshSequence::Join(const std::vector<MeshSequence>& clips) {
+  assert(!clips.empty());
+  Data joined{clips[0].topology(), {}, clips[0].data_->options};
+  joined.options.frame_names.clear();
+  for (const MeshSequence& clip : clips) {
+    assert(clip.topology() == clips[0].topology());
+    joined.frames.insert(joined.frames.end(), clip.data_->frames.begin(), clip.data_->frames.end());
+  }
+  return MeshSequence(std::make_shared<const Data>(std::move(joined)));
 }
 
 }  // namespace pleat

@@ -45,17 +45,20 @@ class MeshSequence {
   const MeshAppearance& appearance() const { return data_->options.appearance; }
   const std::string& name() const { return data_->options.name; }
   FrameRate frame_rate() const { return data_->options.frame_rate; }
-  const Eigen::Matrix3Xf& frame(int t) const { return data_->frames[t]; }  // 3 x V
-  Eigen::Matrix3Xd FrameAsDouble(int t) const { return data_->frames[t].cast<double>(); }
+  const Eigen::Matrix3Xf& frame(int t) const { return *data_->frames[t]; }  // 3 x V
+  Eigen::Matrix3Xd FrameAsDouble(int t) const { return data_->frames[t]->cast<double>(); }
 
-  // The frames `frame_indices` of this sequence, in that order. Indices must be in range and the
-  // list not empty.
+  // The frames `frame_indices` of this sequence, in that order, shared with it. Indices must be in
+  // range and the list not empty.
   MeshSequence Subset(const std::vector<int>& frame_indices) const;
+  // The frames of all `clips` one after the other, shared with them; name, rate and appearance of
+  // the first. The list must not be empty and all clips must have the first one's topology.
+  static MeshSequence Join(const std::vector<MeshSequence>& clips);
 
  private:
   struct Data {
     Topology topology;
-    std::vector<Eigen::Matrix3Xf> frames;
+    std::vector<std::shared_ptr<const Eigen::Matrix3Xf>> frames;
     MeshSequenceOptions options;
   };
   explicit MeshSequence(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
