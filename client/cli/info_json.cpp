@@ -41,6 +41,7 @@ ordered_json JobJson(const JobInfo& info) {
                      {"message", std::string(info.error.message())}};
   }
   if (!info.result_id.empty()) json["result_id"] = info.result_id;
+  if (!info.rig_id.empty()) json["rig_id"] = info.rig_id;
   return json;
 }
 

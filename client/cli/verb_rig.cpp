@@ -114,8 +114,10 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
     PLEAT_RETURN_IF_ERROR(WriteFile(options.report, report.dump(2) + "\n"));
   }
   if (!options.output.empty() && rows[0].rig) {
-    const UserRig rig{rows[0].rig->skeleton, rows[0].rig->weights,
-                      options.measurement.first_frame + rows[0].summary.rest_frame, false};
+    const UserRig rig{rows[0].rig->skeleton,
+                      rows[0].rig->weights,
+                      options.measurement.first_frame + rows[0].summary.rest_frame,
+                      {}};
     PLEAT_RETURN_IF_ERROR(WriteFile(options.output, EncodeRig(rig) + "\n"));
   }
   if (session.json) {

@@ -36,6 +36,7 @@ namespace {
 struct TrainVerbOptions {
   std::vector<std::string> inputs;
   std::string output, report, fps, rig;
+  std::vector<std::string> locked;  // joints of `rig`
   TrainFlags flags;
   TrainResources resources;
   bool detach = false;
@@ -64,15 +65,28 @@ absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips, c
   return trained;
 }
 
+// The rig of --rig for the first clip, with the joints of --lock; none without --rig.
+absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& options,
+                                                   const MeshSequence& clip) {
+  if (options.rig.empty()) return std::optional<UserRig>();
+  PLEAT_ASSIGN_OR_RETURN(RigFile file, ReadRigFile(options.rig));
+  PLEAT_RETURN_IF_ERROR(LockJoints(options.locked, &file));
+  PLEAT_ASSIGN_OR_RETURN(UserRig rig, ResolveRig(file, clip));
+  return std::optional<UserRig>(std::move(rig));
+}
+
+// `rig` may be null: found automatically.
 absl::StatusOr<JobInfo> CreateJob(CharacterService& service, const std::vector<MeshSequence>& clips,
-                                  const TrainOptions& options, const Session& session) {
-  std::vector<std::string> ids;
+                                  const UserRig* rig, const TrainOptions& options,
+                                  const Session& session) {
+  // Without a name of its own the model is called like its first clip, as in TrainHere.
+  TrainingRequest request{.options = options};
+  if (rig) request.rig = EncodeRig(*rig);
   for (const MeshSequence& clip : clips) {
     PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, UploadWithProgress(service, clip, session));
-    ids.push_back(info.id);
+    request.sequence_ids.push_back(info.id);
   }
-  // Without a name of its own the model is called like its first clip, as in TrainHere.
-  return service.CreateTrainingJob(ids, options, "");
+  return service.CreateTrainingJob(request);
 }
 
 absl::StatusOr<TrainedModel> TrainOnService(CharacterService& service, const JobInfo& job,
@@ -160,8 +174,8 @@ absl::Status PrintDetached(const JobInfo& job, const Session& session) {
 absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   const bool here = session.local && session.data_dir.empty();
   if (options.output.empty() && here) return UsageError("--local without --data-dir needs -o FILE");
-  if (!options.rig.empty() && !here) {
-    return UsageError("--rig needs --local without --data-dir: servers do not take a rig yet");
+  if (!options.locked.empty() && options.rig.empty()) {
+    return UsageError("--lock needs --rig: `pleat rig INPUT -o rig.json` writes the automatic one");
   }
   if (options.detach && session.local) return UsageError("--detach needs a server");
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions train, ResolveTrainFlags(options.flags));
@@ -173,19 +187,15 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   }
   const double read_seconds = MonotonicSeconds() - start_seconds;
 
-  std::optional<UserRig> rig;
-  if (!options.rig.empty()) {
-    PLEAT_ASSIGN_OR_RETURN(const RigFile file, ReadRigFile(options.rig));
-    PLEAT_ASSIGN_OR_RETURN(rig, ResolveRig(file, clips[0]));
-  }
+  PLEAT_ASSIGN_OR_RETURN(const std::optional<UserRig> rig, ReadUserRig(options, clips[0]));
+  const UserRig* user_rig = rig ? &*rig : nullptr;
 
   TrainedModel trained;
   if (here) {
-    PLEAT_ASSIGN_OR_RETURN(
-        trained, TrainHere(clips, rig ? &*rig : nullptr, train, options.resources, session));
+    PLEAT_ASSIGN_OR_RETURN(trained, TrainHere(clips, user_rig, train, options.resources, session));
   } else {
     PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(*service, clips, train, session));
+    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(*service, clips, user_rig, train, session));
     if (options.detach) return PrintDetached(job, session);
     PLEAT_ASSIGN_OR_RETURN(trained, TrainOnService(*service, job, session));
   }
@@ -226,6 +236,9 @@ void AddTrainVerb(CLI::App& app, Session& session) {
   verb->add_option(
       "--rig", options->rig,
       "your own rig instead of the automatic one: .json or .glb (docs/formats/rig.md)");
+  verb->add_option("--lock", options->locked,
+                   "joints of --rig that refinement leaves where they are: NAME,NAME,...")
+      ->delimiter(',');
   AddTrainFlags(verb, &options->flags);
   AddServerFlags(verb, session);
 }

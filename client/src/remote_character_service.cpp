@@ -70,16 +70,15 @@ absl::Status RemoteCharacterService::DeleteSequence(const std::string& id) {
                       &response);
 }
 
-absl::StatusOr<JobInfo> RemoteCharacterService::CreateTrainingJob(
-    const std::vector<std::string>& sequence_ids, const TrainOptions& options,
-    const std::string& model_name) {
-  v1::CreateTrainingJobRequest request;
+absl::StatusOr<JobInfo> RemoteCharacterService::CreateTrainingJob(const TrainingRequest& request) {
+  v1::CreateTrainingJobRequest message;
   v1::CreateTrainingJobResponse response;
-  for (const std::string& id : sequence_ids) request.add_sequence_ids(id);
-  *request.mutable_options() = ToProto(options);
-  request.set_model_name(model_name);
+  for (const std::string& id : request.sequence_ids) message.add_sequence_ids(id);
+  *message.mutable_options() = ToProto(request.options);
+  message.set_model_name(request.model_name);
+  message.set_rig(request.rig);
   PLEAT_RETURN_IF_ERROR(state_->Call(state_->jobs.get(), &v1::JobService::Stub::CreateTrainingJob,
-                                     request, &response));
+                                     message, &response));
   return FromProto(response.job());
 }
 

@@ -31,7 +31,8 @@ struct Setup {
     TrainOptions options;
     options.learner = "gp";
     const std::string sequence_id = client->UploadSequence(performer.sequence, {})->id;
-    const std::string job_id = client->CreateTrainingJob({sequence_id}, options, "")->id;
+    const std::string job_id =
+        client->CreateTrainingJob({.sequence_ids = {sequence_id}, .options = options})->id;
     const absl::Status watched = client->WatchJob(job_id, [&](const JobInfo& job) {
       query.model_id = job.result_id;
       return true;

@@ -31,8 +31,7 @@ class ScriptedService : public CharacterService {
     return absl::UnimplementedError("");
   }
   absl::Status DeleteSequence(const std::string&) override { return absl::UnimplementedError(""); }
-  absl::StatusOr<JobInfo> CreateTrainingJob(const std::vector<std::string>&, const TrainOptions&,
-                                            const std::string&) override {
+  absl::StatusOr<JobInfo> CreateTrainingJob(const TrainingRequest&) override {
     return absl::UnimplementedError("");
   }
   absl::StatusOr<JobInfo> CreateCompressionJob(const std::string&,

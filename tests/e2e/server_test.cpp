@@ -94,6 +94,32 @@ TEST(Server, SeveralClipsTrainOneCharacterHereAndThere) {
   EXPECT_EQ(server.Stop().exit_code, 0) << server.log();
 }
 
+TEST(Server, AnOwnRigWithALockedJointGivesTheSameBytesHereAndThere) {
+  PleatProgram pleat;
+  const std::string input = pleat.GeneratePerformer(20, 1000);
+  const std::string rig = pleat.File("rig.json");
+  ProcessResult result = pleat.Run({"rig", input, "--no-fit", "-o", rig});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  const std::string address = server.WaitForAddress();
+  ASSERT_NE(address, "") << server.log();
+  const std::string remote = pleat.File("remote.pleat"), local = pleat.File("local.pleat");
+  result = pleat.Run({"train", input, "--server", address, "-o", remote, "--learner", "gp", "--rig",
+                      rig, "--lock", "leftLowerLeg,rightLowerLeg"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  result = pleat.Run({"train", input, "--local", "-o", local, "--learner", "gp", "--rig", rig,
+                      "--lock", "leftLowerLeg,rightLowerLeg"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(Bytes(local).empty());
+  EXPECT_TRUE(Bytes(remote) == Bytes(local));
+  result = pleat.Run({"train", input, "--local", "-o", local, "--rig", rig, "--lock", "tail"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("'tail'"));
+  result = pleat.Run({"train", input, "--local", "-o", local, "--lock", "head"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--rig"));
+}
+
 TEST(Server, KeepsWhatItHasOverARestart) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(20, 800);

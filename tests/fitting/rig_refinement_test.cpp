@@ -177,6 +177,33 @@ TEST_F(RigRefinementTest, ThePriorHoldsJointsThatTheMotionDoesNotShow) {
   EXPECT_LE(summary.rms_m, summary.round_rms_m[0]);
 }
 
+TEST_F(RigRefinementTest, LockedJointsStayAndTheOthersComeBackAllTheSame) {
+  const MeshSequence sequence = MakeSkinnedSequence(figure_, track_);
+  Rig partly = displaced_;  // the truth where it will be locked
+  Eigen::Matrix3Xd joints = displaced_.skeleton.RestPositions();
+  const std::vector<int> locked = {0, 2, 5, 13};
+  for (const int j : locked) joints.col(j) = figure_.rig.skeleton.rest_position(j);
+  partly.skeleton = partly.skeleton.WithRestPositions(joints);
+  RigRefinementOptions options{
+      .weights = false, .rest = false, .joint_prior = 1e-6, .num_rounds = 60};
+  options.locked_joints = locked;
+  RigRefinementSummary summary;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Rig refined, Refine(sequence, partly, options, &summary));
+  for (const int j : locked) {
+    EXPECT_EQ(refined.skeleton.rest_position(j), partly.skeleton.rest_position(j)) << j;
+    EXPECT_EQ(summary.joint_moved_m[j], 0);
+  }
+  EXPECT_LT(JointError(refined), 0.5 * JointError(partly));
+  // Also in a full refinement, and where the lock is wrong.
+  options = {.locked_joints = {4, 8}};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Rig full, Refine(sequence, displaced_, options));
+  for (int j = 0; j < 18; ++j) {
+    if (displaced_.skeleton.children(j).empty()) continue;
+    const bool stays = full.skeleton.rest_position(j) == displaced_.skeleton.rest_position(j);
+    EXPECT_EQ(stays, j == 4 || j == 8) << j;
+  }
+}
+
 TEST_F(RigRefinementTest, SameForEveryThreadCount) {
   const MeshSequence sequence =
       MakeSkinnedSequence(figure_, track_, MakeWaveDetails(figure_, 60, 0.01));
@@ -206,6 +233,8 @@ TEST_F(RigRefinementTest, WrongInputIsRefusedWithWords) {
   EXPECT_THAT(
       RefineRig(sequence, displaced_, track_, {}, nullptr, Progress(nullptr, [] { return true; })),
       HasStatus(absl::StatusCode::kCancelled, HasSubstr("")));
+  EXPECT_THAT(Refine(sequence, displaced_, {.locked_joints = {18}}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("locked joint 18")));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 SkinnedFigure SmallFigure() { return MakeSkinnedFigure({.num_rings = 2, .num_sides = 3}); }
 
 UserRig RigOf(const SkinnedFigure& figure) {
-  return {figure.rig.skeleton, figure.rig.weights, 3, true};
+  return {figure.rig.skeleton, figure.rig.weights, 0, {1, 4, 17}};
 }
 
 MeshSequence StillClip(const SkinnedFigure& figure) {
@@ -30,14 +30,50 @@ MeshSequence StillClip(const SkinnedFigure& figure) {
 }
 
 TEST(RigFile, RoundTripIsExact) {
-  const UserRig rig = RigOf(SmallFigure());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig back, DecodeRig(EncodeRig(rig)));
+  const SkinnedFigure figure = SmallFigure();
+  const UserRig rig = RigOf(figure);
+  const std::string text = EncodeRig(rig);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigJson(text));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig back, ResolveRig(file, StillClip(figure)));
   EXPECT_EQ(back, rig);
-  EXPECT_EQ(EncodeRig(back), EncodeRig(rig));
+  EXPECT_EQ(EncodeRig(back), text);
+  // Shortest decimals: 10,000 vertices stay far below what a request may hold.
+  EXPECT_LT(text.size(), 3000u + 70u * figure.topology.num_vertices());
   UserRig skeleton_only = rig;
   skeleton_only.weights.reset();
-  PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig bare, DecodeRig(EncodeRig(skeleton_only)));
-  EXPECT_EQ(bare, skeleton_only);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile bare, DecodeRigJson(EncodeRig(skeleton_only)));
+  EXPECT_EQ(*ResolveRig(bare, StillClip(figure)), skeleton_only);
+}
+
+TEST(RigFile, LocksJointsByFlagAndByName) {
+  const SkinnedFigure figure = SmallFigure();
+  json root = json::parse(EncodeRig(RigOf(figure)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(RigFile file, DecodeRigJson(root.dump()));
+  EXPECT_EQ(file.locked_joints, (std::vector<int>{1, 4, 17}));
+  EXPECT_THAT(LockJoints({"head", "hips", "head"}, &file), IsOk());
+  EXPECT_EQ(file.locked_joints, (std::vector<int>{0, 1, 3, 4, 17}));
+  EXPECT_THAT(LockJoints({"tail"}, &file),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("'tail'")));
+  root["locked"] = true;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile all, DecodeRigJson(root.dump()));
+  EXPECT_EQ(ResolveRig(all, StillClip(figure))->locked_joints.size(), 18u);
+}
+
+// Weights of bones that are not as EncodeRig writes them: unsorted, doubled, of any sum.
+TEST(RigFile, NormalisesWeightsOfBones) {
+  const SkinnedFigure figure = SmallFigure();
+  json root = json::parse(EncodeRig(RigOf(figure)));
+  root["weights"]["vertices"][0] = {2, 1, 3, 2, 2, 1, 4, 4, 5, .5, 6, .25};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigJson(root.dump()));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, ResolveRig(file, StillClip(figure)));
+  ASSERT_TRUE(rig.weights.has_value());
+  const VertexInfluences& vertex = rig.weights->vertex(0);
+  EXPECT_EQ(vertex.bones, (std::array<uint16_t, 4>{4, 2, 3, 5}));
+  EXPECT_FLOAT_EQ(vertex.weights[0], 4 / 8.5f);
+  EXPECT_FLOAT_EQ(vertex.weights[3], .5f / 8.5f);
+  root["weights"]["vertices"][0] = {0, 1};
+  EXPECT_THAT(ResolveRig(*DecodeRigJson(root.dump()), StillClip(figure)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex 0")));
 }
 
 constexpr char kSmall[] = R"({"schema": "pleat.rig_file/1", "joints": [
@@ -88,6 +124,9 @@ TEST(RigFile, SaysWhatIsWrong) {
   expect_fault([](json& r) { r["weights"]["vertices"][1] = {1, -1}; }, "vertex 1");
   expect_fault([](json& r) { r["rest_frame"] = -1; }, "rest_frame");
   expect_fault([](json& r) { r["locked"] = 1; }, "locked");
+  expect_fault([](json& r) { r["joints"][2]["locked"] = "yes"; }, "joint 2");
+  EXPECT_THAT(DecodeRigJson(std::string(1'000'000, '[')),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("nested")));
   EXPECT_THAT(DecodeRigJson(kSmall, {.max_bytes = 10}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit")));
   EXPECT_THAT(DecodeRigJson(kSmall, {.max_vertices = 1}),
@@ -102,8 +141,7 @@ TEST(RigFile, DamagedTextNeverCrashes) {
 
 TEST(RigFile, ResolvesForTheClip) {
   const SkinnedFigure figure = SmallFigure();
-  UserRig rig = RigOf(figure);
-  rig.rest_frame = 0;
+  const UserRig rig = RigOf(figure);
   PLEAT_ASSERT_OK_AND_ASSIGN(RigFile file, DecodeRigJson(EncodeRig(rig)));
   PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig resolved, ResolveRig(file, StillClip(figure)));
   EXPECT_EQ(resolved.skeleton.num_joints(), rig.skeleton.num_joints());

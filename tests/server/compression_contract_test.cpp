@@ -104,7 +104,8 @@ TEST_P(CompressionContractTest, AJobGivesTheBytesAndTheReportOfALocalRun) {
 TEST_P(CompressionContractTest, JobsOfBothKindsShareOneQueue) {
   const std::string id = service_.UploadSequence(MakeSwayingTube(20), {})->id;
   running_.trainer().step_ms = 5;
-  const std::string training = service_.CreateTrainingJob({id}, {}, "m")->id;
+  const std::string training =
+      service_.CreateTrainingJob({.sequence_ids = {id}, .model_name = "m"})->id;
   const std::string compression = service_.CreateCompressionJob(id, {})->id;
   EXPECT_EQ(WatchToEnd(compression).state, JobState::kSucceeded);
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, service_.ListJobs());

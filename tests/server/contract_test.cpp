@@ -78,8 +78,10 @@ TEST_P(ContractTest, AJobRunsToItsModel) {
   TrainOptions options;
   options.seed = 7;
   options.history = 3;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo created,
-                             service_.CreateTrainingJob({id}, options, "swaying"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const JobInfo created,
+      service_.CreateTrainingJob(
+          {.sequence_ids = {id}, .options = options, .model_name = "swaying"}));
   EXPECT_EQ(created.state, JobState::kQueued);
   EXPECT_EQ(created.options, JobOptions(options));
   const JobInfo job = WatchToEnd(created.id);
@@ -112,7 +114,7 @@ TEST_P(ContractTest, AJobRunsToItsModel) {
 TEST_P(ContractTest, AWatchShowsStagesAndEndsWhenTheCallerHasSeenEnough) {
   const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 10;
-  const std::string job = service_.CreateTrainingJob({id}, {}, "")->id;
+  const std::string job = service_.CreateTrainingJob({.sequence_ids = {id}})->id;
   std::set<std::string> stages;
   int num_calls = 0;
   EXPECT_THAT(service_.WatchJob(job,
@@ -130,8 +132,8 @@ TEST_P(ContractTest, AWatchShowsStagesAndEndsWhenTheCallerHasSeenEnough) {
 TEST_P(ContractTest, CancellationActsWithinASecond) {
   const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 100;
-  const std::string running = service_.CreateTrainingJob({id}, {}, "")->id;
-  const std::string waiting = service_.CreateTrainingJob({id}, {}, "")->id;
+  const std::string running = service_.CreateTrainingJob({.sequence_ids = {id}})->id;
+  const std::string waiting = service_.CreateTrainingJob({.sequence_ids = {id}})->id;
   EXPECT_THAT(service_.CancelJob(waiting), IsOk());
   EXPECT_EQ(service_.GetJob(waiting)->state, JobState::kCancelled);
   while (service_.GetJob(running)->state == JobState::kQueued) {
@@ -149,9 +151,32 @@ TEST_P(ContractTest, AJobFailsWithTheReasonOfItsTraining) {
   const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
   TrainOptions fails;
   fails.iterations = 13;
-  const JobInfo job = WatchToEnd(service_.CreateTrainingJob({id}, fails, "")->id);
+  const JobInfo job =
+      WatchToEnd(service_.CreateTrainingJob({.sequence_ids = {id}, .options = fails})->id);
   EXPECT_EQ(job.state, JobState::kFailed);
   EXPECT_THAT(job.error, HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("rig")));
+}
+
+TEST_P(ContractTest, ABadRigIsRefusedBeforeAJobExists) {
+  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const auto expect_refused = [&](const std::string& rig, absl::StatusCode code, const char* word) {
+    EXPECT_THAT(service_.CreateTrainingJob({.sequence_ids = {id}, .rig = rig}),
+                HasStatus(code, HasSubstr(word)));
+  };
+  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+  expect_refused("{", kInvalid, "not JSON");
+  expect_refused(std::string("\0\xff\x80", 3), kInvalid, "not JSON");
+  expect_refused("[]", kInvalid, "not a JSON object");
+  expect_refused(std::string(1000, '['), kInvalid, "nested");
+  const std::string head =
+      R"({"schema": "pleat.rig_file/1", "joints": [{"name": "a", "position_m": [0, 0, 0]},
+          {"name": "b", "parent": "a", "position_m": [0, 1, 0]}])";
+  expect_refused(head + R"(, "rest_frame": 5})", kInvalid, "rest_frame 5");
+  expect_refused(head + R"(, "weights": {"vertices": [[0, 1]]}})", kInvalid, "96");
+  expect_refused(head + R"(, "weights": {"vertices": [[7, 1]]}})", kInvalid, "vertex 0");
+  expect_refused(head + std::string(12 << 20, ' ') + "}", absl::StatusCode::kResourceExhausted,
+                 "limit");
+  EXPECT_TRUE(service_.ListJobs()->empty());
 }
 
 TEST_P(ContractTest, BadRequestsAreRefusedAlike) {
@@ -160,14 +185,14 @@ TEST_P(ContractTest, BadRequestsAreRefusedAlike) {
   EXPECT_THAT(service_.CancelJob("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(service_.WatchJob("job-none", [](const JobInfo&) { return true; }),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.CreateTrainingJob({unknown_}, {}, ""),
+  EXPECT_THAT(service_.CreateTrainingJob({.sequence_ids = {unknown_}}),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.CreateTrainingJob({}, {}, ""),
+  EXPECT_THAT(service_.CreateTrainingJob({}),
               HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
   const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
   TrainOptions bad;
   bad.history = 99;
-  EXPECT_THAT(service_.CreateTrainingJob({id}, bad, ""),
+  EXPECT_THAT(service_.CreateTrainingJob({.sequence_ids = {id}, .options = bad}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("history")));
   ClipQuery query{.model_id = unknown_,
                   .track = MakeMotion(MakeFakeModel(MakeSwayingTube(2), {})->skeleton(), 2),

@@ -102,7 +102,7 @@ TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
     sequence_id = client->UploadSequence(MakeSwayingTube(40), {})->id;
     // A tube is no human: the job fails with a reason, whichever side of the restart it runs on.
-    job_id = client->CreateTrainingJob({sequence_id}, {}, "tube")->id;
+    job_id = client->CreateTrainingJob({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
     daemon.Signal(SIGTERM);
     EXPECT_EQ(daemon.Wait(), 0) << daemon.output();
     EXPECT_THAT(daemon.output(), HasSubstr("pleatd has ended"));
@@ -130,7 +130,7 @@ TEST(PleatdTest, AKillLosesNothing) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
                                RemoteCharacterService::Connect(daemon.WaitForAddress()));
     sequence_id = client->UploadSequence(MakeSwayingTube(40), {})->id;
-    job_id = client->CreateTrainingJob({sequence_id}, {}, "tube")->id;
+    job_id = client->CreateTrainingJob({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
     daemon.Signal(SIGKILL);
     EXPECT_EQ(daemon.Wait(), -SIGKILL);
   }

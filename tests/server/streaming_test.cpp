@@ -80,7 +80,8 @@ TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
 TEST_F(StreamingTest, AWatcherThatDoesNotReadGetsTheNewestStateLater) {
   const std::string sequence_id = running_.service().UploadSequence(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 5;
-  const std::string job_id = running_.service().CreateTrainingJob({sequence_id}, {}, "")->id;
+  const std::string job_id =
+      running_.service().CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
   const auto stub = v1::JobService::NewStub(channel());
   grpc::ClientContext context;
   v1::WatchJobRequest request;
@@ -159,7 +160,8 @@ TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   const auto model = running_.local().AcquireModel(id).value();
   const std::string sequence_id = running_.service().ListSequences()->at(0).id;
   running_.trainer().step_ms = 200;
-  const std::string job_id = running_.service().CreateTrainingJob({sequence_id}, {}, "")->id;
+  const std::string job_id =
+      running_.service().CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
   std::atomic<bool> watching = false;
   const auto stub = v1::JobService::NewStub(channel());
   grpc::Status watched;

@@ -2,9 +2,11 @@
 // that decode to the evaluator's positions.
 #include <gtest/gtest.h>
 
-#include "pleat/character/train_character.h"
+#include "pleat/base/sha256.h"
+#include "pleat/character/train_with_rig.h"
 #include "pleat/client/remote_character_service.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/formats/rig_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/handlers/grpc_server.h"
 #include "pleat/performer/performer.h"
@@ -34,8 +36,9 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
                                                     "127.0.0.1:" + std::to_string(server->port())));
   PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo uploaded,
                              client->UploadSequence(performer.sequence, {}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo created,
-                             client->CreateTrainingJob({uploaded.id}, options, ""));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const JobInfo created,
+      client->CreateTrainingJob({.sequence_ids = {uploaded.id}, .options = options}));
   JobInfo job;
   ASSERT_THAT(client->WatchJob(created.id,
                                [&](const JobInfo& info) {
@@ -80,6 +83,48 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
                 IsOk());
     EXPECT_LE(worst_steps, .505);
     EXPECT_GE(worst_steps, .4);  // the grid is really what the header says
+  }
+}
+
+// A rig of the user's own: with weights, without them, and of the weights of joints, as another
+// package writes them.
+TEST(TrainingOverNetworkTest, AnOwnRigGivesTheBytesOfALocalRun) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Performer performer,
+      GeneratePerformer({.num_frames = 8, .num_vertices = 600, .frame_rate = {30, 1}}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence,
+                             DecodeSequence(EncodeSequence(performer.sequence)));
+  TrainOptions options;
+  options.learner = "gp";
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto service,
+                             LocalCharacterService::Open({.data_dir = folder.path()}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto server, GrpcServer::Start(service.get(), {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(
+                                                    "127.0.0.1:" + std::to_string(server->port())));
+  const std::string sequence_id = client->UploadSequence(performer.sequence, {})->id;
+  const UserRig full{performer.truth.rig.skeleton, performer.truth.rig.weights, 0, {5, 9}};
+  UserRig skeleton_only = full;
+  skeleton_only.weights.reset();
+  std::string of_joints = EncodeRig(full);
+  of_joints.replace(of_joints.find("\"bones\""), 7, "\"joints\"");
+  for (const std::string& text : {EncodeRig(full), EncodeRig(skeleton_only), of_joints}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigJson(text));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, ResolveRig(file, sequence));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
+                               TrainCharacterWithRig({sequence}, rig, options));
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        JobInfo job, client->CreateTrainingJob(
+                         {.sequence_ids = {sequence_id}, .options = options, .rig = text}));
+    EXPECT_EQ(job.rig_id, ToHex(ComputeSha256(text)));
+    ASSERT_THAT(client->WatchJob(job.id,
+                                 [&](const JobInfo& info) {
+                                   job = info;
+                                   return true;
+                                 }),
+                IsOk());
+    ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
+    EXPECT_TRUE(*client->DownloadModel(job.result_id, {}) == EncodeModel(*model));
   }
 }
 

@@ -25,7 +25,7 @@ absl::StatusOr<RiggedFrames> TakeUserRig(const TrainingFrames& frames, const Use
   RiggedFrames rigged{.frames = frames,
                       .rig = {rig.skeleton, {}, frames.sequence.FrameAsDouble(rig.rest_frame)},
                       .rig_summary = {},
-                      .joints_are_locked = rig.is_locked};
+                      .locked_joints = rig.locked_joints};
   rigged.rig_summary.rest_frame = rig.rest_frame;
   if (rig.weights) {
     rigged.rig.weights = *rig.weights;

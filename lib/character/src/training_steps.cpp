@@ -197,7 +197,7 @@ absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const Train
   return RiggedFrames{.frames = frames,
                       .rig = std::move(rig),
                       .rig_summary = std::move(summary),
-                      .joints_are_locked = false};
+                      .locked_joints = {}};
 }
 
 absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
@@ -226,7 +226,7 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
                                    resources, nullptr, progress.Stage("fit", 0, .2)));
   RigRefinementOptions refinement =
       options.refine == "joints" ? RigRefinementOptions::JointsOnly() : RigRefinementOptions();
-  if (rigged->joints_are_locked) refinement.joints = false;
+  refinement.locked_joints = rigged->locked_joints;
   refinement.bend_stiffness = options.bend_stiffness;
   refinement.num_threads = resources.num_threads;
   PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,

@@ -38,7 +38,7 @@ struct RiggedFrames {
   TrainingFrames frames;
   Rig rig;
   AutoRigSummary rig_summary;
-  bool joints_are_locked = false;  // against refinement
+  std::vector<int> locked_joints;  // against refinement
 };
 // The user's rig; weights by heat where it has none.
 absl::StatusOr<RiggedFrames> TakeUserRig(const TrainingFrames& frames, const UserRig& rig,

@@ -82,8 +82,8 @@ JointSystem ComputeJointSystem(const RigMoments& moments, const SubtreeMoments& 
 }
 
 Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMoments& moments,
-                             const Skeleton& skeleton, const Eigen::Matrix3Xd& first,
-                             double prior) {
+                             const Skeleton& skeleton, const Eigen::Matrix3Xd& first, double prior,
+                             const std::vector<int>& locked) {
   JointSystem sum = frames[0];
   for (size_t t = 1; t < frames.size(); ++t) {
     sum.matrix += frames[t].matrix;
@@ -96,8 +96,18 @@ Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMo
   const Eigen::Matrix3Xd centred = first.colwise() - moments.centre;
   sum.matrix.diagonal().array() += stiffness;
   sum.right += stiffness * centred.reshaped();
+  for (const int j : locked) {  // known: to the right-hand side
+    sum.right -= sum.matrix.middleCols<3>(3 * j) * centred.col(j);
+    sum.matrix.middleCols<3>(3 * j).setZero();
+    sum.matrix.middleRows<3>(3 * j).setZero();
+    sum.matrix.block<3, 3>(3 * j, 3 * j).setIdentity();
+  }
+  for (const int j : locked) sum.right.segment<3>(3 * j) = centred.col(j);
   const Eigen::VectorXd solved = sum.matrix.llt().solve(sum.right);
-  return Eigen::Matrix3Xd(solved.reshaped(3, skeleton.num_joints())).colwise() + moments.centre;
+  Eigen::Matrix3Xd joints =
+      Eigen::Matrix3Xd(solved.reshaped(3, skeleton.num_joints())).colwise() + moments.centre;
+  for (const int j : locked) joints.col(j) = first.col(j);  // without rounding
+  return joints;
 }
 
 }  // namespace pleat

@@ -35,8 +35,9 @@ JointSystem ComputeJointSystem(const RigMoments& moments, const SubtreeMoments& 
 
 // The joints (3 x J, metres) that minimise the sum of `frames` plus a pull to `first` whose
 // stiffness is `prior` times the mean curvature of the error per joint. Leaves have no influence
-// on the mesh and stay at `first`.
+// on the mesh and stay at `first`; so do the joints `locked`, exactly.
 Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMoments& moments,
-                             const Skeleton& skeleton, const Eigen::Matrix3Xd& first, double prior);
+                             const Skeleton& skeleton, const Eigen::Matrix3Xd& first, double prior,
+                             const std::vector<int>& locked);
 
 }  // namespace pleat

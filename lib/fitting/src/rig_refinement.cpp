@@ -103,7 +103,7 @@ class RigRefiner {
     }));
     rig_.skeleton = rig_.skeleton.WithRestPositions(
         SolveJoints(systems, rig_moments_, rig_.skeleton, first_.skeleton.RestPositions(),
-                    options_.joint_prior));
+                    options_.joint_prior, options_.locked_joints));
     return absl::OkStatus();
   }
 
@@ -173,6 +173,12 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
       return absl::InvalidArgumentError(
           absl::StrCat("rig refinement: a pose has ", pose.rotations.size(),
                        " rotations, the skeleton ", rig.skeleton.num_joints(), " joints"));
+    }
+  }
+  for (const int j : options.locked_joints) {
+    if (j < 0 || j >= rig.skeleton.num_joints()) {
+      return absl::InvalidArgumentError(absl::StrCat("rig refinement: locked joint ", j, " of ",
+                                                     rig.skeleton.num_joints(), " joints"));
     }
   }
   const double smallest_pull = std::min({options.weight_smoothness, options.weight_prior,

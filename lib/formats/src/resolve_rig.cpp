@@ -1,6 +1,10 @@
 // From a rig file to the rig of a clip's own vertices.
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nanoflann.hpp>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -68,6 +72,58 @@ absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigF
   return influences;
 }
 
+// Weights that are Pleat's own already, untouched: falling, of different bones, together 1. Empty
+// when they are not.
+std::optional<SkinWeights> OwnWeights(const RigFile& file) {
+  std::vector<VertexInfluences> vertices(file.influences.size());
+  for (size_t v = 0; v < vertices.size(); ++v) {
+    const std::vector<JointInfluence>& influences = file.influences[v];
+    if (influences.size() > kMaxInfluences) return std::nullopt;
+    for (size_t k = 0; k < influences.size(); ++k) {
+      const auto same_bone = [&](const JointInfluence& other) {
+        return other.joint == influences[k].joint;
+      };
+      if (!(influences[k].weight > 0) || std::ranges::count_if(influences, same_bone) > 1 ||
+          (k > 0 && influences[k].weight > influences[k - 1].weight)) {
+        return std::nullopt;
+      }
+      vertices[v].bones[k] = static_cast<uint16_t>(influences[k].joint);
+      vertices[v].weights[k] = static_cast<float>(influences[k].weight);
+    }
+  }
+  absl::StatusOr<SkinWeights> weights =
+      SkinWeights::Create(file.skeleton.num_joints(), std::move(vertices));
+  if (!weights.ok()) return std::nullopt;
+  return *std::move(weights);
+}
+
+absl::StatusOr<SkinWeights> BoneWeights(const RigFile& file) {
+  if (std::optional<SkinWeights> own = OwnWeights(file)) return *std::move(own);
+  std::vector<VertexInfluences> vertices(file.influences.size());
+  for (size_t v = 0; v < vertices.size(); ++v) {
+    std::map<int, double> bone_weights;
+    double total = 0;
+    for (const JointInfluence& influence : file.influences[v]) {
+      if (influence.joint == 0 || !(influence.weight > 0)) continue;  // no bone ends in the root
+      bone_weights[influence.joint] += influence.weight;
+      total += influence.weight;
+    }
+    if (!(total > 0) || !std::isfinite(total)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("rig: vertex ", v, " has no positive, finite weight of a bone"));
+    }
+    vertices[v] = StrongestInfluences(bone_weights);
+  }
+  return SkinWeights::Create(file.skeleton.num_joints(), std::move(vertices));
+}
+
+std::vector<int> LockedJoints(const RigFile& file, const Skeleton& skeleton) {
+  if (!file.is_locked) return file.locked_joints;
+  std::vector<int> all(skeleton.num_joints());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 }  // namespace
 
 absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip) {
@@ -79,7 +135,7 @@ absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip
   const Eigen::Matrix3Xd rest = clip.FrameAsDouble(file.rest_frame);
   const double diagonal = BoundsDiagonal(rest);
   PLEAT_RETURN_IF_ERROR(CheckJoints(file.skeleton, rest, diagonal));
-  UserRig rig{file.skeleton, std::nullopt, file.rest_frame, file.is_locked};
+  UserRig rig{file.skeleton, std::nullopt, file.rest_frame, LockedJoints(file, file.skeleton)};
   if (file.influences.empty()) return rig;
   const bool by_place = file.positions.cols() > 0;
   if (!by_place && static_cast<Eigen::Index>(file.influences.size()) != rest.cols()) {
@@ -92,21 +148,13 @@ absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip
     PLEAT_ASSIGN_OR_RETURN(of_clip.influences, CarryByPlace(file, rest, diagonal));
   }
   if (file.influences_are_of_bones) {
-    of_clip.positions.resize(3, 0);
-    rig.weights = std::nullopt;
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(rest.cols(), file.skeleton.num_joints());
-    for (size_t v = 0; v < of_clip.influences.size(); ++v) {
-      for (const JointInfluence& influence : of_clip.influences[v]) {
-        dense(static_cast<Eigen::Index>(v), influence.joint) += influence.weight;
-      }
-    }
-    PLEAT_ASSIGN_OR_RETURN(rig.weights, SkinWeights::FromDense(dense));
+    PLEAT_ASSIGN_OR_RETURN(rig.weights, BoneWeights(of_clip));
     return rig;
   }
   PLEAT_ASSIGN_OR_RETURN(UserRig converted,
                          RigFromJointWeights(file.skeleton, of_clip.influences, rest));
   converted.rest_frame = file.rest_frame;
-  converted.is_locked = file.is_locked;
+  converted.locked_joints = LockedJoints(file, converted.skeleton);
   return converted;
 }
 

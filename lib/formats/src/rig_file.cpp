@@ -1,8 +1,10 @@
 #include "pleat/formats/rig_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -19,6 +21,7 @@ using nlohmann::json;
 constexpr const char* kSchema = "pleat.rig_file/1";
 constexpr int kMaxFrame = 100'000;
 constexpr int kMaxListed = 64;  // influences of one vertex
+constexpr int kMaxDepth = 16;   // of JSON
 
 absl::Status Fault(const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat("rig: ", what));
@@ -41,10 +44,7 @@ class RigParser {
       }
       file_.rest_frame = frame->get<int>();
     }
-    if (const auto locked = root_.find("locked"); locked != root_.end()) {
-      if (!locked->is_boolean()) return Fault("'locked' must be true or false");
-      file_.is_locked = locked->get<bool>();
-    }
+    PLEAT_RETURN_IF_ERROR(ParseLocks());
     return std::move(file_);
   }
 
@@ -106,6 +106,23 @@ class RigParser {
     return joint;
   }
 
+  absl::Status ParseLocks() {
+    if (const auto locked = root_.find("locked"); locked != root_.end()) {
+      if (!locked->is_boolean()) return Fault("'locked' must be true or false");
+      file_.is_locked = locked->get<bool>();
+    }
+    const json& joints = root_["joints"];
+    for (size_t j = 0; j < joints.size(); ++j) {
+      const auto locked = joints[j].find("locked");
+      if (locked == joints[j].end()) continue;
+      if (!locked->is_boolean()) {
+        return Fault(absl::StrCat("joint ", j, ": 'locked' must be true or false"));
+      }
+      if (locked->get<bool>()) file_.locked_joints.push_back(static_cast<int>(j));
+    }
+    return absl::OkStatus();
+  }
+
   absl::Status ParseWeights() {
     const auto weights = root_.find("weights");
     if (weights == root_.end()) return absl::OkStatus();
@@ -159,40 +176,58 @@ class RigParser {
   RigFile file_;
 };
 
-// Weights that are of bones already.
-absl::StatusOr<SkinWeights> BoneWeights(const RigFile& file) {
-  std::vector<VertexInfluences> vertices(file.influences.size());
-  for (size_t v = 0; v < vertices.size(); ++v) {
-    const std::vector<JointInfluence>& influences = file.influences[v];
-    if (influences.size() > kMaxInfluences) {
-      return Fault(absl::StrCat("vertex ", v, " has ", influences.size(), " bones, the limit is ",
-                                kMaxInfluences));
-    }
-    for (size_t k = 0; k < influences.size(); ++k) {
-      vertices[v].bones[k] = static_cast<uint16_t>(influences[k].joint);
-      vertices[v].weights[k] = static_cast<float>(influences[k].weight);
+// True when brackets nest deeper than a rig file needs: every level costs the parser memory.
+bool NestsTooDeep(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kMaxDepth) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
     }
   }
-  absl::StatusOr<SkinWeights> weights =
-      SkinWeights::Create(file.skeleton.num_joints(), std::move(vertices));
-  if (!weights.ok()) return Fault(std::string(weights.status().message()));
-  return weights;
+  return false;
 }
 
-absl::StatusOr<RigFile> ParseText(std::string_view text, const RigFileLimits& limits) {
-  if (text.size() > limits.max_bytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_bytes));
-  }
-  const json root = json::parse(text, nullptr, false);
-  if (root.is_discarded()) return Fault("the file is not JSON");
-  return RigParser(root, limits).Parse();
+// The double whose shortest decimal text is that of the float: half as many digits in the file, and
+// the same float when read back.
+double ShortDecimal(float value) {
+  char text[32];
+  const auto written = std::to_chars(text, text + sizeof(text), value);
+  double decimal = value;
+  std::from_chars(text, written.ptr, decimal);
+  return static_cast<float>(decimal) == value ? decimal : value;
 }
 
 }  // namespace
 
 absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const RigFileLimits& limits) {
-  return ParseText(text, limits);
+  if (text.size() > limits.max_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_bytes));
+  }
+  if (NestsTooDeep(text)) return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
+  const json root = json::parse(text, nullptr, false);
+  if (root.is_discarded()) return Fault("the file is not JSON");
+  return RigParser(root, limits).Parse();
+}
+
+absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file) {
+  std::set<int> locked(file->locked_joints.begin(), file->locked_joints.end());
+  for (const std::string& name : names) {
+    const int joint = file->skeleton.FindJoint(name);
+    if (joint < 0) return Fault(absl::StrCat("there is no joint '", name, "' to lock"));
+    locked.insert(joint);
+  }
+  file->locked_joints.assign(locked.begin(), locked.end());
+  return absl::OkStatus();
 }
 
 absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const RigFileLimits& limits) {
@@ -206,26 +241,16 @@ absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const RigFileLimits
   return file;
 }
 
-absl::StatusOr<UserRig> DecodeRig(std::string_view text, const RigFileLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(RigFile file, ParseText(text, limits));
-  UserRig rig{std::move(file.skeleton), std::nullopt, file.rest_frame, file.is_locked};
-  if (file.influences.empty()) return rig;
-  if (!file.influences_are_of_bones) return Fault("'weights.of' must be \"bones\" here");
-  file.skeleton = rig.skeleton;
-  PLEAT_ASSIGN_OR_RETURN(rig.weights, BoneWeights(file));
-  return rig;
-}
-
 std::string EncodeRig(const UserRig& rig) {
   nlohmann::ordered_json root;
   root["schema"] = kSchema;
   root["rest_frame"] = rig.rest_frame;
-  root["locked"] = rig.is_locked;
   for (const Joint& joint : rig.skeleton.joints()) {
     const Eigen::Vector3d& p = joint.rest_position;
     root["joints"].push_back(
         {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
   }
+  for (const int joint : rig.locked_joints) root["joints"][joint]["locked"] = true;
   if (rig.weights) {
     root["weights"]["of"] = "bones";
     nlohmann::ordered_json& vertices = root["weights"]["vertices"];
@@ -234,7 +259,7 @@ std::string EncodeRig(const UserRig& rig) {
       nlohmann::ordered_json list = nlohmann::ordered_json::array();
       for (int k = 0; k < kMaxInfluences && vertex.weights[k] > 0; ++k) {
         list.push_back(vertex.bones[k]);
-        list.push_back(vertex.weights[k]);
+        list.push_back(ShortDecimal(vertex.weights[k]));
       }
       vertices.push_back(std::move(list));
     }

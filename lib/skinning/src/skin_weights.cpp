@@ -60,6 +60,21 @@ absl::StatusOr<SkinWeights> SkinWeights::Create(int num_joints,
   return result;
 }
 
+VertexInfluences StrongestInfluences(const std::map<int, double>& bone_weights) {
+  std::vector<std::pair<double, int>> sorted;
+  for (const auto& [bone, weight] : bone_weights) sorted.push_back({-weight, bone});
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.size() > kMaxInfluences) sorted.resize(kMaxInfluences);
+  double total = 0;
+  for (const auto& [negative, bone] : sorted) total -= negative;
+  VertexInfluences result;
+  for (size_t k = 0; k < sorted.size(); ++k) {
+    result.bones[k] = static_cast<uint16_t>(sorted[k].second);
+    result.weights[k] = static_cast<float>(-sorted[k].first / total);
+  }
+  return result;
+}
+
 Eigen::MatrixXd SkinWeights::ToDense() const {
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(num_vertices(), num_joints_);
   for (int v = 0; v < num_vertices(); ++v) {

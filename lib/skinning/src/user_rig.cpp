@@ -86,22 +86,6 @@ int BoneOfJoint(const Skeleton& skeleton, int joint, const Eigen::Vector3d& poin
   return nearest;
 }
 
-// The strongest four, normalised.
-VertexInfluences Strongest(const std::map<int, double>& bone_weights) {
-  std::vector<std::pair<double, int>> sorted;
-  for (const auto& [bone, weight] : bone_weights) sorted.push_back({-weight, bone});
-  std::sort(sorted.begin(), sorted.end());
-  if (sorted.size() > kMaxInfluences) sorted.resize(kMaxInfluences);
-  double total = 0;
-  for (const auto& [negative, bone] : sorted) total -= negative;
-  VertexInfluences result;
-  for (size_t k = 0; k < sorted.size(); ++k) {
-    result.bones[k] = static_cast<uint16_t>(sorted[k].second);
-    result.weights[k] = static_cast<float>(-sorted[k].first / total);
-  }
-  return result;
-}
-
 }  // namespace
 
 bool operator==(const UserRig& a, const UserRig& b) {
@@ -115,7 +99,7 @@ bool operator==(const UserRig& a, const UserRig& b) {
          a.weights.has_value() == b.weights.has_value() &&
          (!a.weights ||
           std::ranges::equal(a.weights->influences(), b.weights->influences(), same_vertex)) &&
-         a.rest_frame == b.rest_frame && a.is_locked == b.is_locked;
+         a.rest_frame == b.rest_frame && a.locked_joints == b.locked_joints;
 }
 
 absl::StatusOr<UserRig> RigFromJointWeights(
@@ -137,7 +121,7 @@ absl::StatusOr<UserRig> RigFromJointWeights(
       bone_weights[BoneOfJoint(rig.skeleton, influence.joint,
                                positions.col(static_cast<Eigen::Index>(v)))] += influence.weight;
     }
-    vertices.push_back(Strongest(bone_weights));
+    vertices.push_back(StrongestInfluences(bone_weights));
   }
   PLEAT_ASSIGN_OR_RETURN(rig.weights,
                          SkinWeights::Create(rig.skeleton.num_joints(), std::move(vertices)));

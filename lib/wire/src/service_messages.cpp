@@ -94,6 +94,7 @@ v1::Job ToProto(const JobInfo& info) {
     message.mutable_error()->set_message(ToValidUtf8(std::string(info.error.message())));
   }
   message.set_result_id(info.result_id);
+  message.set_rig_id(info.rig_id);
   return message;
 }
 
@@ -135,6 +136,8 @@ absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
   if (!info.result_id.empty()) {
     PLEAT_RETURN_IF_ERROR(CheckContentId(info.result_id, "job.result_id"));
   }
+  info.rig_id = message.rig_id();
+  if (!info.rig_id.empty()) PLEAT_RETURN_IF_ERROR(CheckContentId(info.rig_id, "job.rig_id"));
   return info;
 }
 

@@ -13,10 +13,13 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
   }
   PLEAT_RETURN_IF_ERROR(CheckName(request.model_name(), "model_name"));
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions options, FromProto(request.options()));
-  PLEAT_ASSIGN_OR_RETURN(const JobInfo info,
-                         context.service->CreateTrainingJob(
-                             {request.sequence_ids().begin(), request.sequence_ids().end()},
-                             options, request.model_name()));
+  PLEAT_ASSIGN_OR_RETURN(
+      const JobInfo info,
+      context.service->CreateTrainingJob(
+          {.sequence_ids = {request.sequence_ids().begin(), request.sequence_ids().end()},
+           .options = options,
+           .model_name = request.model_name(),
+           .rig = request.rig()}));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();
 }

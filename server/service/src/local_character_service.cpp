@@ -46,18 +46,6 @@ LocalCharacterService::~LocalCharacterService() { Shutdown(); }
 
 void LocalCharacterService::Shutdown() { jobs_->Shutdown(); }
 
-absl::Status LocalCharacterService::RestoreJobs() {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
-                         store_->catalogue().List(EntryKind::kJob));
-  std::vector<StoredJob> jobs;
-  for (const CatalogueEntry& entry : entries) {
-    PLEAT_ASSIGN_OR_RETURN(JobInfo info, DecodeJobRecord(entry.record));
-    jobs.push_back({std::move(info), entry.attempts});
-  }
-  jobs_->Restore(std::move(jobs));
-  return absl::OkStatus();
-}
-
 // --- stored files ---
 
 absl::Status LocalCharacterService::AddEntry(EntryKind kind, const std::string& id,

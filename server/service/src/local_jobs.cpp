@@ -1,11 +1,13 @@
 // Jobs: what they are made of and what they do.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "infos.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
+#include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/service/compression.h"
 #include "pleat/service/local_character_service.h"
@@ -16,27 +18,72 @@ namespace {
 
 constexpr double kWatchWakeSeconds = .25;  // how soon a watcher notices a shutdown
 
+// What can be said about a rig before its mesh is read.
+absl::Status CheckRigCounts(const RigFile& rig, const SequenceInfo& clip) {
+  if (rig.rest_frame >= clip.num_frames) {
+    return absl::InvalidArgumentError(absl::StrCat("rig: rest_frame ", rig.rest_frame, " of '",
+                                                   clip.name, "', which has ", clip.num_frames,
+                                                   " frames"));
+  }
+  if (!rig.influences.empty() && rig.influences.size() != static_cast<size_t>(clip.num_vertices)) {
+    return absl::InvalidArgumentError(absl::StrCat("rig: weights of ", rig.influences.size(),
+                                                   " vertices; '", clip.name, "' has ",
+                                                   clip.num_vertices));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
-absl::StatusOr<JobInfo> LocalCharacterService::CreateTrainingJob(
-    const std::vector<std::string>& sequence_ids, const TrainOptions& options,
-    const std::string& model_name) {
-  PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
-  if (sequence_ids.empty() ||
-      sequence_ids.size() > static_cast<size_t>(options_.limits.max_clips)) {
-    return absl::InvalidArgumentError(absl::StrCat("a training job needs 1 to ",
-                                                   options_.limits.max_clips, " sequences, not ",
-                                                   sequence_ids.size()));
+absl::Status LocalCharacterService::RestoreJobs() {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
+                         store_->catalogue().List(EntryKind::kJob));
+  std::vector<StoredJob> jobs;
+  std::set<std::string> needed_rigs;
+  for (const CatalogueEntry& entry : entries) {
+    PLEAT_ASSIGN_OR_RETURN(JobInfo info, DecodeJobRecord(entry.record));
+    if (!IsFinal(info.state)) needed_rigs.insert(info.rig_id);
+    jobs.push_back({std::move(info), entry.attempts});
+  }
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> rigs,
+                         store_->catalogue().List(EntryKind::kRig));
+  for (const CatalogueEntry& rig : rigs) {
+    if (needed_rigs.contains(rig.id)) continue;
+    PLEAT_RETURN_IF_ERROR(DeleteEntry(EntryKind::kRig, rig.id));
+  }
+  jobs_->Restore(std::move(jobs));
+  return absl::OkStatus();
+}
+
+absl::StatusOr<JobInfo> LocalCharacterService::CreateTrainingJob(const TrainingRequest& request) {
+  PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(request.options));
+  const size_t num_clips = request.sequence_ids.size();
+  if (num_clips == 0 || num_clips > static_cast<size_t>(options_.limits.max_clips)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "a training job needs 1 to ", options_.limits.max_clips, " sequences, not ", num_clips));
   }
   JobInfo draft;
-  for (const std::string& id : sequence_ids) {
-    PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, GetSequence(id));
-    if (draft.name.empty()) draft.name = info.name;
+  std::vector<SequenceInfo> clips;
+  for (const std::string& id : request.sequence_ids) {
+    PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, GetSequence(id));
+    clips.push_back(std::move(info));
   }
-  draft.sequence_ids = sequence_ids;
-  draft.options = options;
-  if (!model_name.empty()) draft.name = model_name;
+  draft.sequence_ids = request.sequence_ids;
+  draft.options = request.options;
+  draft.name = request.model_name.empty() ? clips[0].name : request.model_name;
+  if (!request.rig.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(const RigFile rig, DecodeUserRig(request.rig));
+    PLEAT_RETURN_IF_ERROR(CheckRigCounts(rig, clips[0]));
+    draft.rig_id = ToHex(ComputeSha256(request.rig));
+    PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kRig, draft.rig_id, "",
+                                   [&] { return store_->blobs().Put(request.rig).status(); }));
+  }
   return jobs_->Create(std::move(draft));
+}
+
+absl::StatusOr<RigFile> LocalCharacterService::DecodeUserRig(const std::string& text) const {
+  return DecodeRigJson(text, {.max_bytes = options_.limits.max_rig_bytes,
+                              .max_vertices = options_.limits.max_vertices});
 }
 
 absl::StatusOr<JobInfo> LocalCharacterService::CreateCompressionJob(
@@ -58,6 +105,17 @@ absl::StatusOr<JobOutcome> LocalCharacterService::Run(const JobInfo& job,
   return Compress(job, std::get<CompressOptions>(job.options), progress);
 }
 
+absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalCharacterService::TrainModel(
+    const std::vector<MeshSequence>& clips, const std::string& rig_id, const TrainOptions& options,
+    const Progress& progress) const {
+  const TrainResources resources{.num_threads = options_.num_threads_per_job};
+  if (rig_id.empty()) return options_.train(clips, options, resources, nullptr, progress);
+  PLEAT_ASSIGN_OR_RETURN(const std::string text, store_->blobs().Get(rig_id));
+  PLEAT_ASSIGN_OR_RETURN(const RigFile file, DecodeUserRig(text));
+  PLEAT_ASSIGN_OR_RETURN(const UserRig rig, ResolveRig(file, clips[0]));
+  return TrainCharacterWithRig(clips, rig, options, resources, nullptr, progress);
+}
+
 absl::StatusOr<JobOutcome> LocalCharacterService::Train(const JobInfo& job,
                                                         const TrainOptions& options,
                                                         const Progress& progress) {
@@ -69,10 +127,8 @@ absl::StatusOr<JobOutcome> LocalCharacterService::Train(const JobInfo& job,
     PLEAT_RETURN_IF_ERROR(
         reading.Report(static_cast<double>(clips.size()) / job.sequence_ids.size()));
   }
-  PLEAT_ASSIGN_OR_RETURN(
-      std::shared_ptr<const CharacterModel> model,
-      options_.train(clips, options, {.num_threads = options_.num_threads_per_job}, nullptr,
-                     progress.Stage("train", .02, .98)));
+  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
+                         TrainModel(clips, job.rig_id, options, progress.Stage("train", .02, .98)));
   if (model->name() != job.name) {
     CharacterModel::Parts parts = model->parts();
     parts.name = job.name;

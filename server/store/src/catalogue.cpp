@@ -23,6 +23,8 @@ const char* KindName(EntryKind kind) {
       return "compressed sequence";
     case EntryKind::kJob:
       return "job";
+    case EntryKind::kRig:
+      return "rig";
   }
   return "unknown";
 }

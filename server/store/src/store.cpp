@@ -69,7 +69,7 @@ Store::~Store() {
 absl::Status Store::Clean() {
   std::set<std::string> known;
   for (const EntryKind kind :
-       {EntryKind::kSequence, EntryKind::kModel, EntryKind::kCompressedSequence}) {
+       {EntryKind::kSequence, EntryKind::kModel, EntryKind::kCompressedSequence, EntryKind::kRig}) {
     PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries, catalogue_->List(kind));
     for (const CatalogueEntry& entry : entries) known.insert(entry.id);
   }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "pleat/formats/model_file.h"
+#include "pleat/formats/rig_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "server/fake_training.h"
 #include "support/status_matchers.h"
@@ -41,7 +42,8 @@ class LocalCharacterServiceTest : public testing::Test {
   }
   std::string TrainModel(const MeshSequence& sequence, const std::string& name = "") {
     const std::string id = service_->UploadSequence(sequence, {})->id;
-    return RunToEnd(service_->CreateTrainingJob({id}, {}, name)->id).result_id;
+    return RunToEnd(service_->CreateTrainingJob({.sequence_ids = {id}, .model_name = name})->id)
+        .result_id;
   }
 
   TemporaryFolder folder_;
@@ -53,7 +55,8 @@ TEST_F(LocalCharacterServiceTest, EverythingSurvivesARestart) {
   Open();
   const MeshSequence tube = MakeSwayingTube(5);
   const std::string sequence_id = service_->UploadSequence(tube, {})->id;
-  const JobInfo job = RunToEnd(service_->CreateTrainingJob({sequence_id}, {}, "mine")->id);
+  const JobInfo job = RunToEnd(
+      service_->CreateTrainingJob({.sequence_ids = {sequence_id}, .model_name = "mine"})->id);
   ASSERT_EQ(job.state, JobState::kSucceeded);
   const std::string bytes = service_->DownloadModel(job.result_id, {}).value();
   Open();
@@ -70,8 +73,9 @@ TEST_F(LocalCharacterServiceTest, AJobThatWasRunningGoesOnAfterARestart) {
   Open();
   trainer_.step_ms = 50;
   const std::string sequence_id = service_->UploadSequence(MakeSwayingTube(5), {})->id;
-  const std::string running = service_->CreateTrainingJob({sequence_id}, {}, "")->id;
-  const std::string waiting = service_->CreateTrainingJob({sequence_id}, {.seed = 2}, "")->id;
+  const std::string running = service_->CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
+  const std::string waiting =
+      service_->CreateTrainingJob({.sequence_ids = {sequence_id}, .options = {.seed = 2}})->id;
   while (trainer_.num_started == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   trainer_.step_ms = 0;
   Open();
@@ -123,6 +127,34 @@ TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("--decode-bytes")));
   second.reset();
   EXPECT_THAT(service_->OpenDecode(id, {}), IsOk());
+}
+
+TEST_F(LocalCharacterServiceTest, AnOwnRigSurvivesARestartAndGoesWithItsJob) {
+  Open();
+  trainer_.step_ms = 50;
+  const MeshSequence tube = MakeSwayingTube(5);
+  const std::string id = service_->UploadSequence(tube, {})->id;
+  const Rig known = MakeFakeModel(tube, {})->rig();
+  const std::string rig = EncodeRig({known.skeleton, known.weights, 0, {1}});
+  const std::string first = service_->CreateTrainingJob({.sequence_ids = {id}})->id;
+  const JobInfo waiting = *service_->CreateTrainingJob(
+      {.sequence_ids = {id}, .options = {.learner = "gp"}, .rig = rig});
+  EXPECT_EQ(waiting.state, JobState::kQueued);
+  const std::string path =
+      folder_.path() + "/blobs/" + waiting.rig_id.substr(0, 2) + "/" + waiting.rig_id;
+  trainer_.step_ms = 0;
+  Open();
+  EXPECT_TRUE(std::filesystem::exists(path) || IsFinal(service_->GetJob(waiting.id)->state));
+  const JobInfo job = RunToEnd(waiting.id);
+  ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
+  EXPECT_EQ(job.rig_id, waiting.rig_id);
+  const Skeleton trained = service_->GetModel(job.result_id)->skeleton;
+  EXPECT_EQ(trained.joint(1).name, "chest");
+  EXPECT_EQ(trained.rest_position(1), known.skeleton.rest_position(1));  // locked
+  EXPECT_TRUE(std::filesystem::exists(path));
+  Open();
+  EXPECT_FALSE(std::filesystem::exists(path));  // no job needs it any more
+  EXPECT_EQ(service_->GetJob(waiting.id)->rig_id, waiting.rig_id);
 }
 
 TEST_F(LocalCharacterServiceTest, TheModelHasTheNameOfTheJobAndTheSameBytesEachTime) {
@@ -195,7 +227,7 @@ TEST_F(LocalCharacterServiceTest, LimitsAreNamed) {
   EXPECT_THAT(service_->FinishUpload(upload.get()),
               HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
   const std::string id = service_->UploadSequence(MakeSwayingTube(2), {})->id;
-  EXPECT_THAT(service_->CreateTrainingJob({id, id, id}, {}, ""),
+  EXPECT_THAT(service_->CreateTrainingJob({.sequence_ids = {id, id, id}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("1 to 2")));
   const std::string model_id = TrainModel(MakeSwayingTube(2));
   const PoseTrack track = MakeMotion(service_->GetModel(model_id)->skeleton, 5);
@@ -245,8 +277,8 @@ TEST_F(LocalCharacterServiceTest, AJobWhoseSequenceIsGoneFailsWithAReason) {
   trainer_.step_ms = 5;
   const std::string a = service_->UploadSequence(MakeSwayingTube(5), {})->id;
   const std::string b = service_->UploadSequence(MakeSwayingTube(6), {})->id;
-  ASSERT_THAT(service_->CreateTrainingJob({a}, {}, ""), IsOk());
-  const std::string job = service_->CreateTrainingJob({b}, {}, "")->id;
+  ASSERT_THAT(service_->CreateTrainingJob({.sequence_ids = {a}}), IsOk());
+  const std::string job = service_->CreateTrainingJob({.sequence_ids = {b}})->id;
   ASSERT_THAT(service_->DeleteSequence(b), IsOk());
   const JobInfo info = RunToEnd(job);
   EXPECT_EQ(info.state, JobState::kFailed);
@@ -257,8 +289,8 @@ TEST_F(LocalCharacterServiceTest, ShutdownEndsWatchers) {
   Open();
   trainer_.step_ms = 100;
   const std::string id = service_->UploadSequence(MakeSwayingTube(5), {})->id;
-  ASSERT_THAT(service_->CreateTrainingJob({id}, {}, ""), IsOk());
-  const std::string waiting = service_->CreateTrainingJob({id}, {}, "")->id;
+  ASSERT_THAT(service_->CreateTrainingJob({.sequence_ids = {id}}), IsOk());
+  const std::string waiting = service_->CreateTrainingJob({.sequence_ids = {id}})->id;
   std::thread stopper([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     service_->Shutdown();

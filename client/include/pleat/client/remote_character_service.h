@@ -59,9 +59,7 @@ class RemoteCharacterService final : public CharacterService {
   absl::StatusOr<std::vector<SequenceInfo>> ListSequences() override;
   absl::Status DeleteSequence(const std::string& id) override;
 
-  absl::StatusOr<JobInfo> CreateTrainingJob(const std::vector<std::string>& sequence_ids,
-                                            const TrainOptions& options,
-                                            const std::string& model_name) override;
+  absl::StatusOr<JobInfo> CreateTrainingJob(const TrainingRequest& request) override;
   absl::StatusOr<JobInfo> CreateCompressionJob(const std::string& sequence_id,
                                                const CompressOptions& options) override;
   absl::StatusOr<JobInfo> GetJob(const std::string& id) override;

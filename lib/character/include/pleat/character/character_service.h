@@ -38,12 +38,21 @@ const char* JobStateName(JobState state);  // "queued", "running", ...
 // What a job does: train a model, or compress one sequence.
 using JobOptions = std::variant<TrainOptions, CompressOptions>;
 
+struct TrainingRequest {
+  std::vector<std::string> sequence_ids{};
+  TrainOptions options{};
+  std::string model_name{};  // empty: the first sequence's
+  // The user's own rig as the text of a rig file (docs/formats/rig.md); empty: found automatically.
+  std::string rig{};
+};
+
 struct JobInfo {
   std::string id;
   JobState state = JobState::kQueued;
   std::vector<std::string> sequence_ids;
   JobOptions options;
   std::string name;                 // of the result
+  std::string rig_id;               // hex SHA-256 of TrainingRequest::rig, or empty
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1
   std::optional<double> objective;  // of the running optimiser
@@ -115,9 +124,7 @@ class CharacterService {
   virtual absl::Status DeleteSequence(const std::string& id) = 0;
 
   // Jobs.
-  virtual absl::StatusOr<JobInfo> CreateTrainingJob(const std::vector<std::string>& sequence_ids,
-                                                    const TrainOptions& options,
-                                                    const std::string& model_name) = 0;
+  virtual absl::StatusOr<JobInfo> CreateTrainingJob(const TrainingRequest& request) = 0;
   virtual absl::StatusOr<JobInfo> CreateCompressionJob(const std::string& sequence_id,
                                                        const CompressOptions& options) = 0;
   virtual absl::StatusOr<JobInfo> GetJob(const std::string& id) = 0;

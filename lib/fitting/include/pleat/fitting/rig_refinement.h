@@ -13,9 +13,10 @@
 namespace pleat {
 
 struct RigRefinementOptions {
-  bool joints = true;   // move the rest joints
-  bool weights = true;  // solve the skinning weights anew
-  bool rest = true;     // move the rest mesh
+  bool joints = true;                // move the rest joints
+  bool weights = true;               // solve the skinning weights anew
+  bool rest = true;                  // move the rest mesh
+  std::vector<int> locked_joints{};  // these stay where they are
 
   // Pull of every joint to its place in the first rig, as a share of the mean curvature of the
   // error per joint. Without it joints that the motion hardly shows run away (knees under a skirt

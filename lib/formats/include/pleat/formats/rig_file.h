@@ -22,7 +22,8 @@ struct RigFile {
   // GLB: where the weighed vertices are, 3 x N, metres. Empty: they are the clip's, in its order.
   Eigen::Matrix3Xd positions;
   int rest_frame = 0;
-  bool is_locked = false;
+  bool is_locked = false;          // all joints, those that are added included
+  std::vector<int> locked_joints;  // ascending
 };
 
 struct RigFileLimits {
@@ -40,13 +41,16 @@ absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const RigFileLimits
 // By the ending: .glb or .json.
 absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const RigFileLimits& limits = {});
 
-// The rig for the clip's own vertices. Weights of a GLB go to the clip's vertices by place: each
-// takes those of the nearest vertex of the file. kInvalidArgument when counts differ, when the
-// meshes do not lie over each other within 1 % of the diagonal, or joints lie far from the mesh.
+// The rig for the clip's own vertices. What EncodeRig wrote comes back as it was. Weights of a GLB
+// go to the clip's vertices by place: each takes those of the nearest vertex of the file.
+// kInvalidArgument when counts differ, when the meshes do not lie over each other within 1 % of the
+// diagonal, or joints lie far from the mesh.
 absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip);
 
-// JSON with the weights of bones. DecodeRig is its exact inverse.
+// Locks those joints, by name. kInvalidArgument names the first that is not there.
+absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file);
+
+// JSON with the weights of bones; DecodeRigJson and ResolveRig give the same rig back.
 std::string EncodeRig(const UserRig& rig);
-absl::StatusOr<UserRig> DecodeRig(std::string_view text, const RigFileLimits& limits = {});
 
 }  // namespace pleat

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -17,6 +18,9 @@ struct VertexInfluences {
   std::array<uint16_t, kMaxInfluences> bones{};
   std::array<float, kMaxInfluences> weights{};  // >= 0, sum 1, falling; unused entries are 0
 };
+
+// The four largest of `bone_weights` (bone -> weight >= 0, at least one positive), normalised.
+VertexInfluences StrongestInfluences(const std::map<int, double>& bone_weights);
 
 // Valid by construction: finite, non-negative, normalised, bones in [1, num_joints).
 class SkinWeights {

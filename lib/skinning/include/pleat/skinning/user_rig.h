@@ -17,7 +17,7 @@ struct UserRig {
   Skeleton skeleton;                   // 2..256 joints; rest positions in the pose of `rest_frame`
   std::optional<SkinWeights> weights;  // absent: computed by heat
   int rest_frame = 0;                  // of the first clip: the frame whose pose is the rest pose
-  bool is_locked = false;              // refinement leaves the joints where they are
+  std::vector<int> locked_joints;      // ascending; refinement leaves them where they are
 
   friend bool operator==(const UserRig& a, const UserRig& b);
 };

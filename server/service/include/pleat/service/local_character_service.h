@@ -10,6 +10,7 @@
 #include "pleat/cache/byte_cache.h"
 #include "pleat/character/character_service.h"
 #include "pleat/character/train_character.h"
+#include "pleat/formats/rig_file.h"
 #include "pleat/jobs/job_manager.h"
 #include "pleat/service/decode_session.h"
 #include "pleat/service/encoder_pool.h"
@@ -29,6 +30,7 @@ struct ServiceLimits {
   int64_t max_vertices = 1'000'000;               // of one frame
   int64_t max_frames = 20'000;                    // of one sequence or clip
   int max_clips = 64;                             // of one training job
+  uint64_t max_rig_bytes = uint64_t{12} << 20;    // of a user's own rig
 };
 
 struct LocalServiceOptions {
@@ -61,9 +63,7 @@ class LocalCharacterService final : public CharacterService {
   absl::StatusOr<std::vector<SequenceInfo>> ListSequences() override;
   absl::Status DeleteSequence(const std::string& id) override;
 
-  absl::StatusOr<JobInfo> CreateTrainingJob(const std::vector<std::string>& sequence_ids,
-                                            const TrainOptions& options,
-                                            const std::string& model_name) override;
+  absl::StatusOr<JobInfo> CreateTrainingJob(const TrainingRequest& request) override;
   absl::StatusOr<JobInfo> CreateCompressionJob(const std::string& sequence_id,
                                                const CompressOptions& options) override;
   absl::StatusOr<JobInfo> GetJob(const std::string& id) override;
@@ -131,11 +131,15 @@ class LocalCharacterService final : public CharacterService {
  private:
   LocalCharacterService(LocalServiceOptions options, std::unique_ptr<Store> store);
   absl::Status RestoreJobs();
+  absl::StatusOr<RigFile> DecodeUserRig(const std::string& text) const;
   absl::Status CheckClip(const PoseTrack& track) const;
   absl::Status CheckSequence(const MeshSequence& sequence) const;
   absl::StatusOr<MeshSequence> LoadSequence(const std::string& id);
   absl::StatusOr<SequenceDecoder> OpenDecoder(std::string bytes) const;
   absl::StatusOr<JobOutcome> Run(const JobInfo& job, const Progress& progress);
+  absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainModel(
+      const std::vector<MeshSequence>& clips, const std::string& rig_id,
+      const TrainOptions& options, const Progress& progress) const;
   absl::StatusOr<JobOutcome> Train(const JobInfo& job, const TrainOptions& options,
                                    const Progress& progress);
   absl::StatusOr<JobOutcome> Compress(const JobInfo& job, CompressOptions options,

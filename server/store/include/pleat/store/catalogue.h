@@ -13,7 +13,7 @@ struct sqlite3;
 
 namespace pleat {
 
-enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob };
+enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig };
 
 struct CatalogueEntry {
   std::string id;

@@ -31,7 +31,7 @@ class Store {
   Catalogue& catalogue() { return *catalogue_; }
   UploadArea& uploads() { return *uploads_; }
 
-  // Ids of sequences and models whose file was gone when the store was opened.
+  // Ids of sequences, models and rigs whose file was gone when the store was opened.
   const std::vector<std::string>& missing_files() const { return missing_files_; }
 
  private:
