@@ -43,6 +43,30 @@ TEST(EmbeddingTest, FindsTheJointsUnderASkirt) {
   EXPECT_LT(LimbError(embedding.joints, figure.joints), .08);
 }
 
+// To the search an elbow that is bent at will looks like the end of its arm.
+TEST(EmbeddingTest, BentArmsEndAtTheHands) {
+  for (const double degrees : {60, 100}) {
+    const CapsuleFigure figure =
+        MakeCapsuleFigure({.arm_angle_degrees = 60, .elbow_degrees = degrees});
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Embedding embedding, Embed(figure.mesh));
+    EXPECT_EQ(embedding.arm_shortfall, 0);
+    for (const int j : {kLeftLowerArm, kLeftHand, kRightLowerArm, kRightHand}) {
+      EXPECT_LT((embedding.joints - figure.joints).col(j).norm(), .07)
+          << degrees << ", joint " << j;
+    }
+  }
+}
+
+TEST(EmbeddingTest, AnArmThatEndsEarlyIsReported) {
+  CapsuleFigureOptions options;
+  const CapsuleFigure whole = MakeCapsuleFigure(options);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Embedding with_arms, Embed(whole.mesh));
+  EXPECT_EQ(with_arms.arm_shortfall, 0);
+  options.arm_length = .55;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Embedding stumps, Embed(MakeCapsuleFigure(options).mesh));
+  EXPECT_GT(stumps.arm_shortfall, .05);
+}
+
 class FacingTest : public ::testing::TestWithParam<double> {};
 
 TEST_P(FacingTest, LeftIsTheFiguresOwnLeft) {

@@ -20,6 +20,8 @@ struct CapsuleFigureOptions {
   double height_m = 1.7;
   double yaw_degrees = 0;         // 0 faces +z
   double arm_angle_degrees = 50;  // of the arms below the horizon
+  double elbow_degrees = 0;       // bend of the elbows, forwards
+  double arm_length = 1;          // share of a whole arm
   bool skirt = false;             // a closed bell from the hips to above the knees
   double cell_m = 0.02;
 };
@@ -29,6 +31,9 @@ struct CapsuleFigureOptions {
 inline Eigen::Matrix3Xd CapsuleFigureJoints(const CapsuleFigureOptions& options) {
   const double angle = options.arm_angle_degrees * EIGEN_PI / 180;
   const Eigen::Vector3d along_arm(std::cos(angle), -std::sin(angle), 0.12);
+  const double bend = options.elbow_degrees * EIGEN_PI / 180;
+  const Eigen::Vector3d along_forearm =
+      std::cos(bend) * along_arm + std::sin(bend) * Eigen::Vector3d::UnitZ();
   Eigen::Matrix3Xd joints(3, kNumHumanJoints);
   joints.col(kHips) << 0, .525, 0;
   joints.col(kSpine) << 0, .64, .005;
@@ -39,8 +44,8 @@ inline Eigen::Matrix3Xd CapsuleFigureJoints(const CapsuleFigureOptions& options)
   joints.col(kLeftFoot) << .075, .04, -.02;
   joints.col(kLeftToes) << .085, .025, .075;
   joints.col(kLeftUpperArm) << .11, .79, -.01;
-  joints.col(kLeftLowerArm) = joints.col(kLeftUpperArm) + .165 * along_arm;
-  joints.col(kLeftHand) = joints.col(kLeftLowerArm) + .16 * along_arm;
+  joints.col(kLeftLowerArm) = joints.col(kLeftUpperArm) + .165 * options.arm_length * along_arm;
+  joints.col(kLeftHand) = joints.col(kLeftLowerArm) + .16 * options.arm_length * along_forearm;
   for (int j = 0; j < kNumHumanJoints; ++j) {
     const int left = HumanMirror()[j];
     if (left < j) joints.col(j) = Eigen::Vector3d(-1, 1, 1).cwiseProduct(joints.col(left));

@@ -19,7 +19,7 @@ constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left a
 // Evidence below this turns the character round; from `clear` on the residuals of other facings are
 // no doubt.
 constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
-constexpr double kShortArm = .02;  // of the body's size under a fifth
+constexpr double kShortArm = .05;  // of a leg under half a leg
 constexpr double kUpCosine = .9;   // 26 degrees: a character that leans is no reason for a warning
 
 FacingEvidence EvidenceOf(const MeshSequence& sequence, const FrameEmbedding& found) {

@@ -9,6 +9,10 @@
 namespace pleat {
 namespace {
 
+// Body segments as shares of stature: R. Drillis, R. Contini, "Body segment parameters", 1966
+// (as tabulated in D. Winter, "Biomechanics and Motor Control of Human Movement").
+constexpr double kThigh = .245, kLowerLeg = .246, kTrunk = .818 - .530;  // shoulders above hips
+
 struct SampleCloud {
   const std::vector<MedialSample>& samples;
   size_t kdtree_get_point_count() const { return samples.size(); }
@@ -45,18 +49,21 @@ class RefinementObjective {
       energy += Centring(joints, b, hessian, gradient);
       energy += Shape(joints, b, hessian, gradient);
     }
-    return energy;
+    return energy + Proportions(joints, hessian, gradient);
   }
 
  private:
   static int Parent(int b) { return HumanTemplate().parent(b); }
+  static bool IsLeaf(int b) { return HumanTemplate().children(b).empty(); }
   static bool CrossesTrunk(int b) {
     return b == kLeftUpperLeg || b == kRightUpperLeg || b == kLeftUpperArm || b == kRightUpperArm;
   }
 
   double Centring(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                   Eigen::VectorXd* gradient) const {
-    const double weight = options_.centring / options_.samples_per_bone;
+    const Eigen::Vector3d direction = (joints.col(b) - joints.col(Parent(b))).normalized();
+    Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
+    if (!IsLeaf(b)) across -= direction * direction.transpose();
     double energy = 0;
     for (int k = 1; k <= options_.samples_per_bone; ++k) {
       const double share = static_cast<double>(k) / options_.samples_per_bone;
@@ -66,16 +73,19 @@ class RefinementObjective {
       nanoflann::KNNResultSet<double> result(1);
       result.init(&nearest, &squared_distance);
       tree_.findNeighbors(result, point.data(), nanoflann::SearchParams());
-      energy += weight * squared_distance;
+      const MedialSample& sample = cloud_.samples[nearest];
+      const double clarity = std::min(1.0, options_.limb_radius / sample.depth);
+      const Eigen::Matrix3d metric =
+          options_.centring / options_.samples_per_bone * clarity * clarity * across;
+      const Eigen::Vector3d residual = point - sample.position;
+      energy += residual.dot(metric * residual);
       if (!hessian) continue;
-      const Eigen::Vector3d residual = point - cloud_.samples[nearest].position;
       const int ends[2] = {Parent(b), b};
       const double factors[2] = {1 - share, share};
       for (int i = 0; i < 2; ++i) {
-        gradient->segment<3>(3 * ends[i]) += weight * factors[i] * residual;
+        gradient->segment<3>(3 * ends[i]) += factors[i] * metric * residual;
         for (int j = 0; j < 2; ++j) {
-          hessian->block<3, 3>(3 * ends[i], 3 * ends[j]).diagonal().array() +=
-              weight * factors[i] * factors[j];
+          hessian->block<3, 3>(3 * ends[i], 3 * ends[j]) += factors[i] * factors[j] * metric;
         }
       }
     }
@@ -116,6 +126,47 @@ class RefinementObjective {
              gradient);
       energy += options_.symmetry * residual * residual;
     }
+    return energy;
+  }
+
+  // The legs in themselves and against the trunk.
+  double Proportions(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
+                     Eigen::VectorXd* gradient) const {
+    double template_leg = 0;
+    for (const int b : {kLeftLowerLeg, kLeftFoot}) {
+      template_leg += (template_joints_.col(b) - template_joints_.col(Parent(b))).norm();
+    }
+    double energy = 0;
+    const auto add = [&](double residual, const std::vector<std::pair<int, int>>& bones,
+                         const std::vector<Eigen::Vector3d>& slopes) {
+      AddRow(options_.proportions, residual, bones, slopes, hessian, gradient);
+      energy += options_.proportions * residual * residual;
+    };
+    const Eigen::Vector3d trunk = .5 * (joints.col(kLeftUpperArm) + joints.col(kRightUpperArm) -
+                                        joints.col(kLeftUpperLeg) - joints.col(kRightUpperLeg));
+    const double leg_per_trunk = (kThigh + kLowerLeg) / kTrunk / template_leg;
+    double against_trunk = -leg_per_trunk * trunk.norm();
+    const Eigen::Vector3d trunk_slope = -.5 * leg_per_trunk / std::max(trunk.norm(), 1e-9) * trunk;
+    std::vector<std::pair<int, int>> bones = {{kLeftUpperLeg, kLeftUpperArm},
+                                              {kRightUpperLeg, kRightUpperArm}};
+    std::vector<Eigen::Vector3d> slopes = {trunk_slope, trunk_slope};
+    for (const int knee : {kLeftLowerLeg, kRightLowerLeg}) {
+      const int hip = Parent(knee), ankle = knee + 1;
+      const Eigen::Vector3d thigh = joints.col(knee) - joints.col(hip);
+      const Eigen::Vector3d shin = joints.col(ankle) - joints.col(knee);
+      const double thigh_length = std::max(thigh.norm(), 1e-9);
+      const double shin_length = std::max(shin.norm(), 1e-9);
+      const Eigen::Vector3d thigh_slope = thigh / (thigh_length * template_leg);
+      const Eigen::Vector3d shin_slope = shin / (shin_length * template_leg);
+      const double thigh_share = kThigh / (kThigh + kLowerLeg);
+      add(((1 - thigh_share) * thigh_length - thigh_share * shin_length) / template_leg,
+          {{hip, knee}, {knee, ankle}},
+          {(1 - thigh_share) * thigh_slope, -thigh_share * shin_slope});
+      against_trunk += .5 * (thigh_length + shin_length) / template_leg;
+      bones.insert(bones.end(), {{hip, knee}, {knee, ankle}});
+      slopes.insert(slopes.end(), {.5 * thigh_slope, .5 * shin_slope});
+    }
+    add(against_trunk, bones, slopes);
     return energy;
   }
 

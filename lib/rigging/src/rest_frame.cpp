@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -14,21 +15,25 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxFullFrames = 2;    // of the probed ones, looked at again on the full grid
+constexpr int kMaxFullFrames = 1;    // of the probed ones, looked at again on the full grid
 constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
 // Of the trusted residual: a frame that fits so well as it stands is not lying.
 constexpr double kStandingRatio = 1.5;
 constexpr double kDoubtfulResidual = .1;
 
-// The frames to look at; the first one first.
+// The frames to look at, evenly spaced: the first one first, then each far from those before it, so
+// that a search that ends early has seen different poses.
 std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
   if (options.rest_frame >= 0) return {options.rest_frame};
   const int count = std::clamp(options.max_frames_tried, 1, num_frames);
-  std::vector<int> frames;
-  for (int k = 0; k < count; ++k) {
-    frames.push_back(static_cast<int>(static_cast<int64_t>(k) * num_frames / count));
+  std::vector<int> order;  // of k in [0, count): odd multiples of halves, quarters, ...
+  for (unsigned step = std::bit_ceil(static_cast<unsigned>(count)); step >= 1; step /= 2) {
+    for (unsigned k = order.empty() ? 0 : step; k < static_cast<unsigned>(count); k += 2 * step) {
+      order.push_back(static_cast<int>(k));
+    }
   }
-  return frames;
+  for (int& k : order) k = static_cast<int>(static_cast<int64_t>(k) * num_frames / count);
+  return order;
 }
 
 Eigen::Matrix3d TurnToY(const Eigen::Vector3d& up) {
@@ -66,11 +71,10 @@ class RestFrameSearch {
     *num_frames_tried = 1;
     PLEAT_RETURN_IF_ERROR(TryFully(frames[0], Eigen::Matrix3d::Identity()));
     if (!IsTrusted() && frames.size() > 1) {
-      *num_frames_tried = static_cast<int>(frames.size());
       PLEAT_RETURN_IF_ERROR(ProbeOthers(frames));
+      *num_frames_tried += static_cast<int>(probe_residuals_.size());
     }
-    if (best_.embedding.residual >= kStandingRatio * options_.trusted_residual &&
-        options_.any_orientation) {
+    if (least_residual_ >= kStandingRatio * options_.trusted_residual && options_.any_orientation) {
       PLEAT_RETURN_IF_ERROR(TurnOver(frames[0]));
     }
     PLEAT_RETURN_IF_ERROR(Judge(*num_frames_tried));
@@ -102,13 +106,13 @@ class RestFrameSearch {
                              progress_);
   }
 
-  absl::StatusOr<FrameEmbedding> Embed(int frame, int resolution,
-                                       const Eigen::Matrix3d& upright) const {
+  absl::StatusOr<FrameEmbedding> Embed(int frame, int resolution, const Eigen::Matrix3d& upright) {
     FrameEmbedding result{
         .frame = frame, .volume = {}, .upright_from_input = upright, .embedding = {}};
     PLEAT_ASSIGN_OR_RETURN(result.volume, VolumeOf(frame, resolution));
     PLEAT_ASSIGN_OR_RETURN(result.embedding,
                            EmbedSkeleton(result.volume, EmbeddingOptionsFor(upright), progress_));
+    least_residual_ = std::min(least_residual_, result.embedding.residual);
     return result;
   }
 
@@ -120,33 +124,51 @@ class RestFrameSearch {
     return TryAt(frame, options_.probe_resolution, upright);
   }
 
+  // The same for a frame whose coarse grid was looked at already.
+  absl::Status TryProbed(FrameEmbedding probe) {
+    PLEAT_RETURN_IF_ERROR(TryAt(probe.frame, options_.volume.resolution, probe.upright_from_input));
+    if (!IsTrusted()) Offer(std::move(probe));
+    return absl::OkStatus();
+  }
+
+  void Offer(FrameEmbedding tried) {
+    if (Score(tried.embedding) < Score(best_.embedding)) best_ = std::move(tried);
+  }
+
   // Only kCancelled is an error.
   absl::Status TryAt(int frame, int resolution, const Eigen::Matrix3d& upright) {
     absl::StatusOr<FrameEmbedding> tried = Embed(frame, resolution, upright);
     if (absl::IsCancelled(tried.status())) return tried.status();
     if (!tried.ok()) {
       if (failure_.ok()) failure_ = tried.status();
-    } else if (Score(tried->embedding) < Score(best_.embedding)) {
-      best_ = *std::move(tried);
+    } else {
+      Offer(*std::move(tried));
     }
     return absl::OkStatus();
   }
 
+  // Ends with the first frame that is trusted; else the best of all are looked at again.
   absl::Status ProbeOthers(const std::vector<int>& frames) {
-    std::vector<std::pair<double, int>> ranked;  // score, frame
+    std::vector<FrameEmbedding> probes;
     for (size_t k = 1; k < frames.size(); ++k) {
       PLEAT_RETURN_IF_ERROR(progress_.Report(.2 + .5 * k / frames.size()));
-      const absl::StatusOr<FrameEmbedding> probe =
+      absl::StatusOr<FrameEmbedding> probe =
           Embed(frames[k], options_.probe_resolution, Eigen::Matrix3d::Identity());
       if (absl::IsCancelled(probe.status())) return probe.status();
       probe_residuals_.push_back(probe.ok() ? probe->embedding.residual
                                             : std::numeric_limits<double>::infinity());
-      if (probe.ok()) ranked.push_back({Score(probe->embedding), frames[k]});
+      if (!probe.ok()) continue;
+      if (Score(probe->embedding) < options_.trusted_residual) {
+        return TryProbed(*std::move(probe));
+      }
+      probes.push_back(*std::move(probe));
     }
-    std::sort(ranked.begin(), ranked.end());
-    for (size_t k = 0; k < ranked.size() && k < kMaxFullFrames && !IsTrusted(); ++k) {
-      probed_.push_back(ranked[k].second);
-      PLEAT_RETURN_IF_ERROR(TryFully(ranked[k].second, Eigen::Matrix3d::Identity()));
+    std::ranges::stable_sort(probes, {}, [this](const FrameEmbedding& probe) {
+      return std::pair(Score(probe.embedding), probe.frame);
+    });
+    for (size_t k = 0; k < probes.size() && k < kMaxFullFrames && !IsTrusted(); ++k) {
+      probed_.push_back(probes[k].frame);
+      PLEAT_RETURN_IF_ERROR(TryProbed(std::move(probes[k])));
     }
     return absl::OkStatus();
   }
@@ -236,9 +258,10 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  std::vector<int> probed_;              // best first
-  std::vector<double> probe_residuals_;  // infinite where nothing fits
-  absl::Status failure_;                 // of the first frame that could not be embedded
+  double least_residual_ = std::numeric_limits<double>::infinity();  // of all frames looked at
+  std::vector<int> probed_;                                          // best first
+  std::vector<double> probe_residuals_;                              // infinite where nothing fits
+  absl::Status failure_;  // of the first frame that could not be embedded
 };
 
 }  // namespace

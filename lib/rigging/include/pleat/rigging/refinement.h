@@ -9,10 +9,19 @@
 
 namespace pleat {
 
-// Weights of method.md, 2.2, step 9 (unit box lengths).
+// Weights of method.md, 2.2, step 9 (unit box lengths), and what measuring added to it.
 struct RefinementOptions {
-  double centring = 15000;  // squared distance of the bone to the medial surface, mean over it
-  double length = .25;      // relative deviation from the template's length
+  // Squared distance of the bone to the medial surface, across the bone and mean over it. Along
+  // the bone only leaves are held: a knee may slide to where the leg's proportions want it.
+  double centring = 15000;
+  // Where the medial surface lies deeper than this (about a limb's radius) its pull falls with the
+  // square of the depth: the middle of a skirt says little about a thigh.
+  double limb_radius = .03;
+  // Thigh to lower leg, and legs to the trunk between hips and shoulders: of all lengths these vary
+  // least among people (Drillis and Contini 1966), and under clothes the surface does not show
+  // them. Relative deviations in units of the template's leg.
+  double proportions = 100;
+  double length = .25;  // relative deviation from the template's length
   // The same for the bones across the trunk, from hips and chest to the limbs: the surface says
   // nothing about their length, under a skirt least of all.
   double trunk_length = 30;
