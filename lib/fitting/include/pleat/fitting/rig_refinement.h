@@ -20,8 +20,8 @@ struct RigRefinementOptions {
 
   // Pull of every joint to its place in the first rig, as a share of the mean curvature of the
   // error per joint. Without it joints that the motion hardly shows run away (knees under a skirt
-  // by 26-32 cm); .05 to .2 keeps nearly all of the gain.
-  double joint_prior = 0.1;
+  // by 26-32 cm); from .3 on known joints come out no worse than they were (docs/performance.md).
+  double joint_prior = 0.3;
   // Pulls of a vertex's weights to the mean of its neighbours' and to the first rig's, in units of
   // the body's mean squared size.
   double weight_smoothness = 1e-2;
@@ -39,7 +39,7 @@ struct RigRefinementOptions {
 
   // Joints alone: held harder, since they are all that can follow cloth.
   static RigRefinementOptions JointsOnly() {
-    return {.weights = false, .rest = false, .joint_prior = 0.3};
+    return {.weights = false, .rest = false, .joint_prior = 1};
   }
 };
 
