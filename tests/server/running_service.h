@@ -47,7 +47,6 @@ class RunningService {
   FakeTrainer& trainer() { return trainer_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(server_->port()); }
 
-<<<<<<< HEAD
   // Ends the server, giving its calls `drain_seconds`, and starts it again at the same port.
   void RestartServer(double drain_seconds) {
     GrpcServerOptions options = grpc_;
@@ -58,13 +57,7 @@ class RunningService {
 
   std::string TrainModel(const MeshSequence& clip = MakeSwayingTube(5)) {
     const std::string sequence_id = service().UploadSequence(clip, {})->id;
-    const std::string job_id = service().CreateTrainingJob({sequence_id}, {}, "")->id;
-=======
-  // A model of MakeSwayingTube(5).
-  std::string TrainModel() {
-    const std::string sequence_id = service().UploadSequence(MakeSwayingTube(5), {})->id;
     const std::string job_id = service().CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
->>>>>>> a3b0cc3 (The user's own rig over the wire, single joints locked; JSON with shortest decimals)
     std::string model_id;
     const absl::Status status = service().WatchJob(job_id, [&](const JobInfo& info) {
       model_id = info.result_id;
