@@ -117,9 +117,9 @@ TEST(ExperimentTest, HybridIsMeasuredAgainstSkinningLearnersAndBaselines) {
   const EvaluateReport& row = report.rows[0].report;
   EXPECT_LT(row.hybrid.mean_percent, row.skinned.mean_percent);
   EXPECT_EQ(row.learners.size(), 2u);
-  // The ridge learner is the ridge baseline, but for the components that its basis drops.
+  // The ridge learner is the ridge baseline, but that its basis drops components and that it fades.
   EXPECT_NEAR(row.learners.at("ridge").mean_percent, row.baselines.at("ridge").mean_percent,
-              .02 * row.baselines.at("ridge").mean_percent);
+              .1 * row.baselines.at("ridge").mean_percent);
   for (const ErrorSummary* error : {&row.skinned, &row.hybrid}) {
     EXPECT_GT(error->num_motion_frames, 0);
     EXPECT_GT(error->num_jitter_frames, 0);
