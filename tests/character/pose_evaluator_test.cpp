@@ -136,7 +136,7 @@ TEST(PoseEvaluatorTest, APoseThatLeavesTrainingNeverPops) {
   double confidence = 1;
   const Eigen::Matrix3Xf last = DetailAt(evaluator, strange, &confidence);
   EXPECT_LT(confidence, .02);
-  const Eigen::VectorXf& mean = SmallCharacter()->full_mean();
+  const Eigen::VectorXf mean = SmallCharacter()->full_basis().Mean();
   for (int v = 0; v < SmallCharacter()->num_vertices(); ++v) {
     EXPECT_NEAR(last.col(v).norm(), mean.segment<3>(3 * v).norm(), 2e-4) << v;  // axes turn it
   }
