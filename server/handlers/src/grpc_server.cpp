@@ -59,9 +59,9 @@ void LogForGrpc(gpr_log_func_args* args) {
 class GrpcServerImpl final : public GrpcServer {
  public:
   GrpcServerImpl(LocalCharacterService* service, const GrpcServerOptions& options)
-      : pose_executor_(options.num_pose_threads),
-        storage_executor_(options.num_storage_threads),
-        batcher_(&pose_executor_, options.max_batch) {
+      : batcher_(&pose_executor_, options.max_batch),
+        pose_executor_(options.num_pose_threads),
+        storage_executor_(options.num_storage_threads) {
     context_.service = service;
     context_.pose_executor = &pose_executor_;
     context_.batcher = &batcher_;
@@ -131,10 +131,11 @@ class GrpcServerImpl final : public GrpcServer {
   }
 
  private:
-  // Reactors post to the executors until the server is gone, so the server goes first.
+  // Reactors post to the executors until the server is gone, so the server goes first; the last
+  // tasks of the executors use the batcher, so it goes last.
   HandlerContext context_;
-  Executor pose_executor_, storage_executor_;
   PoseBatcher batcher_;
+  Executor pose_executor_, storage_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   std::mutex shutdown_mutex_;
   std::unique_ptr<grpc::Server> server_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <future>
+#include <memory>
 #include <thread>
 
 #include "server/fake_training.h"
@@ -74,14 +75,15 @@ TEST_F(PoseBatcherTest, WhatWaitsForOneModelIsEvaluatedTogetherToTheSameFrames) 
   const auto model = FakeModel();
   std::vector<std::unique_ptr<Show>> shows;
   {
-    Executor executor(1);
-    PoseBatcher batcher(&executor, 4);
-    Hold hold(&executor);
+    auto executor = std::make_unique<Executor>(1);
+    PoseBatcher batcher(executor.get(), 4);
+    Hold hold(executor.get());
     for (int t = 0; t < 10; ++t) {
       shows.push_back(MakeShow(model, t));
       batcher.Submit(model.get(), shows.back().get());
     }
     hold.Release();
+    executor.reset();  // waits for all work, which uses the batcher
   }
   PoseEvaluator evaluator(model);
   for (int t = 0; t < 10; ++t) {
@@ -99,15 +101,16 @@ TEST_F(PoseBatcherTest, ModelsAreNotMixedAndAManyTimesUsedOneStarvesNoOther) {
   std::vector<std::unique_ptr<Show>> shows;
   const auto last = MakeShow(rare, 3);
   {
-    Executor executor(1);
-    PoseBatcher batcher(&executor, 4);
-    Hold hold(&executor);
+    auto executor = std::make_unique<Executor>(1);
+    PoseBatcher batcher(executor.get(), 4);
+    Hold hold(executor.get());
     for (int t = 0; t < 40; ++t) {
       shows.push_back(MakeShow(popular, t % 5));
       batcher.Submit(popular.get(), shows.back().get());
       if (t == 0) batcher.Submit(rare.get(), last.get());
     }
     hold.Release();
+    executor.reset();  // waits for all work, which uses the batcher
   }
   EXPECT_EQ(last->num_together, 1);
   EXPECT_EQ(order_[4], last.get()) << "it came second and waits for one batch";
@@ -124,13 +127,14 @@ TEST_F(PoseBatcherTest, WorkThatIsWithdrawnOrWrongDisturbsNobody) {
   short_pose.rotations.pop_back();
   Show wrong(model, short_pose, &order_);
   {
-    Executor executor(1);
-    PoseBatcher batcher(&executor, 16);
-    Hold hold(&executor);
+    auto executor = std::make_unique<Executor>(1);
+    PoseBatcher batcher(executor.get(), 16);
+    Hold hold(executor.get());
     batcher.Submit(model.get(), withdrawn.get());
     batcher.Submit(model.get(), &wrong);
     batcher.Submit(model.get(), good.get());
     hold.Release();
+    executor.reset();  // waits for all work, which uses the batcher
   }
   EXPECT_TRUE(withdrawn->finished);
   EXPECT_THAT(wrong.status, HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
@@ -146,8 +150,8 @@ TEST_F(PoseBatcherTest, ManyThreadsShareTheWork) {
     shows.push_back(std::make_unique<Show>(model, track.poses.back(), nullptr));
   }
   {
-    Executor executor(4);
-    PoseBatcher batcher(&executor, 8);
+    auto executor = std::make_unique<Executor>(4);
+    PoseBatcher batcher(executor.get(), 8);
     std::vector<std::thread> threads;
     for (int p = 0; p < 4; ++p) {
       threads.emplace_back([&, p] {
@@ -155,6 +159,7 @@ TEST_F(PoseBatcherTest, ManyThreadsShareTheWork) {
       });
     }
     for (std::thread& thread : threads) thread.join();
+    executor.reset();
   }
   for (const auto& show : shows) {
     EXPECT_TRUE(show->finished);
