@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "check_count.h"
+#include "clip_info.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/skeleton_messages.h"
@@ -90,30 +91,14 @@ absl::StatusOr<CompressionRecord> RecordFromProto(const v1::CompressionRecord& m
 
 v1::CompressedSequence ToProto(const CompressedSequenceInfo& info) {
   v1::CompressedSequence message;
-  message.set_id(info.id);
-  message.set_name(ToValidUtf8(info.name));
-  message.set_num_frames(info.num_frames);
-  message.set_num_vertices(info.num_vertices);
-  message.set_num_faces(info.num_faces);
-  *message.mutable_frame_rate() = ToProto(info.frame_rate);
-  message.set_size_bytes(info.size_bytes);
+  ClipInfoToProto(info, &message);
   if (info.record) *message.mutable_record() = RecordToProto(*info.record);
   return message;
 }
 
 absl::StatusOr<CompressedSequenceInfo> FromProto(const v1::CompressedSequence& message) {
-  PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), "compressed_sequence.id"));
-  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_frames(), "compressed_sequence.num_frames"));
-  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_vertices(), "compressed_sequence.num_vertices"));
-  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_faces(), "compressed_sequence.num_faces"));
   CompressedSequenceInfo info;
-  info.id = message.id();
-  info.name = message.name();
-  info.num_frames = message.num_frames();
-  info.num_vertices = message.num_vertices();
-  info.num_faces = message.num_faces();
-  PLEAT_ASSIGN_OR_RETURN(info.frame_rate, FromProto(message.frame_rate()));
-  info.size_bytes = message.size_bytes();
+  PLEAT_RETURN_IF_ERROR(ClipInfoFromProto(message, "compressed_sequence", &info));
   if (message.has_record()) {
     PLEAT_ASSIGN_OR_RETURN(info.record, RecordFromProto(message.record()));
   }

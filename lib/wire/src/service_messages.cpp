@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "check_count.h"
+#include "clip_info.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
@@ -13,29 +14,13 @@
 namespace pleat {
 v1::Sequence ToProto(const SequenceInfo& info) {
   v1::Sequence message;
-  message.set_id(info.id);
-  message.set_name(ToValidUtf8(info.name));
-  message.set_num_frames(info.num_frames);
-  message.set_num_vertices(info.num_vertices);
-  message.set_num_faces(info.num_faces);
-  *message.mutable_frame_rate() = ToProto(info.frame_rate);
-  message.set_size_bytes(info.size_bytes);
+  ClipInfoToProto(info, &message);
   return message;
 }
 
 absl::StatusOr<SequenceInfo> FromProto(const v1::Sequence& message) {
-  PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), "sequence.id"));
-  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_frames(), "sequence.num_frames"));
-  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_vertices(), "sequence.num_vertices"));
-  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_faces(), "sequence.num_faces"));
   SequenceInfo info;
-  info.id = message.id();
-  info.name = message.name();
-  info.num_frames = message.num_frames();
-  info.num_vertices = message.num_vertices();
-  info.num_faces = message.num_faces();
-  PLEAT_ASSIGN_OR_RETURN(info.frame_rate, FromProto(message.frame_rate()));
-  info.size_bytes = message.size_bytes();
+  PLEAT_RETURN_IF_ERROR(ClipInfoFromProto(message, "sequence", &info));
   return info;
 }
 
