@@ -10,6 +10,7 @@
 #include "pleat/codec/sequence_decoder.h"
 #include "pleat/formats/sequence_file.h"
 #include "server/running_service.h"
+#include "server/watch_to_end.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -19,17 +20,7 @@ using ::testing::HasSubstr;
 
 class CompressionContractTest : public testing::TestWithParam<Reach> {
  protected:
-  JobInfo WatchToEnd(const std::string& id) {
-    JobInfo last;
-    EXPECT_THAT(service_.WatchJob(id,
-                                  [&](const JobInfo& info) {
-                                    EXPECT_GE(info.fraction, last.fraction);
-                                    last = info;
-                                    return true;
-                                  }),
-                IsOk());
-    return last;
-  }
+  JobInfo WatchToEnd(const std::string& id) { return pleat::WatchToEnd(service_, id); }
   // The id of the compressed sequence.
   std::string Compress(const MeshSequence& sequence, const CompressOptions& options) {
     const std::string id = service_.UploadSequence(sequence, {})->id;

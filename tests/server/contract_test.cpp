@@ -9,6 +9,7 @@
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "server/running_service.h"
+#include "server/watch_to_end.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -18,17 +19,7 @@ using ::testing::HasSubstr;
 
 class ContractTest : public testing::TestWithParam<Reach> {
  protected:
-  JobInfo WatchToEnd(const std::string& id) {
-    JobInfo last;
-    EXPECT_THAT(service_.WatchJob(id,
-                                  [&](const JobInfo& info) {
-                                    EXPECT_GE(info.fraction, last.fraction);
-                                    last = info;
-                                    return true;
-                                  }),
-                IsOk());
-    return last;
-  }
+  JobInfo WatchToEnd(const std::string& id) { return pleat::WatchToEnd(service_, id); }
 
   RunningService running_{GetParam()};
   CharacterService& service_ = running_.service();

@@ -1,0 +1,26 @@
+// Watching a job as a test does.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "pleat/character/character_service.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+
+// The job's last state; its progress must never fall.
+inline JobInfo WatchToEnd(CharacterService& service, const std::string& id) {
+  JobInfo last;
+  EXPECT_THAT(service.WatchJob(id,
+                               [&](const JobInfo& info) {
+                                 EXPECT_GE(info.fraction, last.fraction);
+                                 last = info;
+                                 return true;
+                               }),
+              IsOk());
+  return last;
+}
+
+}  // namespace pleat
