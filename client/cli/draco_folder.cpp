@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cli/content_flag.h"
 #include "cli/draco_process.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
@@ -41,6 +42,10 @@ nlohmann::ordered_json HeaderJson(const StreamHeader& header, FrameRate frame_ra
       {"bits", header.box.bits},
       {"step_m", header.box.step_m()}};
   json["vertex_order"] = header.vertex_order;
+  if (header.content != StreamContent::kMesh) {
+    json["content"] = StreamContentName(header.content);
+    json["control_vertices"] = header.control_vertices;
+  }
   return json;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "absl/strings/str_format.h"
+#include "cli/content_flag.h"
 #include "cli/text_table.h"
 #include "pleat/render/line_plot.h"
 
@@ -26,6 +27,14 @@ const char* ArrivalsName(Arrivals arrivals) {
 
 double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// "delta", "control delta", "parameters".
+std::string ContentAndEncoding(const LoadReport& report) {
+  const StreamContent content = report.options.session.stream.content;
+  if (content == StreamContent::kMesh) return report.encoding;
+  const std::string name = StreamContentName(content);
+  return content == StreamContent::kParameters ? name : name + " " + report.encoding;
 }
 
 nlohmann::ordered_json TimesJson(const std::vector<double>& sorted) {
@@ -78,6 +87,7 @@ nlohmann::ordered_json LoadReportJson(const LoadReport& report) {
       {"model_id", report.model_id},
       {"num_vertices", report.num_vertices},
       {"encoding", report.encoding},
+      {"content", StreamContentName(report.options.session.stream.content)},
       {"num_clients", report.options.num_clients},
       {"arrivals", ArrivalsName(report.options.arrivals)},
       {"rate_fps", report.options.rate_fps},
@@ -125,7 +135,8 @@ void PrintLoadReport(const LoadReport& report, std::ostream& out) {
       std::minmax_element(report.achieved_fps.begin(), report.achieved_fps.end());
   out << absl::StrFormat("%d clients, %s arrivals, %s: %d of %d poses answered in %.1f s",
                          report.options.num_clients, ArrivalsName(report.options.arrivals),
-                         report.encoding, report.num_frames, result.num_intended, result.seconds);
+                         ContentAndEncoding(report), report.num_frames, result.num_intended,
+                         result.seconds);
   if (result.num_superseded > 0) out << ", " << result.num_superseded << " superseded";
   if (result.num_rejected > 0) out << ", " << result.num_rejected << " rejected";
   if (result.num_resumed > 0) out << ", " << result.num_resumed << " reconnections";
@@ -153,7 +164,7 @@ absl::StatusOr<Image> PlotLoad(const LoadReport& report) {
   }
   return RenderLinePlot(
       series, {.title = absl::StrFormat("%d clients, %s, %d vertices", report.options.num_clients,
-                                        report.encoding, report.num_vertices),
+                                        ContentAndEncoding(report), report.num_vertices),
                .x_label = "percent of the frames",
                .y_label = "at most (ms)"});
 }

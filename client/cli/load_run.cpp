@@ -110,7 +110,7 @@ class Client {
     samples_.push_back({.sent_s = sent_s,
                         .latency_ms = 1e3 * (now_s - sent_s),
                         .times = frame.times,
-                        .num_bytes = frame.draco.size()});
+                        .num_bytes = frame.num_bytes});
     num_superseded_ += frame.num_superseded;
     num_resumed_ += frame.resumed;
     last_frame_s_ = now_s;

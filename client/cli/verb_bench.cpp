@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/content_flag.h"
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/load_report.h"
@@ -128,7 +129,9 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
   if (poses.empty()) return absl::InvalidArgumentError("the motion has no frames");
 
   InstallInterruptHandler();
-  const FrameEncoderOptions& stream = report.options.session.stream;
+  // Draco's encoder would have whole meshes, whatever the sessions ask for.
+  FrameEncoderOptions stream = report.options.session.stream;
+  stream.content = StreamContent::kMesh;
   Topology topology;
   PLEAT_ASSIGN_OR_RETURN(const std::vector<Eigen::Matrix3Xf> frames,
                          SomeFrames(*remote, character, poses, stream, &topology));
@@ -196,6 +199,7 @@ void AddBenchVerb(CLI::App& app, Session& session) {
                    "[every joint sways]");
   verb->add_option("--fps", options->fps, "frames per second, where a sequence does not say");
   AddLoadFlags(verb, &options->load);
+  AddContentFlag(verb, &options->load.session.stream.content);
   verb->add_option("--encoding", options->encoding, "mesh, points or delta")
       ->check(CLI::IsMember({"mesh", "points", "delta"}))
       ->capture_default_str();

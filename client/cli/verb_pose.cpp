@@ -8,7 +8,9 @@
 
 #include "absl/strings/str_format.h"
 #include "cli/animation_writer.h"
+#include "cli/content_flag.h"
 #include "cli/draco_folder.h"
+#include "cli/exit_code.h"
 #include "cli/frame_rate.h"
 #include "cli/model_input.h"
 #include "cli/motion_edit.h"
@@ -27,6 +29,7 @@ namespace {
 
 struct PoseVerbOptions {
   std::string model, motion, output, format = "auto", encoding = "mesh";
+  StreamContent content = StreamContent::kMesh;
   int position_bits = FrameEncoderOptions().position_bits;
   std::vector<std::string> bone_scales;
   bool skinned_only = false;
@@ -52,6 +55,7 @@ FrameEncoderOptions EncoderOptions(const PoseVerbOptions& options) {
   FrameEncoderOptions encoder;
   encoder.encoding =
       options.encoding == "mesh" ? FrameEncoding::kDracoMesh : FrameEncoding::kDracoPointCloud;
+  encoder.content = options.content;
   encoder.position_bits = options.position_bits;
   return encoder;
 }
@@ -134,9 +138,10 @@ absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
   return writer->Finish();
 }
 
-// The server's Draco bytes as they come.
-absl::Status WriteStream(const PoseVerbOptions& options, RemoteCharacterService& service,
-                         const ClipQuery& query, const Progress& progress, Confidence* confidence) {
+// The server's Draco bytes as they come. The number of their vertices.
+absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, RemoteCharacterService& service,
+                                const ClipQuery& query, const Progress& progress,
+                                Confidence* confidence) {
   DracoFolderWriter writer(options.output, FrameRateFromFps(query.track.fps));
   StreamHeader header;
   ClipStreamSink sink;
@@ -150,13 +155,45 @@ absl::Status WriteStream(const PoseVerbOptions& options, RemoteCharacterService&
     return progress.Report((t + 1.0) / query.track.num_frames());
   };
   PLEAT_RETURN_IF_ERROR(service.StreamClip(query, EncoderOptions(options), sink));
-  return writer.Finish(header);
+  PLEAT_RETURN_IF_ERROR(writer.Finish(header));
+  return header.num_vertices;
+}
+
+// Poses and coefficients from the server, shown by the model here.
+absl::Status EvaluateByParameters(RemoteCharacterService& service,
+                                  std::shared_ptr<const CharacterModel> model,
+                                  const ClipQuery& query, const ConsumeFrame& consume) {
+  PoseEvaluator evaluator(std::move(model));
+  EvaluatedFrame frame;
+  ClipStreamSink sink;
+  sink.on_parameters = [&](int t, const FrameParameters& parameters) -> absl::Status {
+    PLEAT_RETURN_IF_ERROR(evaluator.Show(parameters, query.bone_scales, &frame));
+    return consume(t, frame);
+  };
+  return service.StreamClip(query, {.content = StreamContent::kParameters}, sink);
+}
+
+// What a server can send for this output, and only a server.
+absl::Status CheckContent(StreamContent content, AnimationFormat format, bool from_server) {
+  if (content == StreamContent::kMesh) return absl::OkStatus();
+  if (!from_server) {
+    return UsageError("--content is about frames from a server; this model is evaluated here");
+  }
+  const bool is_draco = format == AnimationFormat::kDraco;
+  if (content == StreamContent::kControlMesh && !is_draco) {
+    return UsageError("--content control is a stream of another mesh: write it with --format drc");
+  }
+  if (content == StreamContent::kParameters && is_draco) {
+    return UsageError("--content parameters has no Draco frames: choose pc2, pseq, obj or ply");
+  }
+  return absl::OkStatus();
 }
 
 // The number of vertices of what was written.
 absl::StatusOr<int> PoseFromFile(const PoseVerbOptions& options, AnimationFormat format,
                                  const Session& session, const Progress& progress,
                                  Confidence* confidence) {
+  PLEAT_RETURN_IF_ERROR(CheckContent(options.content, format, false));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
                          ReadModelFile(options.model));
   PLEAT_ASSIGN_OR_RETURN(const ClipQuery query, ReadQuery(options, model->skeleton(), session));
@@ -177,17 +214,21 @@ absl::StatusOr<int> PoseFromService(const PoseVerbOptions& options, AnimationFor
   PLEAT_ASSIGN_OR_RETURN(ClipQuery query, ReadQuery(options, info.skeleton, session));
   query.model_id = id;
   auto* remote = dynamic_cast<RemoteCharacterService*>(service.get());
+  PLEAT_RETURN_IF_ERROR(CheckContent(options.content, format, remote != nullptr));
   if (remote != nullptr && format == AnimationFormat::kDraco) {
-    PLEAT_RETURN_IF_ERROR(WriteStream(options, *remote, query, progress, confidence));
-    return info.num_vertices;
+    return WriteStream(options, *remote, query, progress, confidence);
   }
   // Polygons and texture coordinates are not in a stream.
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, service->DownloadModel(id, {}));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
   PLEAT_RETURN_IF_ERROR(WriteFrames(
       options, format, *model, query,
-      [&](const ConsumeFrame& consume) { return service->EvaluateClip(query, consume); }, progress,
-      confidence));
+      [&](const ConsumeFrame& consume) {
+        return options.content == StreamContent::kParameters
+                   ? EvaluateByParameters(*remote, model, query, consume)
+                   : service->EvaluateClip(query, consume);
+      },
+      progress, confidence));
   return info.num_vertices;
 }
 
@@ -226,6 +267,7 @@ void AddPoseVerb(CLI::App& app, Session& session) {
   verb->add_option("--bits", options->position_bits, "of drc: bits per coordinate of the grid")
       ->check(CLI::Range(QuantizationBox::kMinBits, QuantizationBox::kMaxBits))
       ->capture_default_str();
+  AddContentFlag(verb, &options->content);
   verb->add_option("--bone-scale", options->bone_scales,
                    "JOINT=FACTOR: length of the bone that ends in JOINT; wins over the motion's");
   verb->add_flag("--skinned-only", options->skinned_only, "without the learnt detail");

@@ -185,6 +185,7 @@ class RemoteLiveSession final : public LiveSession {
     frame->number = response.frame().number();
     frame->confidence = response.frame().confidence();
     frame->draco = std::move(*response.mutable_frame()->mutable_draco());
+    frame->num_bytes = frame->draco.size();
     frame->mark = MarkOf(response.frame());
     if (header_->content == StreamContent::kParameters) {
       return TakeParameters(response.frame(), frame);
@@ -209,6 +210,7 @@ class RemoteLiveSession final : public LiveSession {
   absl::Status TakeParameters(const v1::Frame& message, LiveFrame* frame) {
     PLEAT_ASSIGN_OR_RETURN(frame->parameters, FromProto(message.parameters()));
     frame->parameters->confidence = frame->confidence;
+    frame->num_bytes = message.parameters().ByteSizeLong();
     if (!options_.decode || options_.model == nullptr) return absl::OkStatus();
     if (!evaluator_.has_value()) evaluator_.emplace(options_.model);
     PLEAT_RETURN_IF_ERROR(evaluator_->Show(*frame->parameters, bone_scales_, &evaluated_));

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <map>
 #include <thread>
 
 #include "e2e/pleat_program.h"
@@ -73,6 +74,20 @@ TEST_F(Bench, ReportsLatenciesServerTimesAndThroughput) {
     EXPECT_LE(report["achieved_fps"]["lowest"], report["achieved_fps"]["highest"]);
     EXPECT_EQ(Bytes(File("b.png")).substr(1, 3), "PNG");
   }
+}
+
+TEST_F(Bench, FramesOfParametersAndControlMeshesAreSmall) {
+  std::map<std::string, double> num_bytes;
+  for (const std::string content : {"mesh", "control", "parameters"}) {
+    const ProcessResult result = pleat_.Run(
+        Command({"--rate", "60", "--seconds", ".3", "--encoding", "points", "--content", content}));
+    ASSERT_EQ(result.exit_code, 0) << result.err << server_.log();
+    EXPECT_EQ(Report()["content"], content);
+    num_bytes[content] = Report()["bytes_per_frame"];
+  }
+  EXPECT_LT(num_bytes["control"], .3 * num_bytes["mesh"]);
+  EXPECT_GT(num_bytes["parameters"], 18 * 4 * 4);  // at least the rotations
+  EXPECT_LT(num_bytes["parameters"], 1000);
 }
 
 // Of 1.5 s the server stands still for half a second: a third of the poses should have been sent

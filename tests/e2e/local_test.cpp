@@ -5,6 +5,7 @@
 
 #include "e2e/pleat_program.h"
 #include "e2e/report_checks.h"
+#include "e2e/sequence_difference.h"
 #include "pleat/codec/frame_decoder.h"
 #include "pleat/formats/sequence_reader.h"
 #include "support/status_matchers.h"
@@ -14,15 +15,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-// Largest coordinate difference, metres.
-double LargestDifference(const MeshSequence& a, const MeshSequence& b) {
-  double largest = 0;
-  for (int t = 0; t < a.num_frames(); ++t) {
-    largest = std::max<double>(largest, (a.frame(t) - b.frame(t)).cwiseAbs().maxCoeff());
-  }
-  return largest;
-}
 
 TEST(Local, TrainsPosesAndMeasures) {
   PleatProgram pleat;

@@ -47,7 +47,8 @@ struct LiveFrame {
   Eigen::Matrix3Xf positions;
   std::optional<FrameParameters> parameters;  // of streams of parameters
   double confidence = 0;
-  std::string draco;  // what came over the wire
+  std::string draco;     // what came over the wire
+  size_t num_bytes = 0;  // of `draco`, or of the message of the parameters
   FrameMark mark;
   int num_superseded = 0;  // poses before this one that get no frame
   LiveTimes times;
