@@ -1,11 +1,16 @@
 #include "channel.h"
 
+#include <grpcpp/completion_queue.h>
 #include <grpcpp/create_channel.h>
+#include <grpcpp/generic/generic_stub.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/support/channel_arguments.h>
 
 #include <algorithm>
 #include <chrono>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 
 namespace pleat {
 namespace {
@@ -14,6 +19,7 @@ namespace {
 constexpr int kMaxReceiveBytes = 64 << 20;
 constexpr int kKeepaliveMs = 120'000;
 constexpr int kLiveLookaheadBytes = 65536;
+constexpr auto kProbeTime = std::chrono::seconds(1);
 constexpr auto kPoll = std::chrono::milliseconds(50);
 
 // Calls that may be repeated without harm are, when the server was not reached. A job is created at
@@ -35,7 +41,57 @@ std::shared_ptr<grpc::ChannelCredentials> MakeCredentials(const RemoteOptions& o
   return grpc::SslCredentials(tls);
 }
 
+// Why a call fails now, in gRPC's words: of the standard health service, which every server has.
+std::string ReasonOfFailure(const std::shared_ptr<grpc::Channel>& channel) {
+  grpc::GenericStub stub(channel);
+  grpc::CompletionQueue queue;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + kProbeTime);
+  grpc::ByteBuffer request, response;
+  grpc::Status status;
+  const auto call =
+      stub.PrepareUnaryCall(&context, "/grpc.health.v1.Health/Check", request, &queue);
+  call->StartCall();
+  call->Finish(&response, &status, nullptr);
+  void* tag = nullptr;
+  bool ok = false;
+  queue.Next(&tag, &ok);
+  return status.error_message();
+}
+
+absl::Status NoConnection(const std::string& address, const RemoteOptions& options,
+                          const std::string& reason) {
+  if (absl::StrContains(reason, "andshake")) {
+    return absl::UnavailableError(absl::StrCat(
+        "no encrypted connection with '", address, "': its certificate must be signed by ",
+        options.tls_root_certificates.empty() ? "an authority of this system" : "that of --tls-ca",
+        " and name this address, and it must speak TLS (", reason, ")"));
+  }
+  return absl::UnavailableError(absl::StrCat("no Pleat server answers at '", address,
+                                             "'; start one with `pleatd` or name another",
+                                             options.tls ? "" : " (does it want --tls?)"));
+}
+
 }  // namespace
+
+absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
+                               const std::string& address, const RemoteOptions& options) {
+  const auto deadline =
+      std::chrono::system_clock::now() +
+      std::chrono::milliseconds(static_cast<int64_t>(options.connect_seconds * 1000));
+  std::string reason;
+  grpc_connectivity_state state = channel->GetState(true);
+  while (state != GRPC_CHANNEL_READY) {
+    if (state == GRPC_CHANNEL_TRANSIENT_FAILURE) {
+      reason = ReasonOfFailure(channel);
+      if (options.tls && absl::StrContains(reason, "andshake")) break;  // waiting will not help
+    }
+    if (!channel->WaitForStateChange(state, deadline)) break;
+    state = channel->GetState(true);
+  }
+  if (channel->GetState(false) == GRPC_CHANNEL_READY) return absl::OkStatus();
+  return NoConnection(address, options, reason);
+}
 
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const RemoteOptions& options,
                                            ChannelUse use) {

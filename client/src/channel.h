@@ -23,6 +23,11 @@ enum class ChannelUse {
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const RemoteOptions& options,
                                            ChannelUse use);
 
+// Waits until the channel is connected, at most so long. kUnavailable says why it is not; that both
+// sides do not agree on encryption is said at once.
+absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
+                               const std::string& address, const RemoteOptions& options);
+
 absl::Status FromGrpcStatus(const grpc::Status& status);
 
 // True for errors after which the same call may succeed a little later.

@@ -15,13 +15,7 @@ namespace pleat {
 absl::StatusOr<std::unique_ptr<RemoteCharacterService>> RemoteCharacterService::Connect(
     const std::string& address, RemoteOptions options) {
   std::shared_ptr<grpc::Channel> channel = MakeChannel(address, options, ChannelUse::kCalls);
-  const auto deadline =
-      std::chrono::system_clock::now() +
-      std::chrono::milliseconds(static_cast<int64_t>(options.connect_seconds * 1000));
-  if (!channel->WaitForConnected(deadline)) {
-    return absl::UnavailableError(absl::StrCat("no Pleat server answers at '", address,
-                                               "'; start one with `pleatd` or name another"));
-  }
+  PLEAT_RETURN_IF_ERROR(WaitForConnection(channel, address, options));
   return std::unique_ptr<RemoteCharacterService>(new RemoteCharacterService(
       std::make_unique<State>(address, std::move(channel), std::move(options))));
 }

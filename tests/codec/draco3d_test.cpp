@@ -61,12 +61,14 @@ std::string Expected(const std::string& name, const std::string& bytes) {
   return line.data();
 }
 
-// Writes the payloads of all encodings into a folder. Names end in the types of the attributes.
+// Writes the payloads of all encodings into a folder, in the order of their names, which end in the
+// types of the attributes.
 class Payloads {
  public:
   Payloads() {
     const TestMesh mesh = MakeTorus(24, 12, 3);
     AddStream("cloud", mesh, FrameEncoding::kDracoPointCloud);
+    AddControlStream("control", MakeTorus(8, 6, 3));
     AddStream("delta", mesh, FrameEncoding::kDracoDelta);
     AddStream("mesh", mesh, FrameEncoding::kDracoMesh);
   }
@@ -75,13 +77,24 @@ class Payloads {
 
  private:
   void AddStream(const std::string& name, const TestMesh& mesh, FrameEncoding encoding) {
-    FrameEncoder encoder =
-        FrameEncoder::Create(mesh.topology, mesh.positions, {.encoding = encoding}).value();
+    AddFrames(name, mesh,
+              FrameEncoder::Create(mesh.topology, mesh.positions, {.encoding = encoding}).value());
+  }
+  // `mesh` as the control mesh of a character of twice its vertices.
+  void AddControlStream(const std::string& name, const TestMesh& mesh) {
+    std::vector<int32_t> vertices(mesh.positions.cols());
+    for (size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<int32_t>(2 * i);
+    const FrameEncoderOptions options{.encoding = FrameEncoding::kDracoDelta,
+                                      .content = StreamContent::kControlMesh};
+    AddFrames(name, mesh,
+              FrameEncoder::Create(mesh.topology, mesh.positions, options, vertices).value());
+  }
+  void AddFrames(const std::string& name, const TestMesh& mesh, FrameEncoder encoder) {
     for (int t = 0; t < 3; ++t) {
       const std::string bytes = encoder.Encode(Bend(mesh.positions, t)).value();
-      const std::string types = encoding == FrameEncoding::kDracoMesh ? "fi"
-                                : encoder.mark().keyframe             ? "f"
-                                                                      : "iii";
+      const std::string types = encoder.header().encoding == FrameEncoding::kDracoMesh ? "fi"
+                                : encoder.mark().keyframe                              ? "f"
+                                                                                       : "iii";
       Add(name + std::to_string(t) + "." + types, bytes);
     }
     Add(name + "_topology.fi", encoder.header().topology);

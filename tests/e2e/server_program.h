@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "e2e/process.h"
 
@@ -12,10 +13,10 @@ namespace pleat {
 
 class ServerProgram {
  public:
-  // output_stem: where its log goes.
-  ServerProgram(const std::string& data_folder, const std::string& output_stem)
-      : process_({ProgramPath("pleatd"), "--listen", "127.0.0.1:0", "--data-dir", data_folder},
-                 output_stem) {}
+  // output_stem: where its log goes. flags: further ones.
+  ServerProgram(const std::string& data_folder, const std::string& output_stem,
+                const std::vector<std::string>& flags = {})
+      : process_(Command(data_folder, flags), output_stem) {}
 
   // The address it listens on, empty when it did not come up.
   std::string WaitForAddress() {
@@ -34,6 +35,14 @@ class ServerProgram {
   }
 
  private:
+  static std::vector<std::string> Command(const std::string& data_folder,
+                                          const std::vector<std::string>& flags) {
+    std::vector<std::string> command = {ProgramPath("pleatd"), "--listen", "127.0.0.1:0",
+                                        "--data-dir", data_folder};
+    command.insert(command.end(), flags.begin(), flags.end());
+    return command;
+  }
+
   Process process_;
 };
 
