@@ -83,7 +83,7 @@ class SmallModelBuilder {
     GpRegressionParameters stage;
     stage.kernel_options.linear = true;
     stage.input_mean = Vector(num_inputs);
-    stage.input_scale = 2;
+    stage.input_scales = Eigen::VectorXd::LinSpaced(num_inputs, 1, 2);
     stage.inputs = Matrix(kRows, num_inputs);
     stage.output_mean = Vector(num_outputs);
     stage.output_scale = 0.01;
@@ -97,7 +97,7 @@ class SmallModelBuilder {
     constexpr int kRows = 3;
     RegionalGpParameters regional;
     regional.input_mean = Vector(num_inputs);
-    regional.input_scale = 2;
+    regional.input_scales = Eigen::VectorXd::LinSpaced(num_inputs, 1, 2);
     regional.inputs = Matrix(kRows, num_inputs);
     regional.output_mean = Vector(num_outputs);
     for (const std::vector<int>& columns : {std::vector<int>{0, 1, 2}, {1, 4}}) {

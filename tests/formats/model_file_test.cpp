@@ -155,7 +155,7 @@ TEST_P(GoldenModelTest, StaysReadable) {
 INSTANTIATE_TEST_SUITE_P(Versions, GoldenModelTest,
                          ::testing::Combine(::testing::Values(Learner::kGp, Learner::kSgplvm,
                                                               Learner::kRidge, Learner::kRegional),
-                                            ::testing::Values(1, 2)));
+                                            ::testing::Values(1, 2, 3)));
 
 }  // namespace
 }  // namespace pleat

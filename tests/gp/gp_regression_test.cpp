@@ -192,7 +192,7 @@ TEST(GpRegressionTest, RefusesHostileParameters) {
   refused([](auto& p) { p.inputs(3, 1) = kNan; }, "input is not finite");
   refused([](auto& p) { p.alpha(3, 1) = kInf; }, "alpha");
   refused([](auto& p) { p.whitener(3, 1) = std::numeric_limits<float>::infinity(); }, "whitener");
-  refused([](auto& p) { p.input_scale = 0; }, "scale");
+  refused([](auto& p) { p.input_scales[1] = 0; }, "scale");
   refused([](auto& p) { p.output_scale = kNan; }, "scale");
   refused([](auto& p) { p.kernel.noise = kNan; }, "hyperparameter");
   refused([](auto& p) { p.kernel_options.absolute_jitter = -1; }, "floor");

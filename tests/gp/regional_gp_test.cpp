@@ -111,6 +111,28 @@ TEST(RegionalGpTest, RestoredFromItsParametersPredictsTheSame) {
   EXPECT_EQ(a, b);
 }
 
+TEST(RegionalGpTest, ScalesOfTheInputsAreUnitsOnly) {
+  // The same data with every input in another unit, and the scales that undo it.
+  const TwoLimbs data = MakeTwoLimbs(40, .5);
+  RegionalGpOptions options;
+  options.input_scales = Eigen::VectorXd::LinSpaced(data.inputs.cols(), .5, 3);
+  const Eigen::MatrixXd in_other_units = data.inputs * options.input_scales.asDiagonal();
+  const absl::StatusOr<RegionalGp> plain = RegionalGp::Train(data.inputs, data.regions);
+  const absl::StatusOr<RegionalGp> scaled =
+      RegionalGp::Train(in_other_units, data.regions, options);
+  ASSERT_TRUE(plain.ok() && scaled.ok());
+  RegionalGp::Workspace workspace;
+  Eigen::VectorXd a(2), b(2);
+  for (const int row : {3, 20, 33}) {
+    plain->Predict(data.inputs.row(row).transpose(), &workspace, a);
+    scaled->Predict(in_other_units.row(row).transpose(), &workspace, b);
+    EXPECT_LT((a - b).norm(), 1e-4);
+  }
+  options.input_scales[1] = 0;
+  EXPECT_EQ(RegionalGp::Train(data.inputs, data.regions, options).status().code(),
+            absl::StatusCode::kInvalidArgument);
+}
+
 TEST(RegionalGpTest, RefusesWhatDoesNotFitTogether) {
   TwoLimbs data = MakeTwoLimbs(20, .5);
   const absl::StatusOr<RegionalGp> gp = RegionalGp::Train(data.inputs, data.regions);

@@ -25,16 +25,25 @@ std::set<int> Grown(const Skeleton& skeleton, const std::set<int>& bones) {
   return grown;
 }
 
-// The columns of the feature row that belong to `bones`, in every pose of the history.
+// The columns of the feature row that belong to `bone` (not the root, which has none) in pose `h`
+// of the history.
+std::vector<int> ColumnsOf(int h, int bone, int num_joints, const TrainOptions& options) {
+  const int values = options.rotations == "quaternion" ? 4 : 3;
+  std::vector<int> columns;
+  for (int i = 0; i < values; ++i) {
+    columns.push_back((h * (num_joints - 1) + bone - 1) * values + i);
+  }
+  return columns;
+}
+
+// Those that belong to `bones`, in every pose of the history.
 std::vector<int> ColumnsOf(const std::set<int>& bones, int num_joints,
                            const TrainOptions& options) {
-  const int values = options.rotations == "quaternion" ? 4 : 3;
   std::vector<int> columns;
   for (int h = 0; h < options.history; ++h) {
     for (const int bone : bones) {
-      for (int i = 0; i < values; ++i) {
-        columns.push_back((h * (num_joints - 1) + bone - 1) * values + i);
-      }
+      const std::vector<int> more = ColumnsOf(h, bone, num_joints, options);
+      columns.insert(columns.end(), more.begin(), more.end());
     }
   }
   return columns;
@@ -70,6 +79,16 @@ std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& 
     regions.push_back(std::move(region));
   }
   return regions;
+}
+
+std::vector<std::vector<int>> FeatureGroups(int num_joints, const TrainOptions& options) {
+  std::vector<std::vector<int>> groups;
+  for (int h = 0; h < options.history; ++h) {
+    for (int bone = 1; bone < num_joints; ++bone) {
+      groups.push_back(ColumnsOf(h, bone, num_joints, options));
+    }
+  }
+  return groups;
 }
 
 }  // namespace pleat

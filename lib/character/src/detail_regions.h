@@ -15,4 +15,8 @@ namespace pleat {
 std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& control_vertices,
                                         const TrainOptions& options);
 
+// The columns of the features in groups whose relevance is learnt as one: those of a joint in one
+// pose of the history.
+std::vector<std::vector<int>> FeatureGroups(int num_joints, const TrainOptions& options);
+
 }  // namespace pleat

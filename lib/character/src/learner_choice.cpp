@@ -68,9 +68,10 @@ double HeldOutError(const DetailModel& model, const LearningData& data,
 }
 
 DetailModelOptions ModelOptionsOf(const std::string& learner, const TrainOptions& options,
-                                  const std::vector<DetailRegion>& regions) {
+                                  const LearningData& data) {
   DetailModelOptions result;
-  result.regions = regions;
+  result.regions = data.regions;
+  result.gp.input_groups = data.feature_groups;
   if (learner == "gp") {
     result.learner = Learner::kGp;
   } else if (learner == "ridge") {
@@ -94,7 +95,7 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
                                                                 const TrainOptions& options,
                                                                 const Progress& progress,
                                                                 DirectGp* direct_gp) {
-  DetailModelOptions model_options = ModelOptionsOf(learner, options, data.regions);
+  DetailModelOptions model_options = ModelOptionsOf(learner, options, data);
   if (direct_gp && *direct_gp) model_options.trained_gp = &**direct_gp;
   if (data.differential) {
     model_options.output_map = [&data](const Eigen::MatrixXd& columns) {
@@ -122,6 +123,7 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
   part.details.scores = data.details.scores(split.train, Eigen::all);
   part.clip_starts = split.train_clip_starts;
   part.regions = data.regions;
+  part.feature_groups = data.feature_groups;
   part.differential = data.differential;
   const std::vector<std::string> candidates = {"gp", "regional", "sgplvm"};
   DirectGp direct_gp;

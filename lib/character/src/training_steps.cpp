@@ -264,6 +264,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
       PoseFeatures(feature_options, rigged.rig.skeleton.num_joints(), data.feature_reference)
           .ComputeTrack(filled.track)(filled.rows, Eigen::all);
   data.regions = DetailRegions(rigged.rig, data.control_vertices, options);
+  data.feature_groups = FeatureGroups(rigged.rig.skeleton.num_joints(), options);
   return data;
 }
 

@@ -68,7 +68,8 @@ struct LearningData {
   std::vector<int> control_vertices;  // C
   std::optional<RbfUpsampler> upsampler;
   std::optional<DifferentialCoordinates> differential;  // learn in these, with that option
-  std::vector<DetailRegion> regions;  // one for each bone that moves a control vertex
+  std::vector<DetailRegion> regions;             // one for each bone that moves a control vertex
+  std::vector<std::vector<int>> feature_groups;  // columns of `features`, by joint and pose
 
   // The offsets (3C, metres) that one row of scores stands for.
   Eigen::VectorXd DetailOf(const Eigen::VectorXd& scores) const;

@@ -35,9 +35,9 @@ void WriteStage(const GpRegressionParameters& stage, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(stage.inputs.rows()));
   writer->Write(static_cast<uint32_t>(stage.inputs.cols()));
   writer->Write(static_cast<uint32_t>(stage.alpha.cols()));
-  writer->Write(stage.input_scale);
   writer->Write(stage.output_scale);
   WriteMatrix(stage.input_mean, writer);
+  WriteMatrix(stage.input_scales, writer);
   WriteMatrix(stage.inputs, writer);
   WriteMatrix(stage.output_mean, writer);
   WriteMatrix(stage.alpha, writer);
@@ -66,7 +66,27 @@ absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_un
   return absl::OkStatus();
 }
 
-absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint64_t max_unfolded_bytes) {
+// Files before version 3 have one scale for all inputs, in front of everything else.
+constexpr uint32_t kFirstWithInputScales = 3;
+
+absl::Status ReadOldInputScale(ByteReader* reader, uint32_t version, double* scale) {
+  if (version >= kFirstWithInputScales) return absl::OkStatus();
+  PLEAT_ASSIGN_OR_RETURN(*scale, reader->Read<double>("input scale"));
+  return absl::OkStatus();
+}
+
+absl::Status ReadMeanAndScales(ByteReader* reader, uint32_t version, uint32_t num_inputs,
+                               double old_scale, Eigen::VectorXd* mean, Eigen::VectorXd* scales) {
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_inputs, 1, "input mean", mean));
+  if (version >= kFirstWithInputScales) {
+    return ReadMatrix(reader, num_inputs, 1, "input scales", scales);
+  }
+  scales->setConstant(num_inputs, old_scale);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint32_t version,
+                                                 uint64_t max_unfolded_bytes) {
   GpRegressionParameters stage;
   PLEAT_ASSIGN_OR_RETURN(const uint32_t flags, reader->Read<uint32_t>("stage flags"));
   if (flags > (kHasBias | kHasLinear)) {
@@ -85,9 +105,11 @@ absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint64_t ma
   if (num_rows == 0 || num_inputs == 0) {
     return absl::InvalidArgumentError("a Gaussian process without rows or inputs");
   }
-  PLEAT_ASSIGN_OR_RETURN(stage.input_scale, reader->Read<double>("input scale"));
+  double old_scale = 1;
+  PLEAT_RETURN_IF_ERROR(ReadOldInputScale(reader, version, &old_scale));
   PLEAT_ASSIGN_OR_RETURN(stage.output_scale, reader->Read<double>("output scale"));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_inputs, 1, "input mean", &stage.input_mean));
+  PLEAT_RETURN_IF_ERROR(ReadMeanAndScales(reader, version, num_inputs, old_scale, &stage.input_mean,
+                                          &stage.input_scales));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_inputs, "inputs", &stage.inputs));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &stage.output_mean));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_outputs, "alpha", &stage.alpha));
@@ -100,8 +122,8 @@ void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(regional.inputs.cols()));
   writer->Write(static_cast<uint32_t>(regional.output_mean.size()));
   writer->Write(static_cast<uint32_t>(regional.regions.size()));
-  writer->Write(regional.input_scale);
   WriteMatrix(regional.input_mean, writer);
+  WriteMatrix(regional.input_scales, writer);
   WriteMatrix(regional.inputs, writer);
   WriteMatrix(regional.output_mean, writer);
   for (const RegionalGpParameters::Region& region : regional.regions) {
@@ -132,13 +154,15 @@ absl::StatusOr<RegionalGpParameters::Scale> ReadScale(ByteReader* reader) {
   return scale;
 }
 
-absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader) {
+absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader, uint32_t version) {
   RegionalGpParameters regional;
   std::array<uint32_t, 4> counts;
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of the regions"));
   const auto [num_rows, num_inputs, num_outputs, num_regions] = counts;
-  PLEAT_ASSIGN_OR_RETURN(regional.input_scale, reader->Read<double>("input scale"));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_inputs, 1, "input mean", &regional.input_mean));
+  double old_scale = 1;
+  PLEAT_RETURN_IF_ERROR(ReadOldInputScale(reader, version, &old_scale));
+  PLEAT_RETURN_IF_ERROR(ReadMeanAndScales(reader, version, num_inputs, old_scale,
+                                          &regional.input_mean, &regional.input_scales));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_inputs, "inputs", &regional.inputs));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &regional.output_mean));
   for (uint32_t r = 0; r < num_regions; ++r) {
@@ -244,12 +268,13 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t ve
         absl::StrCat(num_stages, " stages of the detail model, expected 1 or 2"));
   }
   for (uint32_t s = 0; s < num_stages; ++s) {
-    PLEAT_ASSIGN_OR_RETURN(GpRegressionParameters stage, ReadStage(reader, max_unfolded_bytes));
+    PLEAT_ASSIGN_OR_RETURN(GpRegressionParameters stage,
+                           ReadStage(reader, version, max_unfolded_bytes));
     parameters.stages.push_back(std::move(stage));
   }
   if (parameters.learner == Learner::kRegional) {
     PLEAT_ASSIGN_OR_RETURN(parameters.regional_share, reader->Read<double>("share of the regions"));
-    PLEAT_ASSIGN_OR_RETURN(parameters.regional, ReadRegional(reader));
+    PLEAT_ASSIGN_OR_RETURN(parameters.regional, ReadRegional(reader, version));
   }
   return parameters;
 }

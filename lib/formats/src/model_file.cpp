@@ -17,7 +17,7 @@
 namespace pleat {
 namespace {
 
-constexpr SealedFileKind kKind = {"PLEATMDL", 2, 1, "model file"};
+constexpr SealedFileKind kKind = {"PLEATMDL", 3, 1, "model file"};
 constexpr uint32_t kNumSections = 10;
 constexpr uint64_t kTableEntryBytes = 24;
 constexpr uint64_t kFirstSectionOffset = kSealedHeaderBytes + 4 + kNumSections * kTableEntryBytes;

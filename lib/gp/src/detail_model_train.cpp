@@ -182,9 +182,12 @@ class DetailModelTrainer {
       regions.push_back(
           {region.feature_sets, details_.scores * ShareOfRegion(details_.basis, region.weights)});
     }
-    PLEAT_ASSIGN_OR_RETURN(model_.regional_,
-                           RegionalGp::Train(features_, regions, options_.regional,
-                                             progress_.Stage("regions", .3, .95)));
+    // What the direct GP has learnt about the joints holds for their parts of the body too.
+    RegionalGpOptions options = options_.regional;
+    options.input_scales = model_.stages_.front().parameters().input_scales;
+    PLEAT_ASSIGN_OR_RETURN(
+        model_.regional_,
+        RegionalGp::Train(features_, regions, options, progress_.Stage("regions", .3, .95)));
     model_.regional_share_ = options_.regional_share;
     return absl::OkStatus();
   }

@@ -42,9 +42,10 @@ absl::Status CheckSizes(const GpRegressionParameters& p) {
     return Refuse(absl::StrCat("whitener is ", p.whitener.rows(), " x ", p.whitener.cols(),
                                ", expected ", n, " x ", n));
   }
-  if (p.input_mean.size() != p.inputs.cols()) {
-    return Refuse(absl::StrCat("input mean has ", p.input_mean.size(), " entries, the inputs ",
-                               p.inputs.cols(), " columns"));
+  if (p.input_mean.size() != p.inputs.cols() || p.input_scales.size() != p.inputs.cols()) {
+    return Refuse(absl::StrCat("input mean and scales have ", p.input_mean.size(), " and ",
+                               p.input_scales.size(), " entries, the inputs ", p.inputs.cols(),
+                               " columns"));
   }
   if (p.output_mean.size() != p.alpha.cols()) {
     return Refuse(absl::StrCat("output mean has ", p.output_mean.size(), " entries, alpha ",
@@ -59,8 +60,8 @@ absl::Status CheckValues(const GpRegressionParameters& p) {
   if (!p.whitener.allFinite()) return Refuse("an entry of the whitener is not finite");
   if (!p.input_mean.allFinite() || !p.output_mean.allFinite())
     return Refuse("a mean is not finite");
-  if (!std::isfinite(p.input_scale) || !(p.input_scale > 0) || !std::isfinite(p.output_scale) ||
-      !(p.output_scale > 0)) {
+  if (!p.input_scales.allFinite() || !(p.input_scales.minCoeff() > 0) ||
+      !std::isfinite(p.output_scale) || !(p.output_scale > 0)) {
     return Refuse("a scale is not positive and finite");
   }
   if (!std::isfinite(p.kernel_options.relative_noise_floor) ||
@@ -94,7 +95,7 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
   Workspace& w = *workspace;
   assert(row.size() == p.inputs.cols() && mean.size() == p.alpha.cols());
   const Eigen::Index n = p.inputs.rows();
-  w.row = (row - p.input_mean) / p.input_scale;
+  w.row = (row - p.input_mean).cwiseQuotient(p.input_scales);
   // Beyond a million times the range of the training nothing changes but the risk of overflow.
   if (const double largest = w.row.cwiseAbs().maxCoeff(); largest > kFarthest) {
     w.row *= kFarthest / largest;
@@ -127,8 +128,8 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
     }
     w.jacobian.resize(p.inputs.cols(), p.alpha.cols());
     w.jacobian.noalias() = w.slopes.transpose().lazyProduct(p.alpha);
-    v += input_variance / (p.input_scale * p.input_scale) * w.jacobian.squaredNorm() /
-         double(p.alpha.cols());
+    w.jacobian.array().colwise() /= p.input_scales.array();
+    v += input_variance * w.jacobian.squaredNorm() / double(p.alpha.cols());
   }
   *variance = v * p.output_scale * p.output_scale;
 }

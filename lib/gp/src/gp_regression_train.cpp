@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "dense.h"
 #include "inducing.h"
+#include "marginal_likelihood.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/gp_regression.h"
 #include "pleat/gp/gram_term.h"
@@ -30,38 +31,20 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
   return absl::OkStatus();
 }
 
-// The negative log marginal likelihood, and the prior, over the kernel's logs.
-class MarginalLikelihood : public Objective {
- public:
-  MarginalLikelihood(const Eigen::MatrixXd& inputs, GramData data,
-                     const GpRegressionOptions& options, double prior_center, Progress progress)
-      : options_(options),
-        data_(std::move(data)),
-        term_(static_cast<int>(inputs.rows()), options.kernel),
-        precision_(options.prior_precision * double(inputs.rows()) * data_.num_outputs),
-        prior_center_(prior_center),
-        progress_(std::move(progress)) {
-    term_.SetInputs(inputs);
-  }
-  int num_unknowns() const override { return NumKernelUnknowns(options_.kernel); }
-  double Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) override {
-    const KernelLogs logs = UnpackKernelLogs(options_.kernel, x);
-    const double away = logs.inverse_width - prior_center_;
-    const double value = term_.Evaluate(logs, data_, 1, gradient != nullptr, progress_);
-    if (gradient) {
-      *gradient = term_.log_gradient();
-      (*gradient)[0] += precision_ * away;
+absl::Status CheckGroups(const std::vector<std::vector<int>>& groups, Eigen::Index num_inputs) {
+  std::vector<bool> taken(num_inputs, false);
+  for (const std::vector<int>& group : groups) {
+    for (const int column : group) {
+      if (column < 0 || column >= num_inputs || taken[column]) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("GP regression: the groups of inputs need columns below ", num_inputs,
+                         ", each at most once; column ", column, " is not so"));
+      }
+      taken[column] = true;
     }
-    return value + .5 * precision_ * away * away;
   }
-
- private:
-  const GpRegressionOptions& options_;
-  GramData data_;
-  GramTerm term_;
-  double precision_, prior_center_;
-  Progress progress_;
-};
+  return absl::OkStatus();
+}
 
 // Centred and scaled copies of the data, and what was taken off.
 GpRegressionParameters Normalise(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -70,12 +53,13 @@ GpRegressionParameters Normalise(const Eigen::Ref<const Eigen::MatrixXd>& inputs
   GpRegressionParameters p;
   p.kernel_options = options.kernel;
   p.input_mean.setZero(inputs.cols());
+  p.input_scales.setOnes(inputs.cols());
   p.inputs = inputs;
   if (options.normalise_inputs) {
     p.input_mean = inputs.colwise().mean().transpose();
     p.inputs.rowwise() -= p.input_mean.transpose();
-    p.input_scale = PositiveRoot(p.inputs.squaredNorm() / double(inputs.rows()));
-    p.inputs /= p.input_scale;
+    p.input_scales *= PositiveRoot(p.inputs.squaredNorm() / double(inputs.rows()));
+    p.inputs /= p.input_scales[0];
   }
   p.output_mean = outputs.colwise().mean().transpose();
   p.alpha = outputs.rowwise() - p.output_mean.transpose();  // K^-1 is applied later
@@ -141,6 +125,36 @@ KernelLogs StartingLogs(double median) {
           .linear = std::log(.5)};
 }
 
+// Learns kernel and relevance of the inputs from the normalised data in `p`, and scales its inputs.
+absl::Status LearnKernel(const GpRegressionOptions& options, const Progress& progress,
+                         GpRegressionSummary* summary, GpRegressionParameters* p) {
+  const auto rows = SpreadRows(p->inputs.rows(), options.max_hyperparameter_rows);
+  summary->num_hyperparameter_rows = static_cast<int>(rows.size());
+  Eigen::MatrixXd inputs = TakeRows(p->inputs, rows);
+  const Eigen::Index n = inputs.rows();
+  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n);
+  ChosenDenseOps().squared_distances(inputs.data(), n, inputs.cols(), distances.data());
+  const double median = MedianSquaredDistance(distances);
+  distances.resize(0, 0);
+  PLEAT_ASSIGN_OR_RETURN(GramData data, MakeGramData(TakeRows(p->alpha, rows)));
+  const double width_factor = std::log(options.prior_width_factor);
+  MarginalLikelihood objective(std::move(inputs), std::move(data), options,
+                               -std::log(median) - 2 * width_factor, progress);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(objective.num_unknowns());
+  PackKernelLogs(options.kernel, StartingLogs(median), start.head(objective.num_kernel_unknowns()));
+  PLEAT_ASSIGN_OR_RETURN(
+      const Eigen::VectorXd logs,
+      MinimizeLbfgs(objective, start,
+                    {.max_iterations = options.max_iterations, .objective_tolerance = 1e-9},
+                    &summary->optimization, progress));
+  p->kernel = UnpackKernelLogs(options.kernel, logs.head(objective.num_kernel_unknowns()));
+  const Eigen::VectorXd factors =
+      RelevanceFactors(options.input_groups, logs.tail(objective.num_groups()), p->inputs.cols());
+  p->inputs *= factors.asDiagonal();
+  p->input_scales = p->input_scales.cwiseQuotient(factors);
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<GpRegression> GpRegression::Train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -149,31 +163,12 @@ absl::StatusOr<GpRegression> GpRegression::Train(const Eigen::Ref<const Eigen::M
                                                  GpRegressionSummary* summary,
                                                  const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(CheckData(inputs, outputs));
+  PLEAT_RETURN_IF_ERROR(CheckGroups(options.input_groups, inputs.cols()));
   GpRegressionSummary local;
   GpRegressionSummary& report = summary ? *summary : local;
   GpRegressionParameters p = Normalise(inputs, outputs, options);
 
-  const auto learning_rows = SpreadRows(inputs.rows(), options.max_hyperparameter_rows);
-  report.num_hyperparameter_rows = static_cast<int>(learning_rows.size());
-  const Eigen::MatrixXd learning_inputs = TakeRows(p.inputs, learning_rows);
-  const Eigen::Index n = learning_inputs.rows();
-  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n);
-  ChosenDenseOps().squared_distances(learning_inputs.data(), n, learning_inputs.cols(),
-                                     distances.data());
-  const double median = MedianSquaredDistance(distances);
-  distances.resize(0, 0);
-  PLEAT_ASSIGN_OR_RETURN(GramData data, MakeGramData(TakeRows(p.alpha, learning_rows)));
-  const double width_factor = std::log(options.prior_width_factor);
-  MarginalLikelihood objective(learning_inputs, std::move(data), options,
-                               -std::log(median) - 2 * width_factor, progress);
-  Eigen::VectorXd start(objective.num_unknowns());
-  PackKernelLogs(options.kernel, StartingLogs(median), start);
-  PLEAT_ASSIGN_OR_RETURN(
-      const Eigen::VectorXd logs,
-      MinimizeLbfgs(objective, start,
-                    {.max_iterations = options.max_iterations, .objective_tolerance = 1e-9},
-                    &report.optimization, progress.Stage("gp", 0, .9)));
-  p.kernel = UnpackKernelLogs(options.kernel, logs);
+  PLEAT_RETURN_IF_ERROR(LearnKernel(options, progress.Stage("gp", 0, .9), &report, &p));
 
   const auto rows = SpreadRows(inputs.rows(), options.max_rows);
   report.num_rows = static_cast<int>(rows.size());

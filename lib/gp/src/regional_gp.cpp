@@ -1,5 +1,6 @@
 #include "pleat/gp/regional_gp.h"
 
+#include <algorithm>
 #include <cassert>
 #include <map>
 #include <utility>
@@ -35,8 +36,9 @@ absl::Status CheckParameters(const RegionalGpParameters& p) {
   if (n < 1 || p.inputs.cols() < 1 || r < 1 || p.regions.empty()) {
     return Refuse("no rows, inputs, outputs or regions");
   }
-  if (p.input_mean.size() != p.inputs.cols() || !IsPositive(p.input_scale)) {
-    return Refuse("mean or scale of the inputs does not fit");
+  if (p.input_mean.size() != p.inputs.cols() || p.input_scales.size() != p.inputs.cols() ||
+      !std::all_of(p.input_scales.begin(), p.input_scales.end(), IsPositive)) {
+    return Refuse("mean or scales of the inputs do not fit");
   }
   if (!p.input_mean.allFinite() || !p.inputs.allFinite() || !p.output_mean.allFinite()) {
     return Refuse("an input or a mean is not finite");
@@ -115,7 +117,7 @@ void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace
   const RegionalGpParameters& p = parameters_;
   const Eigen::Index n = p.inputs.rows();
   assert(row.size() == num_inputs() && mean.size() == num_outputs());
-  w.row = (row - p.input_mean) / p.input_scale;
+  w.row = (row - p.input_mean).cwiseQuotient(p.input_scales);
   w.atom_distances.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
   w.atom_products.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
   for (size_t a = 0; a < atoms_.size(); ++a) {

@@ -43,6 +43,16 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
   return absl::OkStatus();
 }
 
+absl::Status CheckScales(const Eigen::VectorXd& scales, Eigen::Index num_inputs) {
+  if (scales.size() == 0) return absl::OkStatus();
+  if (scales.size() != num_inputs || !scales.allFinite() || !(scales.minCoeff() > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a regional GP needs one positive scale for each of ", num_inputs,
+                     " inputs, or none; got ", scales.size()));
+  }
+  return absl::OkStatus();
+}
+
 // The columns of one set for some rows, and what divides them to rows of mean squared norm 1.
 struct ScaledSet {
   Eigen::MatrixXd inputs;
@@ -151,11 +161,16 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
                                              const RegionalGpOptions& options,
                                              const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(CheckData(inputs, regions));
+  PLEAT_RETURN_IF_ERROR(CheckScales(options.input_scales, inputs.cols()));
   RegionalGpParameters p;
   p.input_mean = inputs.colwise().mean().transpose();
   Eigen::MatrixXd normalised = inputs.rowwise() - p.input_mean.transpose();
-  p.input_scale = PositiveRoot(normalised.squaredNorm() / static_cast<double>(inputs.rows()));
-  normalised /= p.input_scale;
+  p.input_scales = options.input_scales;
+  if (p.input_scales.size() == 0) p.input_scales.setOnes(inputs.cols());
+  normalised *= p.input_scales.cwiseInverse().asDiagonal();
+  const double unit = PositiveRoot(normalised.squaredNorm() / static_cast<double>(inputs.rows()));
+  p.input_scales *= unit;
+  normalised /= unit;
   const auto learning_rows = SpreadRows(inputs.rows(), options.max_hyperparameter_rows);
   const auto rows = SpreadRows(inputs.rows(), options.max_rows);
 

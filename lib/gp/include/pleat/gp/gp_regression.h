@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
@@ -18,6 +19,12 @@ struct GpRegressionOptions {
   // Inputs are centred and divided by one scalar so that rows have mean squared norm 1; false
   // takes them as they are (latent points).
   bool normalise_inputs = true;
+  // Disjoint sets of columns. Each gets a factor on its squared distances that is learnt with the
+  // kernel (automatic relevance determination): joints whose motion says nothing about the output
+  // make no two frames look different. Columns in no set keep factor 1.
+  std::vector<std::vector<int>> input_groups{};
+  // Precision, per row and output, of a Gaussian prior around 0 on the logs of those factors.
+  double relevance_precision = .003;
   int max_iterations = 60;  // of L-BFGS on the marginal likelihood
   // Precision, per row and output, of a Gaussian prior on log g around
   // log(1 / (prior_width_factor^2 * median squared distance)); 0: none. Frames of one clip are so
@@ -42,14 +49,14 @@ struct GpRegressionSummary {
 // Everything a prediction needs; what a model file holds.
 struct GpRegressionParameters {
   KernelOptions kernel_options;
-  KernelLogs kernel;            // in normalised units
-  Eigen::VectorXd input_mean;   // D
-  double input_scale = 1;       // unit of the inputs
-  Eigen::MatrixXd inputs;       // N x D, normalised: (x - mean) / scale
-  Eigen::VectorXd output_mean;  // r
-  double output_scale = 1;      // unit of the outputs
-  Eigen::MatrixXd alpha;        // N x r, K^-1 (y - mean) / scale
-  Eigen::MatrixXf whitener;     // N x N, lower triangular: K^-1 = W^T W; only for the variance
+  KernelLogs kernel;             // in normalised units
+  Eigen::VectorXd input_mean;    // D
+  Eigen::VectorXd input_scales;  // D, units of the inputs
+  Eigen::MatrixXd inputs;        // N x D, normalised: (x - mean) / scale
+  Eigen::VectorXd output_mean;   // r
+  double output_scale = 1;       // unit of the outputs
+  Eigen::MatrixXd alpha;         // N x r, K^-1 (y - mean) / scale
+  Eigen::MatrixXf whitener;      // N x N, lower triangular: K^-1 = W^T W; only for the variance
 };
 
 // Immutable after training: queries share it without locks.

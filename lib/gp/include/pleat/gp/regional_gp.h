@@ -30,6 +30,9 @@ struct RegionalGpOptions {
   double prior_precision = .003;
   int max_hyperparameter_rows = 400;  // as in GpRegressionOptions
   int max_rows = 600;
+  // D, what divides every input, so that some count more than others (as a GpRegression on the same
+  // inputs has learnt); empty: one number for all. Only their ratios matter.
+  Eigen::VectorXd input_scales{};
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
 
@@ -46,10 +49,10 @@ struct RegionalGpParameters {
     double bias = 0;        // b
     Eigen::MatrixXf alpha;  // N x r, K^-1 (y - mean), output unit
   };
-  Eigen::VectorXd input_mean;   // D
-  double input_scale = 1;       // unit of the inputs
-  Eigen::MatrixXd inputs;       // N x D, normalised: (x - mean) / scale
-  Eigen::VectorXd output_mean;  // r
+  Eigen::VectorXd input_mean;    // D
+  Eigen::VectorXd input_scales;  // D, units of the inputs
+  Eigen::MatrixXd inputs;        // N x D, normalised: (x - mean) / scale
+  Eigen::VectorXd output_mean;   // r
   std::vector<Region> regions;
 };
 

@@ -1,0 +1,67 @@
+#include "marginal_likelihood.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "random_data.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(MarginalLikelihoodTest, GradientIsTheSlopeInEveryUnknown) {
+  const Eigen::MatrixXd inputs = RandomMatrix(20, 6, 1), outputs = RandomMatrix(20, 3, 2);
+  GpRegressionOptions options;
+  options.prior_precision = .02;
+  options.relevance_precision = .05;
+  for (const std::vector<std::vector<int>>& groups :
+       {std::vector<std::vector<int>>{}, {{0, 2}, {5}, {1, 3}}}) {
+    options.input_groups = groups;
+    PLEAT_ASSERT_OK_AND_ASSIGN(GramData data, MakeGramData(outputs));
+    MarginalLikelihood objective(inputs, std::move(data), options, .3, {});
+    ASSERT_EQ(objective.num_unknowns(), 5 + static_cast<int>(groups.size()));
+    for (int seed = 0; seed < 4; ++seed) {
+      const Eigen::VectorXd x = RandomMatrix(objective.num_unknowns(), 1, 10 + seed).col(0);
+      const GradientCheck check = CheckGradient(objective, x);
+      EXPECT_LT(check.max_relative_error, 1e-5)
+          << "unknown " << check.worst_unknown << ": " << check.analytic << " or " << check.numeric;
+    }
+  }
+}
+
+// Outputs follow the first two columns; the other four say nothing.
+TEST(MarginalLikelihoodTest, WhatSaysNothingIsFoundOut) {
+  const Eigen::MatrixXd x = RandomMatrix(80, 6, 1), x_new = RandomMatrix(60, 6, 2);
+  const auto truth = [](const Eigen::MatrixXd& at) {
+    return Eigen::MatrixXd((2 * at.col(0).array()).sin() * at.col(1).array().cos());
+  };
+  GpRegressionOptions options;
+  options.input_groups = {{0, 1}, {2, 3}, {4, 5}};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression blind, GpRegression::Train(x, truth(x)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression seeing, GpRegression::Train(x, truth(x), options));
+  const Eigen::VectorXd& scales = seeing.parameters().input_scales;
+  EXPECT_EQ(scales[0], scales[1]);
+  EXPECT_GT(scales[2], 3 * scales[0]);
+  EXPECT_GT(scales[4], 3 * scales[0]);
+  Eigen::MatrixXd by_blind, by_seeing;
+  blind.PredictBatch(x_new, &by_blind, nullptr);
+  seeing.PredictBatch(x_new, &by_seeing, nullptr);
+  EXPECT_LT((by_seeing - truth(x_new)).norm(), .5 * (by_blind - truth(x_new)).norm());
+}
+
+TEST(MarginalLikelihoodTest, GroupsThatOverlapOrDoNotExistAreTold) {
+  const Eigen::MatrixXd x = RandomMatrix(10, 3, 1);
+  for (const std::vector<std::vector<int>>& groups :
+       {std::vector<std::vector<int>>{{0, 1}, {1}}, {{3}}, {{-1}}}) {
+    GpRegressionOptions options;
+    options.input_groups = groups;
+    EXPECT_THAT(GpRegression::Train(x, x, options),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("groups of inputs")));
+  }
+}
+
+}  // namespace
+}  // namespace pleat
