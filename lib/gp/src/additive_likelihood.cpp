@@ -63,11 +63,13 @@ bool AdditiveLikelihood::Factor(const Eigen::VectorXd& values) {
 
 void AdditiveLikelihood::Gradient(const Eigen::VectorXd& values, Eigen::VectorXd& gradient) {
   const int scales = num_scales();
-  solver_.MultiplyByFactor(whitener_, true, whitened_, data_.lower_triangular, solution_);
-  solver_.InverseFromFactor(whitener_, kernel_);
-  solver_.OuterProduct(solution_, outer_);
+  if (data_.lower_triangular) {
+    solver_.GradientFromSquare(whitener_, data_.num_outputs, whitened_, outer_);
+  } else {
+    solver_.MultiplyByFactor(whitener_, true, whitened_, false, solution_);
+    solver_.GradientFromNarrow(whitener_, data_.num_outputs, solution_, outer_);
+  }
   // A = (D K^-1 - K^-1 G K^-1) / 2 below the diagonal, doubled there: sums run over both halves.
-  outer_ = data_.num_outputs * kernel_ - outer_;
   outer_.triangularView<Eigen::StrictlyUpper>().setZero();
   outer_.diagonal() *= .5;
   const double trace = outer_.trace();

@@ -1,40 +1,9 @@
 #include "dense.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pleat {
 namespace {
-
-constexpr ptrdiff_t kBlock = 48;  // granularity of the triangles: a multiple of every micro tile
-constexpr ptrdiff_t kLeaf = 24;   // below it the factorisation is written out
-
-// Unblocked Cholesky and inverse of an n x n leaf.
-bool FactorLeaf(double* k, double* w, ptrdiff_t n, ptrdiff_t ld) {
-  for (ptrdiff_t j = 0; j < n; ++j) {
-    double* column = k + j * ld;
-    for (ptrdiff_t p = 0; p < j; ++p) {
-      const double* previous = k + p * ld;
-      const double factor = previous[j];
-      for (ptrdiff_t i = j; i < n; ++i) column[i] -= factor * previous[i];
-    }
-    if (!(column[j] > 0) || !std::isfinite(column[j])) return false;
-    const double pivot = std::sqrt(column[j]);
-    column[j] = pivot;
-    for (ptrdiff_t i = j + 1; i < n; ++i) column[i] /= pivot;
-  }
-  for (ptrdiff_t j = 0; j < n; ++j) {  // forward substitution of unit vector j
-    double* column = w + j * ld;
-    column[j] = 1;
-    for (ptrdiff_t i = j + 1; i < n; ++i) column[i] = 0;
-    for (ptrdiff_t p = j; p < n; ++p) {
-      const double* factor = k + p * ld;
-      column[p] /= factor[p];
-      for (ptrdiff_t i = p + 1; i < n; ++i) column[i] -= column[p] * factor[i];
-    }
-  }
-  return true;
-}
 
 const DenseOps* Choose() {
 #if defined(__x86_64__)
@@ -55,24 +24,22 @@ const DenseOps& ChosenDenseOps() {
 
 DenseSolver::DenseSolver(const DenseOps& ops) : ops_(ops), pack_(ops.pack_size) {}
 
-void DenseSolver::MultiplyAdd(double alpha, DenseView a, DenseView b, double* c, ptrdiff_t ldc,
-                              ptrdiff_t m, ptrdiff_t n, ptrdiff_t k, bool lower) {
-  if (m > 0 && n > 0 && k > 0) ops_.multiply_add(alpha, a, b, c, ldc, m, n, k, lower, pack_.data());
+void DenseSolver::Multiply(const DenseProduct& product) {
+  if (product.m > 0 && product.n > 0) ops_.multiply(product, pack_.data());
 }
 
 bool DenseSolver::FactorAndInvert(Eigen::MatrixXd& k, Eigen::MatrixXd& w) {
   const ptrdiff_t n = k.rows();
-  w.setZero(n, n);
-  temporary_.resize(std::max<size_t>(temporary_.size(), (n / 2 + 1) * (n / 2 + 1)));
+  w.resize(n, n);
+  temporary_.resize(std::max<size_t>(temporary_.size(), (n / 2 + 1) * (n / 2 + kDenseLeaf)));
   return n == 0 || FactorBlock(k.data(), w.data(), n, n);
 }
 
 // Recursion on [K11 .; K21 K22]: with W11 = L11^-1 everything else is products.
 // L21 = K21 W11^T, K22 -= L21 L21^T, W21 = -W22 L21 W11.
 bool DenseSolver::FactorBlock(double* k, double* w, ptrdiff_t n, ptrdiff_t ld) {
-  if (n <= kLeaf) return FactorLeaf(k, w, n, ld);
-  ptrdiff_t half = n / 2;
-  if (half > kBlock) half = half / kBlock * kBlock;
+  if (n <= kDenseLeaf) return ops_.factor_leaf(k, w, n, ld);
+  const ptrdiff_t half = std::max(n / 2 / kDenseLeaf, ptrdiff_t{1}) * kDenseLeaf;
   const ptrdiff_t rest = n - half;
   if (!FactorBlock(k, w, half, ld)) return false;
 
@@ -80,71 +47,169 @@ bool DenseSolver::FactorBlock(double* k, double* w, ptrdiff_t n, ptrdiff_t ld) {
   double* w21 = w + half;
   double* k22 = k21 + half * ld;
   double* w22 = w21 + half * ld;
-  // Column block j of L21 needs columns 0..j of K21: from the right, in place into W21 first.
-  for (ptrdiff_t j = 0; j < half; j += kBlock) {
-    const ptrdiff_t cols = std::min(kBlock, half - j);
-    MultiplyAdd(1, {k21, 1, ld}, DenseView{w, 1, ld}.Block(j, 0).Transposed(), w21 + j * ld, ld,
-                rest, cols, j + cols);
-  }
-  for (ptrdiff_t j = 0; j < half; ++j) {
-    std::copy_n(w21 + j * ld, rest, k21 + j * ld);
-    std::fill_n(w21 + j * ld, rest, 0.0);
-  }
-  MultiplyAdd(-1, {k21, 1, ld}, DenseView{k21, 1, ld}.Transposed(), k22, ld, rest, rest, half,
-              true);
+  const DenseView w11{w, 1, ld, DenseShape::kLower}, l21{k21, 1, ld};
+  Multiply({.a = {k21, 1, ld},
+            .b = w11.Transposed(),
+            .c = w21,
+            .ldc = ld,
+            .m = rest,
+            .n = half,
+            .k = half,
+            .overwrite = true});
+  for (ptrdiff_t j = 0; j < half; ++j) std::copy_n(w21 + j * ld, rest, k21 + j * ld);
+  Multiply({.alpha = -1,
+            .a = l21,
+            .b = l21.Transposed(),
+            .c = k22,
+            .ldc = ld,
+            .m = rest,
+            .n = rest,
+            .k = half,
+            .lower = true});
   if (!FactorBlock(k22, w22, rest, ld)) return false;
 
   // The temporary is free: the recursions above have returned.
   temporary_.resize(std::max<size_t>(temporary_.size(), rest * half));
   double* product = temporary_.data();
-  std::fill_n(product, rest * half, 0.0);
-  for (ptrdiff_t j = 0; j < half; j += kBlock) {
-    const ptrdiff_t cols = std::min(kBlock, half - j);
-    MultiplyAdd(1, DenseView{k21, 1, ld}.Block(0, j), DenseView{w, 1, ld}.Block(j, j),
-                product + j * rest, rest, rest, cols, half - j);
-  }
-  for (ptrdiff_t i = 0; i < rest; i += kBlock) {
-    const ptrdiff_t rows = std::min(kBlock, rest - i);
-    MultiplyAdd(-1, DenseView{w22, 1, ld}.Block(i, 0), {product, 1, rest}, w21 + i, ld, rows, half,
-                i + rows);
-  }
+  Multiply({.a = l21,
+            .b = w11,
+            .c = product,
+            .ldc = rest,
+            .m = rest,
+            .n = half,
+            .k = half,
+            .overwrite = true});
+  Multiply({.alpha = -1,
+            .a = {w22, 1, ld, DenseShape::kLower},
+            .b = {product, 1, rest},
+            .c = w21,
+            .ldc = ld,
+            .m = rest,
+            .n = half,
+            .k = rest,
+            .overwrite = true});
+  for (ptrdiff_t j = half; j < n; ++j) std::fill_n(w + j * ld, half, 0.0);
   return true;
 }
 
 void DenseSolver::InverseFromFactor(const Eigen::MatrixXd& w, Eigen::MatrixXd& q) {
   const ptrdiff_t n = w.rows();
-  q.setZero(n, n);
-  const DenseView view = ViewOf(w);
-  for (ptrdiff_t i = 0; i < n; i += kBlock) {
-    const ptrdiff_t rows = std::min(kBlock, n - i);
-    MultiplyAdd(1, view.Block(i, i).Transposed(), view.Block(i, 0), q.data() + i, n, rows, i + rows,
-                n - i);
-  }
+  q.resize(n, n);
+  const DenseView view = ViewOf(w, DenseShape::kLower);
+  Multiply({.a = view.Transposed(),
+            .b = view,
+            .c = q.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = n,
+            .lower = true,
+            .overwrite = true});
 }
 
 void DenseSolver::MultiplyByFactor(const Eigen::MatrixXd& w, bool transposed,
                                    const Eigen::MatrixXd& f, bool f_lower, Eigen::MatrixXd& h) {
   const ptrdiff_t n = w.rows(), r = f.cols();
-  h.setZero(n, r);
-  const DenseView left = transposed ? ViewOf(w).Transposed() : ViewOf(w);
-  const DenseView right = ViewOf(f);
-  const ptrdiff_t column_block = f_lower ? kBlock : r;
-  for (ptrdiff_t i = 0; i < n; i += kBlock) {
-    const ptrdiff_t rows = std::min(kBlock, n - i);
-    for (ptrdiff_t j = 0; j < r; j += column_block) {
-      // W is zero right of row i + rows, W^T left of row i, f above its diagonal.
-      const ptrdiff_t begin = std::max(transposed ? i : 0, f_lower ? j : 0);
-      const ptrdiff_t end = transposed ? n : i + rows;
-      MultiplyAdd(1, left.Block(i, begin), right.Block(begin, j), h.data() + i + j * n, n, rows,
-                  std::min(column_block, r - j), end - begin);
-    }
-  }
+  h.resize(n, r);
+  const DenseView view = ViewOf(w, DenseShape::kLower);
+  Multiply({.a = transposed ? view.Transposed() : view,
+            .b = ViewOf(f, f_lower ? DenseShape::kLower : DenseShape::kFull),
+            .c = h.data(),
+            .ldc = n,
+            .m = n,
+            .n = r,
+            .k = n,
+            .overwrite = true});
 }
 
 void DenseSolver::OuterProduct(const Eigen::MatrixXd& b, Eigen::MatrixXd& s) {
   const ptrdiff_t n = b.rows();
   s.setZero(n, n);
-  MultiplyAdd(1, ViewOf(b), ViewOf(b).Transposed(), s.data(), n, n, n, b.cols(), true);
+  Multiply({.a = ViewOf(b),
+            .b = ViewOf(b).Transposed(),
+            .c = s.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = b.cols(),
+            .lower = true});
+}
+
+void DenseSolver::SymmetricMultiply(const Eigen::MatrixXd& m, const Eigen::MatrixXd& x,
+                                    Eigen::MatrixXd& y) {
+  const ptrdiff_t n = m.rows();
+  y.resize(n, x.cols());
+  Multiply({.a = ViewOf(m, DenseShape::kSymmetric),
+            .b = ViewOf(x),
+            .c = y.data(),
+            .ldc = n,
+            .m = n,
+            .n = x.cols(),
+            .k = n,
+            .overwrite = true});
+}
+
+// W^T (D I - H H^T) W. Of T = (D I - H H^T) W the product with W^T sees the lower triangle only.
+void DenseSolver::GradientFromSquare(const Eigen::MatrixXd& w, double num_outputs,
+                                     Eigen::MatrixXd& h, Eigen::MatrixXd& a) {
+  const ptrdiff_t n = w.rows();
+  a.resize(n, n);
+  const DenseView lower = ViewOf(h, DenseShape::kLower), factor = ViewOf(w, DenseShape::kLower);
+  Multiply({.alpha = -1,
+            .a = lower,
+            .b = lower.Transposed(),
+            .c = a.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = n,
+            .lower = true,
+            .overwrite = true});
+  a.diagonal().array() += num_outputs;
+  Multiply({.a = ViewOf(a, DenseShape::kSymmetric),
+            .b = factor,
+            .c = h.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = n,
+            .lower = true,
+            .overwrite = true});
+  Multiply({.a = factor.Transposed(),
+            .b = lower,
+            .c = a.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = n,
+            .lower = true,
+            .overwrite = true});
+}
+
+void DenseSolver::GradientFromNarrow(const Eigen::MatrixXd& w, double num_outputs,
+                                     const Eigen::MatrixXd& solution, Eigen::MatrixXd& a) {
+  const ptrdiff_t n = w.rows();
+  a.resize(n, n);
+  const DenseView factor = ViewOf(w, DenseShape::kLower), narrow = ViewOf(solution);
+  Multiply({.alpha = num_outputs,
+            .a = factor.Transposed(),
+            .b = factor,
+            .c = a.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = n,
+            .lower = true,
+            .overwrite = true});
+  Multiply({.alpha = -1,
+            .a = narrow,
+            .b = narrow.Transposed(),
+            .c = a.data(),
+            .ldc = n,
+            .m = n,
+            .n = n,
+            .k = solution.cols(),
+            .lower = true});
 }
 
 }  // namespace pleat

@@ -14,7 +14,9 @@ namespace pleat {
 // The kernels this process uses.
 const DenseOps& ChosenDenseOps();
 
-inline DenseView ViewOf(const Eigen::MatrixXd& m) { return {m.data(), 1, m.outerStride()}; }
+inline DenseView ViewOf(const Eigen::MatrixXd& m, DenseShape shape = DenseShape::kFull) {
+  return {m.data(), 1, m.outerStride(), shape};
+}
 
 // Preallocated scratch + algorithms; not for two threads at once.
 class DenseSolver {
@@ -38,9 +40,18 @@ class DenseSolver {
   // s (lower) = b b^T.
   void OuterProduct(const Eigen::MatrixXd& b, Eigen::MatrixXd& s);
 
-  // c += alpha op(a) op(b).
-  void MultiplyAdd(double alpha, DenseView a, DenseView b, double* c, ptrdiff_t ldc, ptrdiff_t m,
-                   ptrdiff_t n, ptrdiff_t k, bool lower = false);
+  // y = M x for x (N x q) and M symmetric, of which the lower triangle is given.
+  void SymmetricMultiply(const Eigen::MatrixXd& m, const Eigen::MatrixXd& x, Eigen::MatrixXd& y);
+
+  // a (lower) = D K^-1 - K^-1 G K^-1, twice the gradient of D/2 log|K| + 1/2 tr(K^-1 G) in K, from
+  // W = L^-1. G = F F^T with F square and lower triangular, given by h = W F (lower; lost).
+  void GradientFromSquare(const Eigen::MatrixXd& w, double num_outputs, Eigen::MatrixXd& h,
+                          Eigen::MatrixXd& a);
+  // The same from K^-1 F (N x r).
+  void GradientFromNarrow(const Eigen::MatrixXd& w, double num_outputs,
+                          const Eigen::MatrixXd& solution, Eigen::MatrixXd& a);
+
+  void Multiply(const DenseProduct& product);
 
  private:
   bool FactorBlock(double* k, double* w, ptrdiff_t n, ptrdiff_t ld);

@@ -5,15 +5,38 @@
 
 namespace pleat {
 
+// What is known of a matrix. Entries that follow from the rest are neither read nor computed with.
+enum class DenseShape {
+  kFull,
+  kLower,      // zero above the diagonal
+  kUpper,      // zero below the diagonal
+  kSymmetric,  // given by its lower triangle
+};
+
 // A matrix that is read with any strides, so that a transpose costs nothing.
 struct DenseView {
-  const double* data;
-  ptrdiff_t row_stride, col_stride;
+  const double* data = nullptr;
+  ptrdiff_t row_stride = 1, col_stride = 0;
+  DenseShape shape = DenseShape::kFull;
 
-  DenseView Transposed() const { return {data, col_stride, row_stride}; }
-  DenseView Block(ptrdiff_t row, ptrdiff_t col) const {
-    return {data + row * row_stride + col * col_stride, row_stride, col_stride};
+  DenseView Transposed() const {
+    if (shape == DenseShape::kSymmetric) return *this;
+    return {data, col_stride, row_stride,
+            shape == DenseShape::kLower   ? DenseShape::kUpper
+            : shape == DenseShape::kUpper ? DenseShape::kLower
+                                          : DenseShape::kFull};
   }
+};
+
+// C (m x n, leading dimension ldc) = or += alpha A (m x k) B (k x n). With `lower` only the entries
+// on and below the diagonal of C are needed; what else is written is not defined.
+struct DenseProduct {
+  double alpha = 1;
+  DenseView a, b;
+  double* c = nullptr;
+  ptrdiff_t ldc = 0, m = 0, n = 0, k = 0;
+  bool lower = false;
+  bool overwrite = false;  // C is not read
 };
 
 // Lower-triangular sums of the Gram gradient; off-diagonal entries count twice.
@@ -25,17 +48,21 @@ struct GramSums {
   double linear = 0;     // sum_ij A_ij T_ij
 };
 
+constexpr ptrdiff_t kDenseLeaf = 24;
+
 // All matrices are column-major with leading dimension `n` unless a stride is given; "lower" means
 // that entries above the diagonal are neither read nor defined.
 struct DenseOps {
   const char* name;
-  ptrdiff_t pack_size;  // doubles of scratch that `multiply_add` needs
+  ptrdiff_t pack_size;  // doubles of scratch that `multiply` needs
 
-  // C (m x n, leading dimension ldc) += alpha A (m x k) B (k x n). With `lower` only the entries
-  // on and below the diagonal of C are needed. Each entry is a sum in the order of k, in chunks
-  // of fixed length: the same bits whatever the width of the registers.
-  void (*multiply_add)(double alpha, DenseView a, DenseView b, double* c, ptrdiff_t ldc,
-                       ptrdiff_t m, ptrdiff_t n, ptrdiff_t k, bool lower, double* scratch);
+  // The product. Each entry is a sum in the order of k, in chunks of fixed length: the same bits
+  // whatever the width of the registers. C must not overlap A or B.
+  void (*multiply)(const DenseProduct& product, double* scratch);
+
+  // Cholesky K = L L^T of the lower triangle of K (n x n, n <= kDenseLeaf, leading dimension ld) in
+  // place, and W = L^-1 with zeros above the diagonal. False when K is not positive definite.
+  bool (*factor_leaf)(double* k, double* w, ptrdiff_t n, ptrdiff_t ld);
 
   // values[i] = exp(values[i]) for count values <= 0 (relative error below 1e-15).
   void (*exp_in_place)(double* values, ptrdiff_t count);
@@ -47,12 +74,9 @@ struct DenseOps {
   void (*kernel)(const double* r, const double* t, ptrdiff_t n, double g, double a, double bias,
                  double c, double* k0, double* k);
 
-  // With A = half_weight (num_outputs Q - S), all lower: replaces Q by A and S by P = A o K0.
-  GramSums (*gram_gradient)(double* q, double* s, const double* k0, const double* r,
-                            const double* t, ptrdiff_t n, double half_weight, double num_outputs);
-
-  // Y (n x q) = M X with M symmetric, of which the lower triangle is given.
-  void (*symmetric_multiply)(const double* m, const double* x, ptrdiff_t n, ptrdiff_t q, double* y);
+  // `a` (lower) is replaced by A = half_weight a; P (lower) = A o K0. P is no other matrix.
+  GramSums (*gram_gradient)(double* a, const double* k0, const double* r, const double* t,
+                            ptrdiff_t n, double half_weight, double* p);
 };
 
 const DenseOps* BaselineDenseOps();

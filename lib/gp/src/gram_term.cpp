@@ -21,22 +21,23 @@ struct GramTerm::State {
   Eigen::Index n = 0;
 
   Eigen::MatrixXd inputs;     // N x Q
+  Eigen::MatrixXd extended;   // N x (Q + 1): inputs and a column of ones
   Eigen::MatrixXd distances;  // N x N, lower: R
   Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
   Eigen::MatrixXd rbf;        // N x N, lower: K0, later unchanged
-  Eigen::MatrixXd kernel;     // N x N, lower: K, then L, then K^-1, then A
+  Eigen::MatrixXd kernel;     // N x N, lower: K, then L, then A
   Eigen::MatrixXd whitener;   // N x N, lower: W = L^-1
-  Eigen::MatrixXd whitened;   // N x r: W F
-  Eigen::MatrixXd solution;   // N x r: K^-1 F, then weighted
-  Eigen::MatrixXd outer;      // N x N, lower: K^-1 G K^-1, then P = A o K0
-  Eigen::MatrixXd product;    // N x Q: scratch of InputGradient
+  Eigen::MatrixXd whitened;   // N x r: W F, lost by the gradient
+  Eigen::MatrixXd solution;   // N x r: K^-1 F, then weighted; only of a narrow F
+  Eigen::MatrixXd weighted;   // N x N, lower: P = A o K0
+  Eigen::MatrixXd product;    // N x (Q + 1): scratch of InputGradient
   Eigen::VectorXd log_gradient;
   KernelValues values{};
   double log_determinant = 0;
   double relative_floor = 0;  // noise floor + jitter of the last factorisation, share of a
 
   bool Factor();
-  void Gradient(const KernelLogs& logs, double num_outputs, double weight);
+  void Gradient(const KernelLogs& logs, const GramData& data, double weight);
 };
 
 // K and its inverse factor from the distances; more jitter until it is positive definite.
@@ -56,12 +57,17 @@ bool GramTerm::State::Factor() {
   return false;
 }
 
-void GramTerm::State::Gradient(const KernelLogs& logs, double num_outputs, double weight) {
-  solver.InverseFromFactor(whitener, kernel);
-  solver.OuterProduct(solution, outer);
-  const GramSums sums = solver.ops().gram_gradient(
-      kernel.data(), outer.data(), rbf.data(), distances.data(),
-      options.linear ? products.data() : nullptr, n, .5 * weight, num_outputs);
+void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, double weight) {
+  if (data.lower_triangular) {
+    solver.GradientFromSquare(whitener, data.num_outputs, whitened, kernel);
+  } else {
+    solver.MultiplyByFactor(whitener, true, whitened, false, solution);
+    solver.GradientFromNarrow(whitener, data.num_outputs, solution, kernel);
+    solution *= weight;
+  }
+  const GramSums sums = solver.ops().gram_gradient(kernel.data(), rbf.data(), distances.data(),
+                                                   options.linear ? products.data() : nullptr, n,
+                                                   .5 * weight, weighted.data());
   KernelLogs gradient;
   gradient.inverse_width = -.5 * values.g * sums.distance;
   gradient.amplitude = sums.amplitude + relative_floor * values.a * sums.trace;
@@ -74,14 +80,13 @@ void GramTerm::State::Gradient(const KernelLogs& logs, double num_outputs, doubl
   for (Eigen::Index i = 0; i < unknowns.size(); ++i) {
     if (std::abs(unknowns[i]) > kMaxKernelLog) log_gradient[i] = 0;
   }
-  solution *= weight;
 }
 
 GramTerm::GramTerm(int num_rows, const KernelOptions& options) : state_(new State) {
   State& s = *state_;
   s.options = options;
   s.n = num_rows;
-  for (Eigen::MatrixXd* m : {&s.distances, &s.rbf, &s.kernel, &s.whitener, &s.outer}) {
+  for (Eigen::MatrixXd* m : {&s.distances, &s.rbf, &s.kernel, &s.whitener, &s.weighted}) {
     m->setZero(s.n, s.n);
   }
   if (options.linear) s.products.setZero(s.n, s.n);
@@ -95,6 +100,8 @@ GramTerm& GramTerm::operator=(GramTerm&&) noexcept = default;
 void GramTerm::SetInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   State& s = *state_;
   s.inputs = inputs;
+  s.extended.resize(s.n, inputs.cols() + 1);
+  s.extended << inputs, Eigen::VectorXd::Ones(s.n);
   s.solver.ops().squared_distances(s.inputs.data(), s.n, s.inputs.cols(), s.distances.data());
   if (s.options.linear) s.solver.OuterProduct(s.inputs, s.products);
 }
@@ -106,12 +113,13 @@ double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double w
   s.values = KernelValuesOf(s.options, logs);
   if (progress.cancelled() || !s.Factor() || progress.cancelled()) return kNone;
   s.solver.MultiplyByFactor(s.whitener, false, data.factor, data.lower_triangular, s.whitened);
+  const double value =
+      .5 * weight * (data.num_outputs * s.log_determinant + s.whitened.squaredNorm());
   if (with_gradient) {
-    s.solver.MultiplyByFactor(s.whitener, true, s.whitened, data.lower_triangular, s.solution);
     if (progress.cancelled()) return kNone;
-    s.Gradient(logs, data.num_outputs, weight);
+    s.Gradient(logs, data, weight);
   }
-  return .5 * weight * (data.num_outputs * s.log_determinant + s.whitened.squaredNorm());
+  return value;
 }
 
 const Eigen::VectorXd& GramTerm::log_gradient() const { return state_->log_gradient; }
@@ -120,14 +128,11 @@ void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
   State& s = *state_;
   const Eigen::Index dims = s.inputs.cols();
   // -2 g (diag(P 1) - P) X.
-  s.product.resize(s.n, dims);
-  s.solver.ops().symmetric_multiply(s.outer.data(), s.inputs.data(), s.n, dims, s.product.data());
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(s.n);
-  Eigen::VectorXd sums(s.n);
-  s.solver.ops().symmetric_multiply(s.outer.data(), ones.data(), s.n, 1, sums.data());
-  gradient = 2 * s.values.g * (s.product - sums.asDiagonal() * s.inputs);
+  s.solver.SymmetricMultiply(s.weighted, s.extended, s.product);
+  gradient =
+      2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * s.inputs);
   if (!s.options.linear) return;
-  s.solver.ops().symmetric_multiply(s.kernel.data(), s.inputs.data(), s.n, dims, s.product.data());
+  s.solver.SymmetricMultiply(s.kernel, s.inputs, s.product);
   gradient += 2 * s.values.c * s.product;
 }
 
@@ -174,7 +179,15 @@ absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& o
   DenseSolver solver;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
   const DenseView view{outputs.data(), 1, outputs.outerStride()};
-  solver.MultiplyAdd(1, view, view.Transposed(), gram.data(), n, n, n, outputs.cols(), true);
+  solver.Multiply({.a = view,
+                   .b = view.Transposed(),
+                   .c = gram.data(),
+                   .ldc = n,
+                   .m = n,
+                   .n = n,
+                   .k = outputs.cols(),
+                   .lower = true,
+                   .overwrite = true});
   gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
   return MakeGramDataFromGram(gram, static_cast<double>(outputs.cols()));
 }

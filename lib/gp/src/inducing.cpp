@@ -34,9 +34,15 @@ Eigen::MatrixXd AdditiveCovariance(const std::vector<Eigen::MatrixXd>& a,
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(n, m, bias);
   Eigen::MatrixXd products, rbf;
   for (size_t e = 0; e < terms.size(); ++e) {
-    products.setZero(n, m);
-    solver.MultiplyAdd(1, ViewOf(a[e]), ViewOf(b[e]).Transposed(), products.data(), n, n, m,
-                       a[e].cols());
+    products.resize(n, m);
+    solver.Multiply({.a = ViewOf(a[e]),
+                     .b = ViewOf(b[e]).Transposed(),
+                     .c = products.data(),
+                     .ldc = n,
+                     .m = n,
+                     .n = m,
+                     .k = a[e].cols(),
+                     .overwrite = true});
     rbf = 2 * products;
     rbf.colwise() -= a[e].rowwise().squaredNorm();
     rbf.rowwise() -= b[e].rowwise().squaredNorm().transpose();
@@ -65,13 +71,32 @@ bool SolveInduced(
     if (cancelled()) return false;
     const Eigen::Index count = std::min(kBlockRows, outputs.rows() - begin);
     const Eigen::MatrixXd block = cross(begin, count);
-    whitened.setZero(count, m);
-    solver.MultiplyAdd(1, ViewOf(block), ViewOf(w).Transposed(), whitened.data(), count, count, m,
-                       m);
+    whitened.resize(count, m);
+    solver.Multiply({.a = ViewOf(block),
+                     .b = ViewOf(w, DenseShape::kLower).Transposed(),
+                     .c = whitened.data(),
+                     .ldc = count,
+                     .m = count,
+                     .n = m,
+                     .k = m,
+                     .overwrite = true});
     const DenseView rows = ViewOf(whitened);
-    solver.MultiplyAdd(1, rows.Transposed(), rows, gain.data(), m, m, m, count, true);
+    solver.Multiply({.a = rows.Transposed(),
+                     .b = rows,
+                     .c = gain.data(),
+                     .ldc = m,
+                     .m = m,
+                     .n = m,
+                     .k = count,
+                     .lower = true});
     const DenseView targets{outputs.data() + begin, 1, outputs.outerStride()};
-    solver.MultiplyAdd(1, rows.Transposed(), targets, right.data(), m, m, num_outputs, count);
+    solver.Multiply({.a = rows.Transposed(),
+                     .b = targets,
+                     .c = right.data(),
+                     .ldc = m,
+                     .m = m,
+                     .n = num_outputs,
+                     .k = count});
   }
   gain.triangularView<Eigen::StrictlyUpper>() = gain.transpose();
   gain /= noise;

@@ -118,7 +118,15 @@ DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, View
   view.gram.setZero(n, n);
   DenseSolver solver;
   const DenseView rows = ViewOf(centred);
-  solver.MultiplyAdd(1, rows, rows.Transposed(), view.gram.data(), n, n, n, centred.cols(), true);
+  solver.Multiply({.a = rows,
+                   .b = rows.Transposed(),
+                   .c = view.gram.data(),
+                   .ldc = n,
+                   .m = n,
+                   .n = n,
+                   .k = centred.cols(),
+                   .lower = true,
+                   .overwrite = true});
   view.gram.triangularView<Eigen::StrictlyUpper>() = view.gram.transpose();
   return view;
 }
