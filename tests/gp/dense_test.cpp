@@ -38,12 +38,12 @@ TEST_P(DenseTest, FactorsAndInverts) {
   const Eigen::MatrixXd k = RandomPositiveDefinite(n);
   for (const DenseOps* ops : RunnableOps()) {
     DenseSolver solver(*ops);
-    Eigen::MatrixXd factor = k, inverse_factor, inverse;
+    Eigen::MatrixXd factor = k, inverse_factor, inverse, none;
     ASSERT_TRUE(solver.FactorAndInvert(factor, inverse_factor)) << ops->name;
     EXPECT_LT((Lower(factor) * Lower(factor).transpose() - k).norm(), 1e-12 * k.norm());
     EXPECT_LT((inverse_factor * Lower(factor) - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-11);
     EXPECT_EQ((inverse_factor - Lower(inverse_factor)).norm(), 0);
-    solver.InverseFromFactor(inverse_factor, inverse);
+    solver.GradientFromNarrow(inverse_factor, 1, Eigen::MatrixXd(n, 0), none, inverse);
     const Eigen::MatrixXd full = inverse.selfadjointView<Eigen::Lower>();
     EXPECT_LT((full * k - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10) << ops->name;
   }

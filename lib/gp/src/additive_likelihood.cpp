@@ -66,8 +66,7 @@ void AdditiveLikelihood::Gradient(const Eigen::VectorXd& values, Eigen::VectorXd
   if (data_.lower_triangular) {
     solver_.GradientFromSquare(whitener_, data_.num_outputs, whitened_, outer_);
   } else {
-    solver_.MultiplyByFactor(whitener_, true, whitened_, false, solution_);
-    solver_.GradientFromNarrow(whitener_, data_.num_outputs, solution_, outer_);
+    solver_.GradientFromNarrow(whitener_, data_.num_outputs, whitened_, solution_, outer_);
   }
   // A = (D K^-1 - K^-1 G K^-1) / 2 below the diagonal, doubled there: sums run over both halves.
   outer_.triangularView<Eigen::StrictlyUpper>().setZero();

@@ -1,6 +1,7 @@
 #include "dense.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace pleat {
 namespace {
@@ -15,6 +16,8 @@ const DenseOps* Choose() {
   return BaselineDenseOps();
 }
 
+DenseView LowerView(const double* data, ptrdiff_t ld) { return {data, 1, ld, DenseShape::kLower}; }
+
 }  // namespace
 
 const DenseOps& ChosenDenseOps() {
@@ -22,16 +25,48 @@ const DenseOps& ChosenDenseOps() {
   return *ops;
 }
 
-DenseSolver::DenseSolver(const DenseOps& ops) : ops_(ops), pack_(ops.pack_size) {}
+void PackedRows::Pack(const DenseOps& ops, const DenseView& view, ptrdiff_t rows,
+                      DenseChunk columns) {
+  rows_ = rows;
+  columns_ = columns;
+  shape_ = view.shape;
+  padded_rows_ = (rows + ops.panel_rows - 1) / ops.panel_rows * ops.panel_rows;
+  constexpr size_t kSpare = kDenseAlignment / sizeof(double);
+  const size_t size = static_cast<size_t>(padded_rows_ * (columns.end - columns.begin)) + kSpare;
+  if (storage_.size() < size) storage_.resize(size);
+  const size_t past = reinterpret_cast<uintptr_t>(storage_.data()) % kDenseAlignment;
+  data_ = storage_.data() + (kSpare - past / sizeof(double)) % kSpare;
+  for (ptrdiff_t begin = columns.begin; begin < columns.end; begin += kDenseDepth) {
+    ops.pack(view, rows, {begin, std::min(begin + kDenseDepth, columns.end)},
+             data_ + (begin - columns.begin) * padded_rows_);
+  }
+}
 
-void DenseSolver::Multiply(const DenseProduct& product) {
-  if (product.m > 0 && product.n > 0) ops_.multiply(product, pack_.data());
+void PackedRows::Pack(const DenseOps& ops, const DenseView& view, ptrdiff_t rows, ptrdiff_t cols) {
+  Pack(ops, view, rows, DenseChunk{0, cols});
+}
+
+PackedChunk PackedRows::chunk(ptrdiff_t begin) const {
+  return {data_ + (begin - columns_.begin) * padded_rows_, shape_};
+}
+
+DenseSolver::DenseSolver(const DenseOps& ops) : ops_(ops) {}
+
+void DenseSolver::Multiply(const PackedRows& a, const PackedRows& b, DenseProduct product) {
+  const DenseChunk columns = a.columns();
+  product.m = a.rows();
+  product.n = b.rows();
+  ptrdiff_t begin = columns.begin;
+  do {  // even without columns: C may have to be overwritten
+    ops_.multiply(product, {begin, std::min(begin + kDenseDepth, columns.end)}, a.chunk(begin),
+                  b.chunk(begin));
+    begin += kDenseDepth;
+  } while (begin < columns.end);
 }
 
 bool DenseSolver::FactorAndInvert(Eigen::MatrixXd& k, Eigen::MatrixXd& w) {
   const ptrdiff_t n = k.rows();
   w.resize(n, n);
-  temporary_.resize(std::max<size_t>(temporary_.size(), (n / 2 + 1) * (n / 2 + kDenseLeaf)));
   return n == 0 || FactorBlock(k.data(), w.data(), n, n);
 }
 
@@ -43,110 +78,51 @@ bool DenseSolver::FactorBlock(double* k, double* w, ptrdiff_t n, ptrdiff_t ld) {
   const ptrdiff_t rest = n - half;
   if (!FactorBlock(k, w, half, ld)) return false;
 
-  double* k21 = k + half;
-  double* w21 = w + half;
-  double* k22 = k21 + half * ld;
-  double* w22 = w21 + half * ld;
-  const DenseView w11{w, 1, ld, DenseShape::kLower}, l21{k21, 1, ld};
-  Multiply({.a = {k21, 1, ld},
-            .b = w11.Transposed(),
-            .c = w21,
-            .ldc = ld,
-            .m = rest,
-            .n = half,
-            .k = half,
-            .overwrite = true});
-  for (ptrdiff_t j = 0; j < half; ++j) std::copy_n(w21 + j * ld, rest, k21 + j * ld);
-  Multiply({.alpha = -1,
-            .a = l21,
-            .b = l21.Transposed(),
-            .c = k22,
-            .ldc = ld,
-            .m = rest,
-            .n = rest,
-            .k = half,
-            .lower = true});
+  double* const k21 = k + half;
+  double* const w21 = w + half;
+  double* const k22 = k21 + half * ld;
+  double* const w22 = w21 + half * ld;
+  const DenseView w11 = LowerView(w, ld);
+  first_.Pack(ops_, {k21, 1, ld}, rest, half);
+  second_.Pack(ops_, w11, half, half);
+  Multiply(first_, second_, {.c = k21, .ldc = ld, .overwrite = true});
+  first_.Pack(ops_, {k21, 1, ld}, rest, half);
+  Multiply(first_, first_, {.alpha = -1, .c = k22, .ldc = ld, .lower = true});
+  second_.Pack(ops_, w11.Transposed(), half, half);
+  Multiply(first_, second_, {.c = w21, .ldc = ld, .overwrite = true});  // L21 W11
   if (!FactorBlock(k22, w22, rest, ld)) return false;
 
-  // The temporary is free: the recursions above have returned.
-  temporary_.resize(std::max<size_t>(temporary_.size(), rest * half));
-  double* product = temporary_.data();
-  Multiply({.a = l21,
-            .b = w11,
-            .c = product,
-            .ldc = rest,
-            .m = rest,
-            .n = half,
-            .k = half,
-            .overwrite = true});
-  Multiply({.alpha = -1,
-            .a = {w22, 1, ld, DenseShape::kLower},
-            .b = {product, 1, rest},
-            .c = w21,
-            .ldc = ld,
-            .m = rest,
-            .n = half,
-            .k = rest,
-            .overwrite = true});
+  first_.Pack(ops_, LowerView(w22, ld), rest, rest);
+  second_.Pack(ops_, DenseView{w21, 1, ld}.Transposed(), half, rest);
+  Multiply(first_, second_, {.alpha = -1, .c = w21, .ldc = ld, .overwrite = true});
   for (ptrdiff_t j = half; j < n; ++j) std::fill_n(w + j * ld, half, 0.0);
   return true;
-}
-
-void DenseSolver::InverseFromFactor(const Eigen::MatrixXd& w, Eigen::MatrixXd& q) {
-  const ptrdiff_t n = w.rows();
-  q.resize(n, n);
-  const DenseView view = ViewOf(w, DenseShape::kLower);
-  Multiply({.a = view.Transposed(),
-            .b = view,
-            .c = q.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = n,
-            .lower = true,
-            .overwrite = true});
 }
 
 void DenseSolver::MultiplyByFactor(const Eigen::MatrixXd& w, bool transposed,
                                    const Eigen::MatrixXd& f, bool f_lower, Eigen::MatrixXd& h) {
   const ptrdiff_t n = w.rows(), r = f.cols();
   h.resize(n, r);
-  const DenseView view = ViewOf(w, DenseShape::kLower);
-  Multiply({.a = transposed ? view.Transposed() : view,
-            .b = ViewOf(f, f_lower ? DenseShape::kLower : DenseShape::kFull),
-            .c = h.data(),
-            .ldc = n,
-            .m = n,
-            .n = r,
-            .k = n,
-            .overwrite = true});
+  const DenseView factor = ViewOf(w, DenseShape::kLower);
+  first_.Pack(ops_, transposed ? factor.Transposed() : factor, n, n);
+  second_.Pack(ops_, ViewOf(f, f_lower ? DenseShape::kLower : DenseShape::kFull).Transposed(), r,
+               n);
+  Multiply(first_, second_, {.c = h.data(), .ldc = n, .overwrite = true});
 }
 
 void DenseSolver::OuterProduct(const Eigen::MatrixXd& b, Eigen::MatrixXd& s) {
   const ptrdiff_t n = b.rows();
   s.setZero(n, n);
-  Multiply({.a = ViewOf(b),
-            .b = ViewOf(b).Transposed(),
-            .c = s.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = b.cols(),
-            .lower = true});
+  MultiplyRows(ViewOf(b), ViewOf(b), b.cols(),
+               {.c = s.data(), .ldc = n, .m = n, .n = n, .lower = true});
 }
 
 void DenseSolver::SymmetricMultiply(const Eigen::MatrixXd& m, const Eigen::MatrixXd& x,
                                     Eigen::MatrixXd& y) {
-  const ptrdiff_t n = m.rows();
-  y.resize(n, x.cols());
-  Multiply({.a = ViewOf(m, DenseShape::kSymmetric),
-            .b = ViewOf(x),
-            .c = y.data(),
-            .ldc = n,
-            .m = n,
-            .n = x.cols(),
-            .k = n,
-            .overwrite = true});
+  const ptrdiff_t n = m.rows(), q = x.cols();
+  y.resize(n, q);
+  MultiplyRows(ViewOf(m, DenseShape::kSymmetric), ViewOf(x).Transposed(), n,
+               {.c = y.data(), .ldc = n, .m = n, .n = q, .overwrite = true});
 }
 
 // W^T (D I - H H^T) W. Of T = (D I - H H^T) W the product with W^T sees the lower triangle only.
@@ -154,62 +130,45 @@ void DenseSolver::GradientFromSquare(const Eigen::MatrixXd& w, double num_output
                                      Eigen::MatrixXd& h, Eigen::MatrixXd& a) {
   const ptrdiff_t n = w.rows();
   a.resize(n, n);
-  const DenseView lower = ViewOf(h, DenseShape::kLower), factor = ViewOf(w, DenseShape::kLower);
-  Multiply({.alpha = -1,
-            .a = lower,
-            .b = lower.Transposed(),
-            .c = a.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = n,
-            .lower = true,
-            .overwrite = true});
+  const DenseProduct to_a{.c = a.data(), .ldc = n, .lower = true, .overwrite = true};
+  DenseProduct minus = to_a, to_h = to_a;
+  minus.alpha = -1;
+  to_h.c = h.data();
+  first_.Pack(ops_, ViewOf(h, DenseShape::kLower), n, n);
+  Multiply(first_, first_, minus);
   a.diagonal().array() += num_outputs;
-  Multiply({.a = ViewOf(a, DenseShape::kSymmetric),
-            .b = factor,
-            .c = h.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = n,
-            .lower = true,
-            .overwrite = true});
-  Multiply({.a = factor.Transposed(),
-            .b = lower,
-            .c = a.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = n,
-            .lower = true,
-            .overwrite = true});
+  first_.Pack(ops_, ViewOf(a, DenseShape::kSymmetric), n, n);
+  second_.Pack(ops_, ViewOf(w, DenseShape::kLower).Transposed(), n, n);
+  Multiply(first_, second_, to_h);
+  first_.Pack(ops_, ViewOf(h, DenseShape::kLower).Transposed(), n, n);
+  Multiply(second_, first_, to_a);
 }
 
+// D W^T W - S S^T with S = W^T H.
 void DenseSolver::GradientFromNarrow(const Eigen::MatrixXd& w, double num_outputs,
-                                     const Eigen::MatrixXd& solution, Eigen::MatrixXd& a) {
-  const ptrdiff_t n = w.rows();
+                                     const Eigen::MatrixXd& h, Eigen::MatrixXd& solution,
+                                     Eigen::MatrixXd& a) {
+  const ptrdiff_t n = w.rows(), r = h.cols();
+  solution.resize(n, r);
   a.resize(n, n);
-  const DenseView factor = ViewOf(w, DenseShape::kLower), narrow = ViewOf(solution);
-  Multiply({.alpha = num_outputs,
-            .a = factor.Transposed(),
-            .b = factor,
-            .c = a.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = n,
-            .lower = true,
-            .overwrite = true});
-  Multiply({.alpha = -1,
-            .a = narrow,
-            .b = narrow.Transposed(),
-            .c = a.data(),
-            .ldc = n,
-            .m = n,
-            .n = n,
-            .k = solution.cols(),
-            .lower = true});
+  first_.Pack(ops_, ViewOf(w, DenseShape::kLower).Transposed(), n, n);
+  second_.Pack(ops_, ViewOf(h).Transposed(), r, n);
+  Multiply(first_, second_, {.c = solution.data(), .ldc = n, .overwrite = true});
+  Multiply(first_, first_,
+           {.alpha = num_outputs, .c = a.data(), .ldc = n, .lower = true, .overwrite = true});
+  second_.Pack(ops_, ViewOf(solution), n, r);
+  Multiply(second_, second_, {.alpha = -1, .c = a.data(), .ldc = n, .lower = true});
+}
+
+// Packs one chunk at a time: k may be large.
+void DenseSolver::MultiplyRows(const DenseView& a, const DenseView& b, ptrdiff_t k,
+                               const DenseProduct& product) {
+  for (ptrdiff_t begin = 0; begin == 0 || begin < k; begin += kDenseDepth) {
+    const DenseChunk columns{begin, std::min(begin + kDenseDepth, k)};
+    first_.Pack(ops_, a, product.m, columns);
+    second_.Pack(ops_, b, product.n, columns);
+    Multiply(first_, second_, product);
+  }
 }
 
 }  // namespace pleat

@@ -18,6 +18,28 @@ inline DenseView ViewOf(const Eigen::MatrixXd& m, DenseShape shape = DenseShape:
   return {m.data(), 1, m.outerStride(), shape};
 }
 
+// The rows of a matrix as products read them.
+class PackedRows {
+ public:
+  // `view`: rows x cols.
+  void Pack(const DenseOps& ops, const DenseView& view, ptrdiff_t rows, ptrdiff_t cols);
+
+  // Some columns of it; columns.begin is a multiple of kDenseDepth.
+  void Pack(const DenseOps& ops, const DenseView& view, ptrdiff_t rows, DenseChunk columns);
+
+  ptrdiff_t rows() const { return rows_; }
+  DenseChunk columns() const { return columns_; }
+  // The chunk of the columns from `begin` on, a multiple of kDenseDepth.
+  PackedChunk chunk(ptrdiff_t begin) const;
+
+ private:
+  ptrdiff_t rows_ = 0, padded_rows_ = 0;
+  DenseChunk columns_;
+  DenseShape shape_ = DenseShape::kFull;
+  std::vector<double> storage_;
+  double* data_ = nullptr;  // aligned, within storage_
+};
+
 // Preallocated scratch + algorithms; not for two threads at once.
 class DenseSolver {
  public:
@@ -28,9 +50,6 @@ class DenseSolver {
   // Cholesky K = L L^T of the lower triangle of `k` (N x N) in place, and W = L^-1 (lower; zero
   // above the diagonal). False when K is not positive definite in double precision.
   bool FactorAndInvert(Eigen::MatrixXd& k, Eigen::MatrixXd& w);
-
-  // q (lower) = W^T W = K^-1.
-  void InverseFromFactor(const Eigen::MatrixXd& w, Eigen::MatrixXd& q);
 
   // h = W f for f (N x r), or h = W^T f with `transposed`. `f_lower`: f is square and lower
   // triangular.
@@ -47,18 +66,20 @@ class DenseSolver {
   // W = L^-1. G = F F^T with F square and lower triangular, given by h = W F (lower; lost).
   void GradientFromSquare(const Eigen::MatrixXd& w, double num_outputs, Eigen::MatrixXd& h,
                           Eigen::MatrixXd& a);
-  // The same from K^-1 F (N x r).
-  void GradientFromNarrow(const Eigen::MatrixXd& w, double num_outputs,
-                          const Eigen::MatrixXd& solution, Eigen::MatrixXd& a);
+  // The same from h = W F of a narrow F (N x r); solution = K^-1 F (N x r).
+  void GradientFromNarrow(const Eigen::MatrixXd& w, double num_outputs, const Eigen::MatrixXd& h,
+                          Eigen::MatrixXd& solution, Eigen::MatrixXd& a);
 
-  void Multiply(const DenseProduct& product);
+  // C = or += alpha A B^T for A (m x k) and B (n x k), with the rest of `product` as given.
+  void MultiplyRows(const DenseView& a, const DenseView& b, ptrdiff_t k,
+                    const DenseProduct& product);
 
  private:
   bool FactorBlock(double* k, double* w, ptrdiff_t n, ptrdiff_t ld);
+  void Multiply(const PackedRows& a, const PackedRows& b, DenseProduct product);
 
   const DenseOps& ops_;
-  std::vector<double> pack_;
-  std::vector<double> temporary_;  // of FactorBlock
+  PackedRows first_, second_;
 };
 
 }  // namespace pleat

@@ -28,15 +28,26 @@ struct DenseView {
   }
 };
 
-// C (m x n, leading dimension ldc) = or += alpha A (m x k) B (k x n). With `lower` only the entries
-// on and below the diagonal of C are needed; what else is written is not defined.
+// C (m x n, leading dimension ldc) = or += alpha A B^T for packed A (m x k) and B (n x k). With
+// `lower` only the entries on and below the diagonal of C are needed; what else is written is not
+// defined.
 struct DenseProduct {
   double alpha = 1;
-  DenseView a, b;
   double* c = nullptr;
-  ptrdiff_t ldc = 0, m = 0, n = 0, k = 0;
+  ptrdiff_t ldc = 0, m = 0, n = 0;
   bool lower = false;
   bool overwrite = false;  // C is not read
+};
+
+// Columns of a matrix. Products sum over one chunk after the other.
+struct DenseChunk {
+  ptrdiff_t begin = 0, end = 0;
+};
+
+// The rows of a matrix in the order in which a product reads one chunk of its columns.
+struct PackedChunk {
+  const double* data = nullptr;
+  DenseShape shape = DenseShape::kFull;
 };
 
 // Lower-triangular sums of the Gram gradient; off-diagonal entries count twice.
@@ -49,16 +60,22 @@ struct GramSums {
 };
 
 constexpr ptrdiff_t kDenseLeaf = 24;
+constexpr ptrdiff_t kDenseDepth = 256;  // columns in a chunk; part of the result, do not tune
+constexpr ptrdiff_t kDenseAlignment = 64;
 
 // All matrices are column-major with leading dimension `n` unless a stride is given; "lower" means
 // that entries above the diagonal are neither read nor defined.
 struct DenseOps {
   const char* name;
-  ptrdiff_t pack_size;  // doubles of scratch that `multiply` needs
+  ptrdiff_t panel_rows;  // a packed chunk has a multiple of this many rows
 
-  // The product. Each entry is a sum in the order of k, in chunks of fixed length: the same bits
-  // whatever the width of the registers. C must not overlap A or B.
-  void (*multiply)(const DenseProduct& product, double* scratch);
+  // Packs one chunk of `rows` rows of `a`; `packed` is aligned to kDenseAlignment bytes.
+  void (*pack)(const DenseView& a, ptrdiff_t rows, DenseChunk chunk, double* packed);
+
+  // Adds the part of the product that one chunk gives (chunk.begin = 0 comes first). Each entry is
+  // a sum in the order of k, chunk after chunk: the same bits whatever the width of the registers.
+  void (*multiply)(const DenseProduct& product, DenseChunk chunk, const PackedChunk& a,
+                   const PackedChunk& b);
 
   // Cholesky K = L L^T of the lower triangle of K (n x n, n <= kDenseLeaf, leading dimension ld) in
   // place, and W = L^-1 with zeros above the diagonal. False when K is not positive definite.
@@ -74,7 +91,7 @@ struct DenseOps {
   void (*kernel)(const double* r, const double* t, ptrdiff_t n, double g, double a, double bias,
                  double c, double* k0, double* k);
 
-  // `a` (lower) is replaced by A = half_weight a; P (lower) = A o K0. P is no other matrix.
+  // `a` (lower) is replaced by A = half_weight a; P (lower) = A o K0. P may take the place of A.
   GramSums (*gram_gradient)(double* a, const double* k0, const double* r, const double* t,
                             ptrdiff_t n, double half_weight, double* p);
 };

@@ -25,17 +25,18 @@ struct GramTerm::State {
   Eigen::MatrixXd distances;  // N x N, lower: R
   Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
   Eigen::MatrixXd rbf;        // N x N, lower: K0, later unchanged
-  Eigen::MatrixXd kernel;     // N x N, lower: K, then L, then A
+  Eigen::MatrixXd kernel;     // N x N, lower: K, then L, then A, then (not linear) P = A o K0
   Eigen::MatrixXd whitener;   // N x N, lower: W = L^-1
   Eigen::MatrixXd whitened;   // N x r: W F, lost by the gradient
   Eigen::MatrixXd solution;   // N x r: K^-1 F, then weighted; only of a narrow F
-  Eigen::MatrixXd weighted;   // N x N, lower: P = A o K0
+  Eigen::MatrixXd beside;     // N x N, lower: P where A is needed too; only with a linear term
   Eigen::MatrixXd product;    // N x (Q + 1): scratch of InputGradient
   Eigen::VectorXd log_gradient;
   KernelValues values{};
   double log_determinant = 0;
   double relative_floor = 0;  // noise floor + jitter of the last factorisation, share of a
 
+  Eigen::MatrixXd& weighted() { return options.linear ? beside : kernel; }
   bool Factor();
   void Gradient(const KernelLogs& logs, const GramData& data, double weight);
 };
@@ -61,13 +62,12 @@ void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, dou
   if (data.lower_triangular) {
     solver.GradientFromSquare(whitener, data.num_outputs, whitened, kernel);
   } else {
-    solver.MultiplyByFactor(whitener, true, whitened, false, solution);
-    solver.GradientFromNarrow(whitener, data.num_outputs, solution, kernel);
+    solver.GradientFromNarrow(whitener, data.num_outputs, whitened, solution, kernel);
     solution *= weight;
   }
   const GramSums sums = solver.ops().gram_gradient(kernel.data(), rbf.data(), distances.data(),
                                                    options.linear ? products.data() : nullptr, n,
-                                                   .5 * weight, weighted.data());
+                                                   .5 * weight, weighted().data());
   KernelLogs gradient;
   gradient.inverse_width = -.5 * values.g * sums.distance;
   gradient.amplitude = sums.amplitude + relative_floor * values.a * sums.trace;
@@ -86,10 +86,10 @@ GramTerm::GramTerm(int num_rows, const KernelOptions& options) : state_(new Stat
   State& s = *state_;
   s.options = options;
   s.n = num_rows;
-  for (Eigen::MatrixXd* m : {&s.distances, &s.rbf, &s.kernel, &s.whitener, &s.weighted}) {
+  for (Eigen::MatrixXd* m : {&s.distances, &s.rbf, &s.kernel, &s.whitener}) {
     m->setZero(s.n, s.n);
   }
-  if (options.linear) s.products.setZero(s.n, s.n);
+  if (options.linear) s.products = s.beside = s.distances;
   s.log_gradient.setZero(NumKernelUnknowns(options));
 }
 
@@ -128,7 +128,7 @@ void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
   State& s = *state_;
   const Eigen::Index dims = s.inputs.cols();
   // -2 g (diag(P 1) - P) X.
-  s.solver.SymmetricMultiply(s.weighted, s.extended, s.product);
+  s.solver.SymmetricMultiply(s.weighted(), s.extended, s.product);
   gradient =
       2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * s.inputs);
   if (!s.options.linear) return;
@@ -179,15 +179,9 @@ absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& o
   DenseSolver solver;
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
   const DenseView view{outputs.data(), 1, outputs.outerStride()};
-  solver.Multiply({.a = view,
-                   .b = view.Transposed(),
-                   .c = gram.data(),
-                   .ldc = n,
-                   .m = n,
-                   .n = n,
-                   .k = outputs.cols(),
-                   .lower = true,
-                   .overwrite = true});
+  solver.MultiplyRows(
+      view, view, outputs.cols(),
+      {.c = gram.data(), .ldc = n, .m = n, .n = n, .lower = true, .overwrite = true});
   gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
   return MakeGramDataFromGram(gram, static_cast<double>(outputs.cols()));
 }

@@ -35,14 +35,8 @@ Eigen::MatrixXd AdditiveCovariance(const std::vector<Eigen::MatrixXd>& a,
   Eigen::MatrixXd products, rbf;
   for (size_t e = 0; e < terms.size(); ++e) {
     products.resize(n, m);
-    solver.Multiply({.a = ViewOf(a[e]),
-                     .b = ViewOf(b[e]).Transposed(),
-                     .c = products.data(),
-                     .ldc = n,
-                     .m = n,
-                     .n = m,
-                     .k = a[e].cols(),
-                     .overwrite = true});
+    solver.MultiplyRows(ViewOf(a[e]), ViewOf(b[e]), a[e].cols(),
+                        {.c = products.data(), .ldc = n, .m = n, .n = m, .overwrite = true});
     rbf = 2 * products;
     rbf.colwise() -= a[e].rowwise().squaredNorm();
     rbf.rowwise() -= b[e].rowwise().squaredNorm().transpose();
@@ -72,31 +66,15 @@ bool SolveInduced(
     const Eigen::Index count = std::min(kBlockRows, outputs.rows() - begin);
     const Eigen::MatrixXd block = cross(begin, count);
     whitened.resize(count, m);
-    solver.Multiply({.a = ViewOf(block),
-                     .b = ViewOf(w, DenseShape::kLower).Transposed(),
-                     .c = whitened.data(),
-                     .ldc = count,
-                     .m = count,
-                     .n = m,
-                     .k = m,
-                     .overwrite = true});
-    const DenseView rows = ViewOf(whitened);
-    solver.Multiply({.a = rows.Transposed(),
-                     .b = rows,
-                     .c = gain.data(),
-                     .ldc = m,
-                     .m = m,
-                     .n = m,
-                     .k = count,
-                     .lower = true});
+    solver.MultiplyRows(
+        ViewOf(block), ViewOf(w, DenseShape::kLower), m,
+        {.c = whitened.data(), .ldc = count, .m = count, .n = m, .overwrite = true});
+    const DenseView columns = ViewOf(whitened).Transposed();
+    solver.MultiplyRows(columns, columns, count,
+                        {.c = gain.data(), .ldc = m, .m = m, .n = m, .lower = true});
     const DenseView targets{outputs.data() + begin, 1, outputs.outerStride()};
-    solver.Multiply({.a = rows.Transposed(),
-                     .b = targets,
-                     .c = right.data(),
-                     .ldc = m,
-                     .m = m,
-                     .n = num_outputs,
-                     .k = count});
+    solver.MultiplyRows(columns, targets.Transposed(), count,
+                        {.c = right.data(), .ldc = m, .m = m, .n = num_outputs});
   }
   gain.triangularView<Eigen::StrictlyUpper>() = gain.transpose();
   gain /= noise;

@@ -118,15 +118,9 @@ DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, View
   view.gram.setZero(n, n);
   DenseSolver solver;
   const DenseView rows = ViewOf(centred);
-  solver.Multiply({.a = rows,
-                   .b = rows.Transposed(),
-                   .c = view.gram.data(),
-                   .ldc = n,
-                   .m = n,
-                   .n = n,
-                   .k = centred.cols(),
-                   .lower = true,
-                   .overwrite = true});
+  solver.MultiplyRows(
+      rows, rows, centred.cols(),
+      {.c = view.gram.data(), .ldc = n, .m = n, .n = n, .lower = true, .overwrite = true});
   view.gram.triangularView<Eigen::StrictlyUpper>() = view.gram.transpose();
   return view;
 }
