@@ -66,7 +66,7 @@ void DenseSolver::Multiply(const PackedRows& a, const PackedRows& b, DenseProduc
 
 bool DenseSolver::FactorAndInvert(Eigen::MatrixXd& k, Eigen::MatrixXd& w) {
   const ptrdiff_t n = k.rows();
-  w.resize(n, n);
+  if (w.rows() != n || w.cols() != n) w.setZero(n, n);
   return n == 0 || FactorBlock(k.data(), w.data(), n, n);
 }
 
@@ -95,7 +95,6 @@ bool DenseSolver::FactorBlock(double* k, double* w, ptrdiff_t n, ptrdiff_t ld) {
   first_.Pack(ops_, LowerView(w22, ld), rest, rest);
   second_.Pack(ops_, DenseView{w21, 1, ld}.Transposed(), half, rest);
   Multiply(first_, second_, {.alpha = -1, .c = w21, .ldc = ld, .overwrite = true});
-  for (ptrdiff_t j = half; j < n; ++j) std::fill_n(w + j * ld, half, 0.0);
   return true;
 }
 

@@ -48,7 +48,8 @@ class DenseSolver {
   const DenseOps& ops() const { return ops_; }
 
   // Cholesky K = L L^T of the lower triangle of `k` (N x N) in place, and W = L^-1 (lower; zero
-  // above the diagonal). False when K is not positive definite in double precision.
+  // above the diagonal, where a `w` of that size must be zero on entry, as an earlier call leaves
+  // it). False when K is not positive definite in double precision.
   bool FactorAndInvert(Eigen::MatrixXd& k, Eigen::MatrixXd& w);
 
   // h = W f for f (N x r), or h = W^T f with `transposed`. `f_lower`: f is square and lower

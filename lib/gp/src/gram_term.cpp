@@ -1,6 +1,7 @@
 #include "pleat/gp/gram_term.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -15,22 +16,27 @@ constexpr double kFirstJitter = 1e-8;
 
 }  // namespace
 
+// What does not depend on the hyperparameters.
+struct GramInputs {
+  Eigen::MatrixXd inputs;     // N x Q
+  Eigen::MatrixXd extended;   // N x (Q + 1): inputs and a column of ones
+  Eigen::MatrixXd distances;  // N x N, lower: R
+  Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
+};
+
 struct GramTerm::State {
   KernelOptions options;
   DenseSolver solver;
   Eigen::Index n = 0;
 
-  Eigen::MatrixXd inputs;     // N x Q
-  Eigen::MatrixXd extended;   // N x (Q + 1): inputs and a column of ones
-  Eigen::MatrixXd distances;  // N x N, lower: R
-  Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
-  Eigen::MatrixXd rbf;        // N x N, lower: K0, later unchanged
-  Eigen::MatrixXd kernel;     // N x N, lower: K, then L, then A, then (not linear) P = A o K0
-  Eigen::MatrixXd whitener;   // N x N, lower: W = L^-1
-  Eigen::MatrixXd whitened;   // N x r: W F, lost by the gradient
-  Eigen::MatrixXd solution;   // N x r: K^-1 F, then weighted; only of a narrow F
-  Eigen::MatrixXd beside;     // N x N, lower: P where A is needed too; only with a linear term
-  Eigen::MatrixXd product;    // N x (Q + 1): scratch of InputGradient
+  std::shared_ptr<GramInputs> in = std::make_shared<GramInputs>();
+  Eigen::MatrixXd rbf;       // N x N, lower: K0, later unchanged
+  Eigen::MatrixXd kernel;    // N x N, lower: K, then L, then A, then (not linear) P = A o K0
+  Eigen::MatrixXd whitener;  // N x N, lower: W = L^-1
+  Eigen::MatrixXd whitened;  // N x r: W F, lost by the gradient
+  Eigen::MatrixXd solution;  // N x r: K^-1 F, then weighted; only of a narrow F
+  Eigen::MatrixXd beside;    // N x N, lower: P where A is needed too; only with a linear term
+  Eigen::MatrixXd product;   // N x (Q + 1): scratch of InputGradient
   Eigen::VectorXd log_gradient;
   KernelValues values{};
   double log_determinant = 0;
@@ -43,11 +49,11 @@ struct GramTerm::State {
 
 // K and its inverse factor from the distances; more jitter until it is positive definite.
 bool GramTerm::State::Factor() {
-  const double* linear = options.linear ? products.data() : nullptr;
+  const double* linear = options.linear ? in->products.data() : nullptr;
   for (double jitter = 0; jitter <= kLargestJitter;
        jitter = jitter == 0 ? kFirstJitter : 10 * jitter) {
     relative_floor = options.relative_noise_floor + jitter;
-    solver.ops().kernel(distances.data(), linear, n, values.g, values.a, values.b, values.c,
+    solver.ops().kernel(in->distances.data(), linear, n, values.g, values.a, values.b, values.c,
                         rbf.data(), kernel.data());
     kernel.diagonal().array() += values.s2 + relative_floor * values.a + options.absolute_jitter;
     if (solver.FactorAndInvert(kernel, whitener)) {
@@ -65,9 +71,9 @@ void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, dou
     solver.GradientFromNarrow(whitener, data.num_outputs, whitened, solution, kernel);
     solution *= weight;
   }
-  const GramSums sums = solver.ops().gram_gradient(kernel.data(), rbf.data(), distances.data(),
-                                                   options.linear ? products.data() : nullptr, n,
-                                                   .5 * weight, weighted().data());
+  const GramSums sums = solver.ops().gram_gradient(kernel.data(), rbf.data(), in->distances.data(),
+                                                   options.linear ? in->products.data() : nullptr,
+                                                   n, .5 * weight, weighted().data());
   KernelLogs gradient;
   gradient.inverse_width = -.5 * values.g * sums.distance;
   gradient.amplitude = sums.amplitude + relative_floor * values.a * sums.trace;
@@ -86,10 +92,10 @@ GramTerm::GramTerm(int num_rows, const KernelOptions& options) : state_(new Stat
   State& s = *state_;
   s.options = options;
   s.n = num_rows;
-  for (Eigen::MatrixXd* m : {&s.distances, &s.rbf, &s.kernel, &s.whitener}) {
+  for (Eigen::MatrixXd* m : {&s.in->distances, &s.rbf, &s.kernel, &s.whitener}) {
     m->setZero(s.n, s.n);
   }
-  if (options.linear) s.products = s.beside = s.distances;
+  if (options.linear) s.in->products = s.beside = s.in->distances;
   s.log_gradient.setZero(NumKernelUnknowns(options));
 }
 
@@ -99,11 +105,17 @@ GramTerm& GramTerm::operator=(GramTerm&&) noexcept = default;
 
 void GramTerm::SetInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   State& s = *state_;
-  s.inputs = inputs;
-  s.extended.resize(s.n, inputs.cols() + 1);
-  s.extended << inputs, Eigen::VectorXd::Ones(s.n);
-  s.solver.ops().squared_distances(s.inputs.data(), s.n, s.inputs.cols(), s.distances.data());
-  if (s.options.linear) s.solver.OuterProduct(s.inputs, s.products);
+  GramInputs& in = *s.in;
+  in.inputs = inputs;
+  in.extended.resize(s.n, inputs.cols() + 1);
+  in.extended << inputs, Eigen::VectorXd::Ones(s.n);
+  s.solver.ops().squared_distances(in.inputs.data(), s.n, inputs.cols(), in.distances.data());
+  if (s.options.linear) s.solver.OuterProduct(in.inputs, in.products);
+}
+
+void GramTerm::ShareInputs(const GramTerm& other) {
+  assert(other.state_->n == state_->n && other.state_->options.linear == state_->options.linear);
+  state_->in = other.state_->in;
 }
 
 double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double weight,
@@ -126,13 +138,14 @@ const Eigen::VectorXd& GramTerm::log_gradient() const { return state_->log_gradi
 
 void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
   State& s = *state_;
-  const Eigen::Index dims = s.inputs.cols();
+  const GramInputs& in = *s.in;
+  const Eigen::Index dims = in.inputs.cols();
   // -2 g (diag(P 1) - P) X.
-  s.solver.SymmetricMultiply(s.weighted(), s.extended, s.product);
+  s.solver.SymmetricMultiply(s.weighted(), in.extended, s.product);
   gradient =
-      2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * s.inputs);
+      2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * in.inputs);
   if (!s.options.linear) return;
-  s.solver.SymmetricMultiply(s.kernel, s.inputs, s.product);
+  s.solver.SymmetricMultiply(s.kernel, in.inputs, s.product);
   gradient += 2 * s.values.c * s.product;
 }
 

@@ -3,7 +3,6 @@
 #include <limits>
 #include <utility>
 
-#include "dense.h"
 #include "dynamics.h"
 #include "pleat/gp/shared_gplvm.h"
 
@@ -58,7 +57,6 @@ struct SharedGplvmObjective::State {
   Eigen::MatrixXd latents, latent_gradient;  // N x q
   Eigen::MatrixXd inputs;                    // N_d x order q
   Eigen::MatrixXd term_gradient;             // of one term
-  DenseSolver solver;
 
   State(GramData pose_data, GramData detail_data, DynamicsRows dynamics_rows,
         const SharedGplvmOptions& o)
@@ -69,7 +67,9 @@ struct SharedGplvmObjective::State {
         detail{GramTerm(detail_data.factor.rows(), view_kernel), std::move(detail_data),
                o.detail_weight},
         rows(std::move(dynamics_rows)),
-        dynamics(static_cast<int>(rows.targets.size()), dynamics_kernel) {}
+        dynamics(static_cast<int>(rows.targets.size()), dynamics_kernel) {
+    detail.term.ShareInputs(pose.term);
+  }
 
   bool has_dynamics() const { return options.dynamics_weight > 0; }
   int num_view_logs() const { return NumKernelUnknowns(view_kernel); }
@@ -85,7 +85,6 @@ double SharedGplvmObjective::State::EvaluateView(View& view, const Eigen::Vector
                                                  Eigen::Index at, Eigen::VectorXd* gradient) {
   const int num_logs = num_view_logs();
   const KernelLogs logs = UnpackKernelLogs(view_kernel, unknowns.segment(at, num_logs));
-  view.term.SetInputs(latents);
   double value = view.term.Evaluate(logs, view.data, view.weight, gradient != nullptr, progress);
   if (!std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
   const double precision = options.prior_precision * view.data.num_outputs * double(n);
@@ -152,6 +151,7 @@ double SharedGplvmObjective::Evaluate(const Eigen::VectorXd& unknowns, Eigen::Ve
   } else {
     s.latents = points;
   }
+  s.pose.term.SetInputs(s.latents);  // and the detail's
   s.latent_gradient.setZero(s.n, s.q);
   if (gradient) gradient->resize(num_unknowns());
 

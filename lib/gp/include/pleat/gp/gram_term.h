@@ -42,6 +42,9 @@ class GramTerm {
 
   // The kernel's inputs, N x Q: call before Evaluate and after every change.
   void SetInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+  // From now on both terms have the inputs that either is given: their distances are computed once.
+  // Both have the same number of rows and the same `linear`.
+  void ShareInputs(const GramTerm& other);
 
   // The value; NaN when K cannot be factored even with more jitter (up to 1e-3 a), or when
   // `progress` was cancelled on the way.
@@ -53,7 +56,7 @@ class GramTerm {
   const Eigen::VectorXd& log_gradient() const;
   // d/d inputs, N x Q.
   void InputGradient(Eigen::MatrixXd& gradient);
-  // weight * K^-1 F = d/dF, N x r.
+  // weight * K^-1 F = d/dF, N x r; only of a factor that is not lower triangular.
   const Eigen::MatrixXd& weighted_solution() const;
 
   // After Evaluate: K^-1 y for other right-hand sides (N x r).
