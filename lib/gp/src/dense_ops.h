@@ -87,13 +87,14 @@ struct DenseOps {
   // R (lower) = squared distances of the rows of X (n x q).
   void (*squared_distances)(const double* x, ptrdiff_t n, ptrdiff_t q, double* r);
 
-  // K0 (lower) = a exp(-g/2 R), K (lower) = K0 + bias + c T; T may be null. No diagonal noise.
+  // K (lower) = K0 + bias + c T with K0 = a exp(-g/2 R); T may be null. No diagonal noise.
   void (*kernel)(const double* r, const double* t, ptrdiff_t n, double g, double a, double bias,
-                 double c, double* k0, double* k);
+                 double c, double* k);
 
-  // `a` (lower) is replaced by A = half_weight a; P (lower) = A o K0. P may take the place of A.
-  GramSums (*gram_gradient)(double* a, const double* k0, const double* r, const double* t,
-                            ptrdiff_t n, double half_weight, double* p);
+  // `gradient` (lower) is replaced by A = half_weight gradient; P (lower) = A o K0 and may take its
+  // place. K0 is computed again: faster than to read it from memory.
+  GramSums (*gram_gradient)(double* gradient, const double* r, const double* t, ptrdiff_t n,
+                            double g, double a, double half_weight, double* p);
 };
 
 const DenseOps* BaselineDenseOps();

@@ -54,7 +54,7 @@ bool GramTerm::State::Factor() {
        jitter = jitter == 0 ? kFirstJitter : 10 * jitter) {
     relative_floor = options.relative_noise_floor + jitter;
     solver.ops().kernel(in->distances.data(), linear, n, values.g, values.a, values.b, values.c,
-                        rbf.data(), kernel.data());
+                        kernel.data());
     kernel.diagonal().array() += values.s2 + relative_floor * values.a + options.absolute_jitter;
     if (solver.FactorAndInvert(kernel, whitener)) {
       log_determinant = 2 * kernel.diagonal().array().log().sum();
@@ -71,9 +71,9 @@ void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, dou
     solver.GradientFromNarrow(whitener, data.num_outputs, whitened, solution, kernel);
     solution *= weight;
   }
-  const GramSums sums = solver.ops().gram_gradient(kernel.data(), rbf.data(), in->distances.data(),
-                                                   options.linear ? in->products.data() : nullptr,
-                                                   n, .5 * weight, weighted().data());
+  const GramSums sums = solver.ops().gram_gradient(
+      kernel.data(), in->distances.data(), options.linear ? in->products.data() : nullptr, n,
+      values.g, values.a, .5 * weight, weighted().data());
   KernelLogs gradient;
   gradient.inverse_width = -.5 * values.g * sums.distance;
   gradient.amplitude = sums.amplitude + relative_floor * values.a * sums.trace;
@@ -92,7 +92,7 @@ GramTerm::GramTerm(int num_rows, const KernelOptions& options) : state_(new Stat
   State& s = *state_;
   s.options = options;
   s.n = num_rows;
-  for (Eigen::MatrixXd* m : {&s.in->distances, &s.rbf, &s.kernel, &s.whitener}) {
+  for (Eigen::MatrixXd* m : {&s.in->distances, &s.kernel, &s.whitener}) {
     m->setZero(s.n, s.n);
   }
   if (options.linear) s.in->products = s.beside = s.in->distances;

@@ -58,12 +58,11 @@ Eigen::MatrixXd BackKernel(const Eigen::MatrixXd& poses, const SharedGplvmOption
                            double* log_inverse_width) {
   const Eigen::Index n = poses.rows();
   const DenseOps& ops = ChosenDenseOps();
-  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n), kernel = distances, unused = distances;
+  Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n), kernel = distances;
   ops.squared_distances(poses.data(), n, poses.cols(), distances.data());
   const double median = MedianSquaredDistance(distances);
   *log_inverse_width = -std::log(median * options.back_width * options.back_width);
-  ops.kernel(distances.data(), nullptr, n, std::exp(*log_inverse_width), 1, 0, 0, unused.data(),
-             kernel.data());
+  ops.kernel(distances.data(), nullptr, n, std::exp(*log_inverse_width), 1, 0, 0, kernel.data());
   kernel.triangularView<Eigen::StrictlyUpper>() = kernel.transpose();
   return kernel;
 }
