@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -18,7 +20,7 @@ class FrameSkinningTest : public ::testing::Test {
   FrameSkinningTest() {
     ComputeBoneTransforms(figure_.rig.skeleton,
                           MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5], {}, &transforms_);
-    motions_.Set(transforms_, transforms_.rotation);
+    skinning_.SetMotions(transforms_, transforms_.rotation, &motions_);
     details_.resize(3 * num_blocks_ * kSkinningLanes);
     for (size_t i = 0; i < details_.size(); ++i) {
       details_[i] = .02f * static_cast<float>(std::sin(.7 * static_cast<double>(i)));
@@ -32,71 +34,108 @@ class FrameSkinningTest : public ::testing::Test {
   }
   Eigen::Matrix3Xf Skin(const float* details) const {
     Eigen::Matrix3Xf positions = Eigen::Matrix3Xf::Constant(3, num_vertices(), 1e9f);
-    SkinBlocks(figure_.rig, motions_, 0, num_blocks_, details, &positions);
+    skinning_.SkinBlocks(motions_, 0, num_blocks_, details, &positions);
     return positions;
+  }
+
+  Eigen::Matrix3Xd Expected(bool with_details) const {
+    Eigen::Matrix3Xd expected;
+    SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms_, &expected);
+    if (!with_details) return expected;
+    std::vector<int> all(num_vertices());
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<Eigen::Quaterniond> rotations;
+    BlendRotations(figure_.rig.weights, all, transforms_, &rotations);
+    for (int v = 0; v < num_vertices(); ++v) expected.col(v) += rotations[v] * DetailOf(v);
+    return expected;
+  }
+  // All kernels, and those that look up bones in tables also without them.
+  void CompareKernels() const {
+    for (const float* details : {static_cast<const float*>(nullptr), details_.data()}) {
+      const Eigen::Matrix3Xf expected = Skin(details);
+      for (const bool with_tables : {true, false}) {
+        BoneMotions motions = motions_;
+        if (!with_tables) motions.tables.clear();
+        for (const SkinBlockFunction skin_block : UsableSkinBlocks()) {
+          Eigen::Matrix3Xf positions(3, num_vertices());
+          skinning_.SkinBlocksWith(skin_block, motions, 0, num_blocks_, details, &positions);
+          EXPECT_EQ(
+              0, std::memcmp(positions.data(), expected.data(), positions.size() * sizeof(float)));
+        }
+      }
+    }
   }
 
   // 595 vertices: the last block has three.
   SkinnedFigure figure_ = MakeSkinnedFigure({.num_rings = 7, .num_sides = 5});
-  int num_blocks_ = (num_vertices() + kSkinningLanes - 1) / kSkinningLanes;
+  FrameSkinning skinning_{figure_.rig};
+  int num_blocks_ = skinning_.num_blocks();
   BoneTransforms transforms_;
   BoneMotions motions_;
   std::vector<float> details_;
 };
 
 TEST_F(FrameSkinningTest, AgreesWithSkinningInDoublePrecision) {
-  Eigen::Matrix3Xd expected;
-  SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms_, &expected);
-  EXPECT_LT((Skin(nullptr).cast<double>() - expected).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_LT((Skin(nullptr).cast<double>() - Expected(false)).cwiseAbs().maxCoeff(), 2e-6);
 }
 
 TEST_F(FrameSkinningTest, TurnsDetailsWithTheBlendedRotation) {
-  Eigen::Matrix3Xd expected;
-  SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms_, &expected);
-  std::vector<int> all(num_vertices());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<Eigen::Quaterniond> rotations;
-  BlendRotations(figure_.rig.weights, all, transforms_, &rotations);
-  for (int v = 0; v < num_vertices(); ++v) expected.col(v) += rotations[v] * DetailOf(v);
-  EXPECT_LT((Skin(details_.data()).cast<double>() - expected).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_LT((Skin(details_.data()).cast<double>() - Expected(true)).cwiseAbs().maxCoeff(), 2e-6);
 }
 
-TEST_F(FrameSkinningTest, SignsOfTheQuaternionsDoNotMatter) {
-  const Eigen::Matrix3Xf expected = Skin(details_.data());
-  for (const int bone : {2, 5, 6, 11}) {
-    for (int column = 0; column < 4; ++column) motions_.columns[16 * bone + 4 * column + 3] *= -1;
+// Bones from all over the figure on each vertex, turned so far against each other that no choice of
+// signs suits them all.
+class FarBonesTest : public FrameSkinningTest {
+ protected:
+  FarBonesTest() {
+    const int num_joints = figure_.rig.skeleton.num_joints(), num_bones = num_joints - 1;
+    std::vector<VertexInfluences> influences(num_vertices());
+    for (int v = 0; v < num_vertices(); ++v) {
+      for (int k = 0; k < kMaxInfluences; ++k) {
+        influences[v].bones[k] = static_cast<uint16_t>(1 + (v / 3 + 5 * k) % num_bones);
+        influences[v].weights[k] = std::array{.5f, .25f, .15f, .1f}[k];
+      }
+    }
+    figure_.rig.weights = SkinWeights::Create(num_joints, influences).value();
+    skinning_ = FrameSkinning(figure_.rig);
+    for (int b = 0; b < num_joints; ++b) {
+      transforms_.rotation[b] =
+          Eigen::AngleAxisd(.8 * b, Eigen::Vector3d(1, .2 * b, -.5).normalized())
+              .toRotationMatrix();
+    }
+    skinning_.SetMotions(transforms_, transforms_.rotation, &motions_);
   }
-  EXPECT_LT((Skin(details_.data()) - expected).cwiseAbs().maxCoeff(), 1e-7f);
+};
+
+TEST_F(FarBonesTest, QuaternionsAreAlignedWithTheStrongest) {
+  EXPECT_FALSE(motions_.signs.empty());
+  EXPECT_LT((Skin(details_.data()).cast<double>() - Expected(true)).cwiseAbs().maxCoeff(), 3e-6);
 }
+
+TEST_F(FarBonesTest, NothingIsLeftOfTheFrameBefore) {
+  const Eigen::Matrix3Xf expected = Skin(details_.data());
+  const BoneMotions before = motions_;
+  skinning_.SetMotions(transforms_, std::vector<Eigen::Matrix3d>(18, Eigen::Matrix3d::Identity()),
+                       &motions_);
+  EXPECT_TRUE(motions_.signs.empty());
+  skinning_.SetMotions(transforms_, transforms_.rotation, &motions_);
+  EXPECT_EQ(motions_.signs, before.signs);
+  EXPECT_EQ(Skin(details_.data()), expected);
+}
+
+TEST_F(FarBonesTest, EveryKernelGivesTheSameBits) { CompareKernels(); }
 
 TEST_F(FrameSkinningTest, PartsGiveTheWhole) {
   const Eigen::Matrix3Xf expected = Skin(details_.data());
   Eigen::Matrix3Xf positions(3, num_vertices());
   for (int block = 0; block < num_blocks_; ++block) {
-    SkinBlocks(figure_.rig, motions_, block, 1, details_.data() + 3 * kSkinningLanes * block,
-               &positions);
+    skinning_.SkinBlocks(motions_, block, 1, details_.data() + 3 * kSkinningLanes * block,
+                         &positions);
   }
   EXPECT_EQ(positions, expected);
 }
 
-TEST_F(FrameSkinningTest, EveryKernelGivesTheSameBits) {
-  for (const float* details :
-       {static_cast<const float*>(nullptr), std::as_const(details_).data()}) {
-    for (const int count : {kSkinningLanes, 3}) {
-      std::vector<float> expected;
-      for (const SkinBlockFunction skin_block : UsableSkinBlocks()) {
-        std::vector<float> positions(3 * kSkinningLanes);
-        const int v = num_vertices() - count;
-        skin_block(figure_.rig.weights.influences().data() + v,
-                   figure_.rig.rest_positions.data() + 3 * v, count, motions_.columns.data(),
-                   details, positions.data());
-        positions.resize(3 * count);
-        if (expected.empty()) expected = positions;
-        EXPECT_EQ(positions, expected);
-      }
-    }
-  }
-}
+TEST_F(FrameSkinningTest, EveryKernelGivesTheSameBits) { CompareKernels(); }
 
 }  // namespace
 }  // namespace pleat

@@ -132,6 +132,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> CharacterModel::Create(Par
 CharacterModel::CharacterModel(Parts parts, PoseFeatures features, DetailBasis upsampled_basis)
     : parts_(std::move(parts)),
       features_(std::move(features)),
+      skinning_(parts_.rig),
       upsampled_basis_(std::move(upsampled_basis)) {}
 
 std::shared_ptr<const CharacterModel> CharacterModel::WithRecord(TrainingRecord record) const {
@@ -143,7 +144,7 @@ std::shared_ptr<const CharacterModel> CharacterModel::WithRecord(TrainingRecord 
 size_t CharacterModel::memory_bytes() const {
   const size_t vertices = static_cast<size_t>(num_vertices());
   size_t bytes = sizeof(*this) + DetailModelBytes(*parts_.detail_model);
-  bytes += vertices * (sizeof(VertexInfluences) + 3 * sizeof(double));
+  bytes += vertices * (sizeof(VertexInfluences) + 3 * sizeof(double)) + skinning_.memory_bytes();
   bytes += static_cast<size_t>(parts_.topology.num_corners()) * sizeof(int32_t) +
            static_cast<size_t>(parts_.topology.num_faces()) * sizeof(int32_t) +
            static_cast<size_t>(parts_.topology.triangles().size()) * sizeof(int);

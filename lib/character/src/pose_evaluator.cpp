@@ -217,7 +217,7 @@ void PoseEvaluator::Place(const std::vector<double>& bone_scales, Scratch* scrat
   if (s.has_details && DetailBaseOf(model_->options()) == DetailBase::kRoot) {
     MoveAllWithRoot(&s.transforms);
   }
-  s.motions.Set(s.transforms, s.axes);
+  model_->skinning().SetMotions(s.transforms, s.axes, &s.motions);
   if (s.has_details) model_->full_basis().SetCoefficients(s.coefficients, &s.expansion);
 }
 
@@ -277,8 +277,8 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
         const Scratch& s = *scratches[q];
         const float* tile =
             s.details.data() + static_cast<ptrdiff_t>(i) * DetailBasis::kBlockDetails;
-        SkinBlocks(model_->rig(), s.motions, block + i, 1, s.has_details ? tile : nullptr,
-                   &frames[q]->positions);
+        model_->skinning().SkinBlocks(s.motions, block + i, 1, s.has_details ? tile : nullptr,
+                                      &frames[q]->positions);
       }
     }
   }

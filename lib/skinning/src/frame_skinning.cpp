@@ -3,37 +3,110 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <set>
+#include <utility>
 
 #include "skin_block.h"
 
 namespace pleat {
 
-void BoneMotions::Set(const BoneTransforms& transforms, const std::vector<Eigen::Matrix3d>& axes) {
-  assert(axes.size() == transforms.linear.size());
-  columns.resize(16 * transforms.linear.size());
-  for (size_t b = 0; b < transforms.linear.size(); ++b) {
-    Eigen::Map<Eigen::Matrix4f> motion(columns.data() + 16 * b);
+FrameSkinning::FrameSkinning(const Rig& rig) : num_vertices_(rig.weights.num_vertices()) {
+  for (const Joint& joint : rig.skeleton.joints()) parents_.push_back(joint.parent);
+  blocks_.resize((num_vertices_ + kSkinningLanes - 1) / kSkinningLanes);
+  std::set<std::pair<int, int>> pairs;
+  for (size_t i = 0; i < blocks_.size() * kSkinningLanes; ++i) {
+    const int v = std::min(static_cast<int>(i), num_vertices_ - 1);
+    Block& block = blocks_[i / kSkinningLanes];
+    const size_t lane = i % kSkinningLanes;
+    const VertexInfluences& influences = rig.weights.vertex(v);
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      block.weights[k * kSkinningLanes + lane] = influences.weights[k];
+      block.bones[k * kSkinningLanes + lane] = influences.bones[k];
+      if (k > 0 && influences.weights[k] > 0) {
+        pairs.emplace(influences.bones[0], influences.bones[k]);
+      }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      block.rest[axis * kSkinningLanes + lane] = static_cast<float>(rig.rest_positions(axis, v));
+    }
+  }
+  for (const auto& [strongest, other] : pairs) pairs_.push_back({strongest, other});
+}
+
+size_t FrameSkinning::memory_bytes() const {
+  return blocks_.size() * sizeof(Block) + pairs_.size() * sizeof(BonePair);
+}
+
+void FrameSkinning::SetMotions(const BoneTransforms& transforms,
+                               const std::vector<Eigen::Matrix3d>& axes,
+                               BoneMotions* motions) const {
+  const size_t num_bones = parents_.size();
+  assert(axes.size() == num_bones && transforms.linear.size() == num_bones);
+  motions->columns.resize(kMotionParameters * num_bones);
+  const auto motion_of = [&](size_t b) {
+    return Eigen::Map<Eigen::Matrix4f>(motions->columns.data() + kMotionParameters * b);
+  };
+  for (size_t b = 0; b < num_bones; ++b) {
+    auto motion = motion_of(b);
     motion.topLeftCorner<3, 3>() = transforms.linear[b].cast<float>();
     motion.topRightCorner<3, 1>() = transforms.translation[b].cast<float>();
     motion.row(3) = Eigen::Quaterniond(axes[b]).coeffs().transpose().cast<float>();
+    // Neighbours along the skeleton agree, so that few frames need signs.
+    if (parents_[b] >= 0 && motion.row(3).dot(motion_of(parents_[b]).row(3)) < 0) {
+      motion.row(3) *= -1;
+    }
+  }
+  motions->signs.clear();
+  motions->signs.reserve(num_bones * num_bones);
+  for (const auto& [strongest, other] : pairs_) {
+    if (!(motion_of(strongest).row(3).dot(motion_of(other).row(3)) < 0)) continue;
+    if (motions->signs.empty()) motions->signs.assign(num_bones * num_bones, 1);
+    motions->signs[strongest * num_bones + other] = -1;
+  }
+  motions->tables.clear();
+  if (num_bones > kLookupBones) return;
+  motions->tables.resize(kMotionParameters * kLookupBones);
+  for (size_t b = 0; b < num_bones; ++b) {
+    for (int p = 0; p < kMotionParameters; ++p) {
+      motions->tables[p * kLookupBones + b] = motions->columns[kMotionParameters * b + p];
+    }
   }
 }
 
-void SkinBlocks(const Rig& rig, const BoneMotions& motions, int first_block, int num_blocks,
-                const float* details, Eigen::Matrix3Xf* positions) {
+void FrameSkinning::SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks,
+                               const float* details, Eigen::Matrix3Xf* positions) const {
+  SkinBlocksWith(ChosenSkinBlock(), motions, first_block, num_blocks, details, positions);
+}
+
+void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions,
+                                   int first_block, int num_blocks, const float* details,
+                                   Eigen::Matrix3Xf* positions) const {
   constexpr int kLanes = kSkinningLanes;
-  const int num_vertices = rig.weights.num_vertices();
-  assert(positions->cols() == num_vertices && first_block >= 0 &&
-         (first_block + num_blocks - 1) * kLanes < num_vertices);
-  const SkinBlockFunction skin_block = ChosenSkinBlock();
+  assert(positions->cols() == num_vertices_ && first_block >= 0 &&
+         first_block + num_blocks <= this->num_blocks());
   float last[3 * kLanes];
-  for (int block = first_block; block < first_block + num_blocks; ++block) {
-    const int begin = block * kLanes, count = std::min(kLanes, num_vertices - begin);
+  float signed_weights[kMaxInfluences * kLanes];
+  SkinBlockInputs inputs{.columns = motions.columns.data(),
+                         .tables = motions.tables.empty() ? nullptr : motions.tables.data(),
+                         .details = details};
+  for (int i = first_block; i < first_block + num_blocks; ++i) {
+    const Block& block = blocks_[i];
+    inputs.block = &block;
+    inputs.quaternion_weights = block.weights;
+    if (!motions.signs.empty() && details != nullptr) {
+      for (int place = 0; place < kMaxInfluences * kLanes; ++place) {
+        const size_t strongest = block.bones[place % kLanes];
+        const size_t other = block.bones[place];
+        signed_weights[place] =
+            motions.signs[strongest * parents_.size() + other] * block.weights[place];
+      }
+      inputs.quaternion_weights = signed_weights;
+    }
+    const int begin = i * kLanes, count = std::min(kLanes, num_vertices_ - begin);
     float* target = positions->data() + 3 * static_cast<ptrdiff_t>(begin);
-    skin_block(rig.weights.influences().data() + begin, rig.rest_positions.data() + 3 * begin,
-               count, motions.columns.data(), details, count == kLanes ? target : last);
+    skin_block(inputs, count == kLanes ? target : last);
     if (count < kLanes) std::copy_n(last, 3 * count, target);
-    if (details != nullptr) details += 3 * kLanes;
+    if (inputs.details != nullptr) inputs.details += 3 * kLanes;
   }
 }
 

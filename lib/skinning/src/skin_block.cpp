@@ -1,48 +1,28 @@
 // The same code is compiled for three instruction sets: everything is inlined into SkinBlockFor...
 #include "skin_block.h"
 
-#include <cmath>
 #include <vector>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #define PLEAT_INLINE inline __attribute__((always_inline))
 
 namespace pleat {
 namespace {
 
-constexpr int kLanes = 16, kParameters = 16;
+constexpr int kLanes = kSkinningLanes, kParameters = kMotionParameters;
 
 typedef float Four __attribute__((vector_size(16)));
 typedef float Sixteen __attribute__((vector_size(64)));
-typedef float UnalignedFour __attribute__((vector_size(16), aligned(4), may_alias));
 typedef float UnalignedSixteen __attribute__((vector_size(64), aligned(4), may_alias));
 typedef int FourIndices __attribute__((vector_size(16)));
 
-// Multiplies the fourth row, the quaternion, by the sign.
-alignas(64) constexpr float kSigns[2][16] = {{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1},
-                                             {1, 1, 1, -1, 1, 1, 1, -1, 1, 1, 1, -1, 1, 1, 1, -1}};
-
-PLEAT_INLINE float QuaternionDot(const float* a, const float* b) {
-  return (a[3] * b[3] + a[7] * b[7]) + (a[11] * b[11] + a[15] * b[15]);
-}
-
-// sum_b w_b columns_b of one vertex.
-PLEAT_INLINE void Blend(const VertexInfluences& influences, const float* columns, bool with_axes,
-                        float* blended) {
-  const float* strongest = columns + kParameters * influences.bones[0];
-  Sixteen sum = influences.weights[0] * *reinterpret_cast<const UnalignedSixteen*>(strongest);
-  for (int k = 1; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
-    const float* bone = columns + kParameters * influences.bones[k];
-    const Sixteen motion = *reinterpret_cast<const UnalignedSixteen*>(bone);
-    if (with_axes) {
-      const Sixteen& signs =
-          *reinterpret_cast<const Sixteen*>(kSigns[QuaternionDot(strongest, bone) < 0 ? 1 : 0]);
-      sum += (influences.weights[k] * signs) * motion;
-    } else {
-      sum += influences.weights[k] * motion;
-    }
-  }
-  *reinterpret_cast<Sixteen*>(blended) = sum;
-}
+// The fourth row of a bone's columns, its quaternion.
+constexpr bool IsQuaternion(int parameter) { return parameter % 4 == 3; }
+alignas(64) constexpr float kOnQuaternion[kParameters] = {0, 0, 0, 1, 0, 0, 0, 1,
+                                                          0, 0, 0, 1, 0, 0, 0, 1};
 
 // lanes[parameter][lane] = blended[lane][parameter], four by four.
 PLEAT_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
@@ -68,6 +48,29 @@ PLEAT_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
   }
 }
 
+// m[parameter] = sum_k w_k (parameter of bone k), vertex by vertex.
+PLEAT_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m) {
+  alignas(64) float blended[kLanes][kParameters];
+  alignas(64) float lanes[kParameters][kLanes];
+  const FrameSkinning::Block& block = *inputs.block;
+  const Sixteen on_quaternion = *reinterpret_cast<const Sixteen*>(kOnQuaternion);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    Sixteen sum;
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      const float weight = block.weights[k * kLanes + lane];
+      // The other sign is exact: w - 2 w = -w.
+      const float change = inputs.quaternion_weights[k * kLanes + lane] - weight;
+      const Sixteen motion = *reinterpret_cast<const UnalignedSixteen*>(
+          inputs.columns + kParameters * block.bones[k * kLanes + lane]);
+      const Sixteen part = (weight + change * on_quaternion) * motion;
+      sum = k == 0 ? part : sum + part;
+    }
+    *reinterpret_cast<Sixteen*>(blended[lane]) = sum;
+  }
+  Transpose(blended, lanes);
+  for (int p = 0; p < kParameters; ++p) m[p] = *reinterpret_cast<const Sixteen*>(lanes[p]);
+}
+
 // position[axis] += R(q) detail, q the normalised fourth row of `m`.
 PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* position) {
   const Sixteen squared = (m[3] * m[3] + m[7] * m[7]) + (m[11] * m[11] + m[15] * m[15]);
@@ -90,54 +93,100 @@ PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* po
   }
 }
 
-PLEAT_INLINE void SkinBlock(const VertexInfluences* influences, const double* rest, int count,
-                            const float* columns, const float* details, float* positions) {
-  alignas(64) float blended[kLanes][kParameters];
-  alignas(64) float lanes[kParameters][kLanes];
-  alignas(64) float points[3][kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const int v = lane < count ? lane : count - 1;
-    Blend(influences[v], columns, details != nullptr, blended[lane]);
-    for (int axis = 0; axis < 3; ++axis) {
-      points[axis][lane] = static_cast<float>(rest[3 * v + axis]);
-    }
-  }
-  Transpose(blended, lanes);
-  const auto* m = reinterpret_cast<const Sixteen*>(&lanes[0][0]);
-  const auto* x = reinterpret_cast<const Sixteen*>(&points[0][0]);
-  Sixteen position[3];
+// position = [m] rest, and the detail.
+PLEAT_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, Sixteen* position) {
+  const auto* x = reinterpret_cast<const Sixteen*>(inputs.block->rest);
   for (int axis = 0; axis < 3; ++axis) {
     position[axis] = (m[axis] * x[0] + m[4 + axis] * x[1]) + (m[8 + axis] * x[2] + m[12 + axis]);
   }
-  if (details != nullptr) AddDetails(m, details, position);
+  if (inputs.details != nullptr) AddDetails(m, inputs.details, position);
+}
+
+PLEAT_INLINE void SkinVertices(const SkinBlockInputs& inputs, float* positions) {
+  Sixteen m[kParameters], position[3];
+  BlendVertices(inputs, m);
+  Move(m, inputs, position);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int axis = 0; axis < 3; ++axis) positions[3 * lane + axis] = position[axis][lane];
   }
 }
 
-void SkinBlockForAny(const VertexInfluences* influences, const double* rest, int count,
-                     const float* columns, const float* details, float* positions) {
-  SkinBlock(influences, rest, count, columns, details, positions);
+void SkinBlockForAny(const SkinBlockInputs& inputs, float* positions) {
+  SkinVertices(inputs, positions);
 }
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void SkinBlockForAvx2(const VertexInfluences* influences,
-                                                      const double* rest, int count,
-                                                      const float* columns, const float* details,
+__attribute__((target("avx2"))) void SkinBlockForAvx2(const SkinBlockInputs& inputs,
                                                       float* positions) {
-  SkinBlock(influences, rest, count, columns, details, positions);
+  SkinVertices(inputs, positions);
 }
-__attribute__((target("avx512f,prefer-vector-width=512"))) void SkinBlockForAvx512(
-    const VertexInfluences* influences, const double* rest, int count, const float* columns,
-    const float* details, float* positions) {
-  SkinBlock(influences, rest, count, columns, details, positions);
+
+// The same sums with all vertices side by side: the bones' numbers lie in registers.
+#define PLEAT_AVX512 __attribute__((target("avx512f,avx512bw,prefer-vector-width=512")))
+
+PLEAT_AVX512 inline void BlendByLookup(const SkinBlockInputs& inputs, bool with_axes, Sixteen* m) {
+  const FrameSkinning::Block& block = *inputs.block;
+  __m512i bones[kMaxInfluences];
+  Sixteen weights[kMaxInfluences], quaternion_weights[kMaxInfluences];
+  for (int k = 0; k < kMaxInfluences; ++k) {
+    // The plain conversion reads an undefined register, of which gcc 12 warns.
+    bones[k] = _mm512_maskz_cvtepu16_epi32(
+        0xffff, _mm256_load_si256(reinterpret_cast<const __m256i*>(block.bones + k * kLanes)));
+    weights[k] = *reinterpret_cast<const Sixteen*>(block.weights + k * kLanes);
+    quaternion_weights[k] =
+        *reinterpret_cast<const UnalignedSixteen*>(inputs.quaternion_weights + k * kLanes);
+  }
+  for (int p = 0; p < kParameters; ++p) {
+    if (IsQuaternion(p) && !with_axes) continue;
+    const Sixteen* w = IsQuaternion(p) ? quaternion_weights : weights;
+    const __m512 low = _mm512_loadu_ps(inputs.tables + p * kLookupBones);
+    const __m512 high = _mm512_loadu_ps(inputs.tables + p * kLookupBones + kLanes);
+    m[p] = w[0] * _mm512_permutex2var_ps(low, bones[0], high);
+    for (int k = 1; k < kMaxInfluences; ++k) {
+      m[p] += w[k] * _mm512_permutex2var_ps(low, bones[k], high);
+    }
+  }
+}
+
+// Where each number of xyz of 16 vertices comes from: x and y first, then z into their gaps.
+struct Interleaving {
+  int from_xy[3 * kLanes], from_z[3 * kLanes];
+};
+constexpr Interleaving kInterleaving = [] {
+  Interleaving from{};
+  for (int i = 0; i < 3 * kLanes; ++i) {
+    const int lane = i / 3, axis = i % 3;
+    from.from_xy[i] = axis == 1 ? kLanes + lane : lane;
+    from.from_z[i] = axis == 2 ? kLanes + lane : i % kLanes;
+  }
+  return from;
+}();
+
+PLEAT_AVX512 inline void StoreByVertex(const Sixteen* position, float* positions) {
+  for (int part = 0; part < 3; ++part) {
+    const __m512i from_xy = _mm512_loadu_si512(kInterleaving.from_xy + part * kLanes);
+    const __m512i from_z = _mm512_loadu_si512(kInterleaving.from_z + part * kLanes);
+    const __m512 xy = _mm512_permutex2var_ps(position[0], from_xy, position[1]);
+    _mm512_storeu_ps(positions + part * kLanes, _mm512_permutex2var_ps(xy, from_z, position[2]));
+  }
+}
+
+PLEAT_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float* positions) {
+  if (inputs.tables == nullptr) {
+    SkinVertices(inputs, positions);
+    return;
+  }
+  Sixteen m[kParameters], position[3];
+  BlendByLookup(inputs, inputs.details != nullptr, m);
+  Move(m, inputs, position);
+  StoreByVertex(position, positions);
 }
 #endif
 
 std::vector<SkinBlockFunction> FindUsable() {
   std::vector<SkinBlockFunction> usable;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) usable.push_back(SkinBlockForAvx512);
+  if (__builtin_cpu_supports("avx512bw")) usable.push_back(SkinBlockForAvx512);
   if (__builtin_cpu_supports("avx2")) usable.push_back(SkinBlockForAvx2);
 #endif
   usable.push_back(SkinBlockForAny);

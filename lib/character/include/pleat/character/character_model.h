@@ -16,6 +16,7 @@
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/mesh/topology.h"
 #include "pleat/skeleton/pose_features.h"
+#include "pleat/skinning/frame_skinning.h"
 #include "pleat/skinning/rig.h"
 
 namespace pleat {
@@ -94,6 +95,9 @@ class CharacterModel {
     return parts_.upsampler ? upsampled_basis_ : parts_.detail_model->basis();
   }
 
+  // The rig as a query reads it.
+  const FrameSkinning& skinning() const { return skinning_; }
+
   // Resident size, what the cache is charged.
   size_t memory_bytes() const;
 
@@ -103,6 +107,7 @@ class CharacterModel {
 
   Parts parts_;
   PoseFeatures features_;
+  FrameSkinning skinning_;
   DetailBasis upsampled_basis_;  // empty at full resolution
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "pleat/skeleton/pose.h"
@@ -10,24 +11,62 @@
 
 namespace pleat {
 
-// What moves the vertices of one frame: for each bone b 16 floats, four columns of four. The first
+inline constexpr int kSkinningLanes = 16;  // vertices of a block
+
+struct SkinBlockInputs;  // src/skin_block.h
+using SkinBlockFunction = void (*)(const SkinBlockInputs& inputs, float* positions);
+
+// What moves the vertices of one frame. Each bone has 16 numbers, four columns of four: the first
 // three rows are [linear_b | translation_b], the fourth holds the unit quaternion (x, y, z, w) of
 // the axes in which the bone's details are written.
 struct BoneMotions {
-  std::vector<float> columns;  // 16 J
-
-  // axes: J rotations. No allocation once `columns` has the right size.
-  void Set(const BoneTransforms& transforms, const std::vector<Eigen::Matrix3d>& axes);
+  std::vector<float> columns;  // 16 J: bone by bone
+  std::vector<float> tables;  // the same for a lookup: parameter by parameter, see src/skin_block.h
+  // J x J, empty unless needed: the sign that turns bone b's quaternion towards that of the
+  // strongest bone s of a vertex, at s J + b.
+  std::vector<float> signs;
 };
 
-inline constexpr int kSkinningLanes = 16;  // vertices of a block
+// The vertices of a rig in the order in which a query reads them. Immutable.
+class FrameSkinning {
+ public:
+  FrameSkinning() = default;
+  explicit FrameSkinning(const Rig& rig);
 
-// Vertices of the blocks first_block to first_block + num_blocks - 1 (block i: vertices 16 i to
-// 16 i + 15, fewer in the last):
-//   position_v = sum_b w_vb (linear_b rest_v + translation_b) + R(q_v) detail_v
-// with q_v the normalised mean of the quaternions of its bones, signs aligned with the strongest.
-// details: for each block x of its 16 vertices, y, z; or null for none. positions: 3 x V.
-void SkinBlocks(const Rig& rig, const BoneMotions& motions, int first_block, int num_blocks,
-                const float* details, Eigen::Matrix3Xf* positions);
+  int num_blocks() const { return static_cast<int>(blocks_.size()); }
+  size_t memory_bytes() const;
+
+  // axes: J rotations. No allocation after the first call.
+  void SetMotions(const BoneTransforms& transforms, const std::vector<Eigen::Matrix3d>& axes,
+                  BoneMotions* motions) const;
+
+  // Vertices of the blocks first_block to first_block + num_blocks - 1 (block i: vertices 16 i to
+  // 16 i + 15, fewer in the last):
+  //   position_v = sum_b w_vb (linear_b rest_v + translation_b) + R(q_v) detail_v
+  // with q_v the normalised mean of the quaternions of its bones, signs aligned with the strongest.
+  // details: for each block x of its 16 vertices, y, z; or null for none. positions: 3 x V.
+  void SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks, const float* details,
+                  Eigen::Matrix3Xf* positions) const;
+  // The same on a given processor's kernel.
+  void SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions, int first_block,
+                      int num_blocks, const float* details, Eigen::Matrix3Xf* positions) const;
+
+  // What 16 vertices need. In the last block the last vertex fills the lanes left over.
+  struct alignas(64) Block {
+    float rest[3 * kSkinningLanes];  // x of all, y, z; metres
+    float weights[kMaxInfluences * kSkinningLanes];
+    uint16_t bones[kMaxInfluences * kSkinningLanes];  // the strongest of each vertex first
+  };
+
+ private:
+  int num_vertices_ = 0;
+  std::vector<int> parents_;  // J
+  // Bones that move a vertex together with its strongest bone, each pair once.
+  struct BonePair {
+    int strongest, other;
+  };
+  std::vector<BonePair> pairs_;
+  std::vector<Block> blocks_;
+};
 
 }  // namespace pleat
