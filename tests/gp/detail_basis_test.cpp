@@ -164,8 +164,8 @@ TEST(ExpandPlanesTest, EveryKernelGivesTheSameBits) {
     return (range * RandomMatrix(count, 1, seed)).array().round().eval();
   };
   const Eigen::Array<int8_t, Eigen::Dynamic, 1> values =
-      random(kNumPairs * 2 * kPlaneLanes, 40, 1).min(127).max(-127).cast<int8_t>();
-  const Eigen::VectorXf mean = RandomMatrix(kPlaneLanes, 1, 2).cast<float>();
+      random(kNumPairs * 2 * kPlaneRows, 40, 1).min(127).max(-127).cast<int8_t>();
+  const Eigen::VectorXf mean = RandomMatrix(kPlaneRows, 1, 2).cast<float>();
   std::array<Eigen::Array<int16_t, Eigen::Dynamic, 1>, kMaxTogether> weights;
   std::array<const int16_t*, kMaxTogether> weight_pointers;
   for (int q = 0; q < kMaxTogether; ++q) {
@@ -176,7 +176,7 @@ TEST(ExpandPlanesTest, EveryKernelGivesTheSameBits) {
   for (int count = 1; count <= kMaxTogether; ++count) {
     Eigen::MatrixXf expected;
     for (const PlaneKernel* kernel : UsablePlaneKernels()) {
-      Eigen::MatrixXf details(kPlaneLanes, count);
+      Eigen::MatrixXf details(kPlaneRows, count);
       std::array<float*, kMaxTogether> targets{};
       for (int q = 0; q < count; ++q) targets[q] = details.col(q).data();
       kernel->expand[count - 1](values.data(), mean.data(), kNumPairs, weight_pointers.data(),
@@ -186,7 +186,7 @@ TEST(ExpandPlanesTest, EveryKernelGivesTheSameBits) {
     }
     double sum = 0;
     for (int p = 0; p < 2 * kNumPairs; ++p) {
-      sum += double(weights[0][p]) * values[(p / 2 * kPlaneLanes + 5) * 2 + p % 2];
+      sum += double(weights[0][p]) * values[(p / 2 * kPlaneRows + 5) * 2 + p % 2];
     }
     EXPECT_NEAR(expected(5, 0), mean[5] + 1e-3 * sum, 1e-6 * std::abs(1e-3 * sum) + 1e-6);
   }

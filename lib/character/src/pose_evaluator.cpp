@@ -271,8 +271,6 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
     model_->full_basis().ExpandBlocks({expansions.data(), num_detailed}, block, count,
                                       {details.data(), num_detailed});
     for (int i = 0; i < count; ++i) {
-      // The next tile comes from memory while this one is skinned.
-      if (num_detailed > 0) model_->full_basis().PrefetchBlocks(block + kTileBlocks + i, 1);
       for (size_t q = 0; q < scratches.size(); ++q) {
         const Scratch& s = *scratches[q];
         const float* tile =

@@ -53,7 +53,7 @@ inline int PlaceInBlocks(int row) {
 
 }  // namespace
 
-static_assert(DetailBasis::kLanes == kPlaneLanes);
+static_assert(DetailBasis::kBlockDetails == kPlaneRows);
 
 absl::StatusOr<DetailBasis> DetailBasis::Quantise(
     const Eigen::Ref<const Eigen::VectorXf>& mean, const Eigen::Ref<const Eigen::MatrixXd>& basis,
@@ -120,8 +120,8 @@ DetailBasisParameters DetailBasis::parameters() const {
 
 size_t DetailBasis::PlaceOf(int row, int plane) const {
   const int place = PlaceInBlocks(row);
-  const size_t group = place / kLanes, lane = place % kLanes;
-  return ((group * num_pairs() + plane / 2) * kLanes + lane) * 2 + plane % 2;
+  const size_t block = place / kBlockDetails, lane = place % kBlockDetails;
+  return ((block * num_pairs() + plane / 2) * kBlockDetails + lane) * 2 + plane % 2;
 }
 
 size_t DetailBasis::memory_bytes() const {
@@ -181,7 +181,7 @@ void DetailBasis::ExpandBlocks(std::span<const Query* const> queries, int first_
   assert(queries.size() == details.size() && first_block >= 0 &&
          first_block + num_blocks <= this->num_blocks());
   const PlaneKernel& kernel = *UsablePlaneKernels().front();
-  const size_t group_bytes = static_cast<size_t>(num_pairs()) * 2 * kLanes;
+  const size_t block_bytes = static_cast<size_t>(num_pairs()) * 2 * kBlockDetails;
   for (size_t begin = 0; begin < queries.size(); begin += kMaxTogether) {
     const size_t count = std::min<size_t>(kMaxTogether, queries.size() - begin);
     std::array<const int16_t*, kMaxTogether> weights{};
@@ -192,24 +192,15 @@ void DetailBasis::ExpandBlocks(std::span<const Query* const> queries, int first_
       units[q] = queries[begin + q]->unit;
       targets[q] = details[begin + q];
     }
-    const int8_t* values = values_.data() + first_block * 3 * group_bytes;
+    const int8_t* values = values_.data() + first_block * block_bytes;
     const float* mean = mean_.data() + static_cast<size_t>(first_block) * kBlockDetails;
-    for (int group = 0; group < 3 * num_blocks; ++group) {
+    for (int block = 0; block < num_blocks; ++block) {
       kernel.expand[count - 1](values, mean, num_pairs(), weights.data(), units.data(),
                                targets.data());
-      values += group_bytes;
-      mean += kLanes;
-      for (size_t q = 0; q < count; ++q) targets[q] += kLanes;
+      values += block_bytes;
+      mean += kBlockDetails;
+      for (size_t q = 0; q < count; ++q) targets[q] += kBlockDetails;
     }
-  }
-}
-
-void DetailBasis::PrefetchBlocks(int first_block, int num_blocks) const {
-  constexpr size_t kCacheLineBytes = 64;
-  const size_t block_bytes = static_cast<size_t>(num_pairs()) * 2 * kBlockDetails;
-  const size_t end = std::min(block_bytes * (first_block + num_blocks), values_.size());
-  for (size_t place = block_bytes * first_block; place < end; place += kCacheLineBytes) {
-    __builtin_prefetch(values_.data() + place);
   }
 }
 

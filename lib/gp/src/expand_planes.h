@@ -7,11 +7,11 @@
 
 namespace pleat {
 
-inline constexpr int kPlaneLanes = 16;  // rows of a group
+inline constexpr int kPlaneRows = 48;   // rows of a block
 inline constexpr int kMaxTogether = 4;  // queries that are summed in one pass
 
-// details[q][l] = mean[l] + units[q] * sum_p weights[q][p] values[p / 2][l][p % 2] for one group of
-// 16 rows l: values are num_pairs x 16 x 2, weights[q] 2 num_pairs. The sums must fit in 32 bits.
+// details[q][l] = mean[l] + units[q] * sum_p weights[q][p] values[p / 2][l][p % 2] for one block of
+// 48 rows l: values are num_pairs x 48 x 2, weights[q] 2 num_pairs. The sums must fit in 32 bits.
 // All kernels give the same bits.
 struct PlaneKernel {
   const char* name;

@@ -73,9 +73,6 @@ class DetailBasis {
   void ExpandBlocks(std::span<const Query* const> queries, int first_block, int num_blocks,
                     std::span<float* const> details) const;
 
-  // Asks the memory for the blocks that are expanded next, and returns at once.
-  void PrefetchBlocks(int first_block, int num_blocks) const;
-
   // The whole detail (D_M) of one query, in the order of the rows.
   void Expand(const Query& query, Eigen::Ref<Eigen::VectorXf> detail) const;
 
@@ -87,7 +84,7 @@ class DetailBasis {
   std::vector<int> components_;  // P
   std::vector<float> scales_;    // P
   std::vector<float> mean_;      // by blocks
-  // By groups of 16 rows of a block, in a group by pairs of planes, in a pair row by row.
+  // By blocks, in a block by pairs of planes, in a pair row by row.
   std::vector<int8_t> values_;
 };
 
