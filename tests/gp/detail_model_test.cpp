@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -127,6 +128,29 @@ double LargestStep(const DetailModel& model, const Eigen::VectorXd& from, const 
     last = detail;
   }
   return largest;
+}
+
+TEST_P(DetailModelTest, QueriesTogetherGiveTheBitsOfEachAlone) {
+  const SyntheticMotion seen = MakeSyntheticMotion(40, 10, 30, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
+                             TrainDetailModel(seen.features, seen.details, {0}, Options(seen)));
+  constexpr int kNumQueries = 19;  // more than are predicted together
+  const Eigen::MatrixXd rows = RandomMatrix(10, kNumQueries, 90);
+  std::array<DetailModel::Workspace, kNumQueries> workspaces;
+  std::array<DetailModel::Query, kNumQueries> queries;
+  Eigen::MatrixXf together(model.num_components(), kNumQueries);
+  for (int q = 0; q < kNumQueries; ++q) {
+    queries[q] = {.features = rows.col(q).data(),
+                  .workspace = &workspaces[q],
+                  .coefficients = together.col(q).data()};
+  }
+  model.PredictCoefficients(queries);
+  DetailModel::Workspace workspace;
+  Eigen::VectorXf alone(model.num_components());
+  for (int q = 0; q < kNumQueries; ++q) {
+    EXPECT_EQ(queries[q].confidence, model.PredictCoefficients(rows.col(q), &workspace, alone));
+    EXPECT_EQ(together.col(q), alone);
+  }
 }
 
 TEST_P(DetailModelTest, LeavesTheTrainingWithoutAJump) {

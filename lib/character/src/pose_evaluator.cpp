@@ -159,41 +159,50 @@ void PoseEvaluator::TakeParameters(const Scratch& scratch, FrameParameters* para
 }
 
 void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
+  static const std::vector<double> kNoScales;
   while (scratches_.size() < std::min(queries.size(), kMostTogether)) {
     scratches_.push_back(std::make_unique<Scratch>(*model_));
   }
   for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
     std::array<Scratch*, kMostTogether> scratches{};
     std::array<EvaluatedFrame*, kMostTogether> frames{};
+    std::array<PoseQuery*, kMostTogether> taken{};
     size_t count = 0;
-    // Queries with details in front, so that those are expanded together.
+    // Queries with details in front, so that those are predicted and expanded together.
     for (const bool skinned_only : {false, true}) {
       for (size_t q = begin; q < std::min(begin + kMostTogether, queries.size()); ++q) {
         if (queries[q].skinned_only != skinned_only) continue;
         Scratch* scratch = scratches_[count].get();
         queries[q].status = Prepare(queries[q], scratch);
         if (!queries[q].status.ok()) continue;
-        if (queries[q].parameters != nullptr) {
-          TakeParameters(*scratch, queries[q].parameters);
-          continue;
-        }
-        frames[count] = queries[q].frame;
+        taken[count] = &queries[q];
         scratches[count++] = scratch;
       }
     }
-    FillFrames({scratches.data(), count}, {frames.data(), count});
+    Predict({scratches.data(), count});
+    size_t num_frames = 0;
+    for (size_t i = 0; i < count; ++i) {
+      if (taken[i]->parameters != nullptr) {
+        TakeParameters(*scratches[i], taken[i]->parameters);
+        continue;
+      }
+      Place(taken[i]->bone_scales ? *taken[i]->bone_scales : kNoScales, scratches[i]);
+      frames[num_frames] = taken[i]->frame;
+      scratches[num_frames++] = scratches[i];
+    }
+    FillFrames({scratches.data(), num_frames}, {frames.data(), num_frames});
   }
 }
 
-// Everything of a query but its vertices.
+// Checks a query and computes what is predicted from.
 absl::Status PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) const {
-  static const std::vector<double> kNoScales;
   Scratch& s = *scratch;
   const std::vector<const Pose*>& poses = *query.poses;
-  const std::vector<double>& scales = query.bone_scales ? *query.bone_scales : kNoScales;
   const int num_joints = model_->skeleton().num_joints();
   if (poses.empty()) return absl::InvalidArgumentError("a pose query needs at least one pose");
-  PLEAT_RETURN_IF_ERROR(CheckBoneScales(scales, num_joints));
+  if (query.bone_scales != nullptr) {
+    PLEAT_RETURN_IF_ERROR(CheckBoneScales(*query.bone_scales, num_joints));
+  }
   for (size_t h = 0; h < (query.skinned_only ? 1 : s.history.size()); ++h) {
     const Pose& pose = *poses[std::min(h, poses.size() - 1)];
     PLEAT_RETURN_IF_ERROR(CheckPose(pose, num_joints));
@@ -201,13 +210,21 @@ absl::Status PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) co
   }
   s.has_details = !query.skinned_only;
   s.confidence = 1;
-  if (s.has_details) {
-    model_->features().ComputeRow(s.history_pointers, s.features);
-    s.confidence =
-        model_->detail_model().PredictCoefficients(s.features, &s.workspace, s.coefficients);
-  }
-  if (query.parameters == nullptr) Place(scales, &s);
+  if (s.has_details) model_->features().ComputeRow(s.history_pointers, s.features);
   return absl::OkStatus();
+}
+
+void PoseEvaluator::Predict(std::span<Scratch* const> scratches) const {
+  std::array<DetailModel::Query, kMostTogether> queries;
+  size_t count = 0;
+  for (; count < scratches.size() && scratches[count]->has_details; ++count) {
+    Scratch& s = *scratches[count];
+    queries[count] = {.features = s.features.data(),
+                      .workspace = &s.workspace,
+                      .coefficients = s.coefficients.data()};
+  }
+  model_->detail_model().PredictCoefficients(std::span(queries.data(), count));
+  for (size_t q = 0; q < count; ++q) scratches[q]->confidence = queries[q].confidence;
 }
 
 void PoseEvaluator::Place(const std::vector<double>& bone_scales, Scratch* scratch) const {

@@ -1,6 +1,7 @@
 #include "pleat/gp/detail_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -10,6 +11,8 @@
 
 namespace pleat {
 namespace {
+
+constexpr size_t kMostTogether = 16;  // queries
 
 absl::Status Refuse(const std::string& what) {
   return absl::InvalidArgumentError("detail model parameters: " + what);
@@ -97,11 +100,10 @@ DetailModelParameters DetailModel::parameters() const {
   return p;
 }
 
-double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>& features,
-                                        Workspace* workspace,
-                                        Eigen::Ref<Eigen::VectorXf> coefficients) const {
+DetailModel::Certainty DetailModel::PredictStages(const Eigen::Ref<const Eigen::VectorXd>& features,
+                                                  Workspace* workspace) const {
   Workspace& w = *workspace;
-  assert(features.size() == num_features() && coefficients.size() == num_components());
+  assert(features.size() == num_features());
   w.stages.resize(stages_.size());
   w.coefficients.resize(num_components());
   double variance = 0;
@@ -109,11 +111,6 @@ double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>&
   if (stages_.size() == 1) {
     stages_[0].Predict(features, 0, &w.stages[0], w.coefficients, &variance);
     fade_confidence = Confidence(variance, stages_[0]);
-    if (regional_) {
-      w.regional_coefficients.resize(num_components());
-      regional_->Predict(features, &w.regional, w.regional_coefficients);
-      w.coefficients += regional_share_ * (w.regional_coefficients - w.coefficients);
-    }
   } else {
     w.latent.resize(stages_[0].num_outputs());
     double latent_variance = 0;
@@ -123,15 +120,59 @@ double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>&
     // latent points it is above the prior long before the back-map is lost.
     fade_confidence = Confidence(latent_variance, stages_[0]);
   }
-  const double confidence = Confidence(variance, stages_.back());
-  const double fade = Fade(fade_confidence, fade_confidence_);
-  // A fade of zero also removes what is not finite.
-  if (fade > 0) {
-    coefficients = (fade * w.coefficients).cast<float>();
-  } else {
-    coefficients.setZero();
+  return {.confidence = Confidence(variance, stages_.back()),
+          .fade = Fade(fade_confidence, fade_confidence_)};
+}
+
+// The regional prediction at workspace->regional's rows takes its share.
+void DetailModel::MixRegional(std::span<Workspace* const> workspaces) const {
+  std::array<RegionalGp::Workspace*, kMostTogether> regional{};
+  std::array<double*, kMostTogether> means{};
+  for (size_t q = 0; q < workspaces.size(); ++q) {
+    workspaces[q]->regional_coefficients.resize(num_components());
+    regional[q] = &workspaces[q]->regional;
+    means[q] = workspaces[q]->regional_coefficients.data();
   }
-  return confidence;
+  regional_->PredictRows({regional.data(), workspaces.size()}, {means.data(), workspaces.size()});
+  for (Workspace* w : workspaces) {
+    w->coefficients += regional_share_ * (w->regional_coefficients - w->coefficients);
+  }
+}
+
+double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>& features,
+                                        Workspace* workspace,
+                                        Eigen::Ref<Eigen::VectorXf> coefficients) const {
+  assert(coefficients.size() == num_components());
+  Query query{
+      .features = features.data(), .workspace = workspace, .coefficients = coefficients.data()};
+  PredictCoefficients({&query, 1});
+  return query.confidence;
+}
+
+void DetailModel::PredictCoefficients(std::span<Query> queries) const {
+  for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
+    const std::span<Query> part =
+        queries.subspan(begin, std::min(kMostTogether, queries.size() - begin));
+    std::array<Certainty, kMostTogether> certainties;
+    std::array<Workspace*, kMostTogether> workspaces{};
+    for (size_t q = 0; q < part.size(); ++q) {
+      const Eigen::Map<const Eigen::VectorXd> features(part[q].features, num_features());
+      workspaces[q] = part[q].workspace;
+      certainties[q] = PredictStages(features, workspaces[q]);
+      if (regional_) regional_->SetRow(features, &workspaces[q]->regional);
+    }
+    if (regional_) MixRegional({workspaces.data(), part.size()});
+    for (size_t q = 0; q < part.size(); ++q) {
+      Eigen::Map<Eigen::VectorXf> coefficients(part[q].coefficients, num_components());
+      part[q].confidence = certainties[q].confidence;
+      // A fade of zero also removes what is not finite.
+      if (certainties[q].fade > 0) {
+        coefficients = (certainties[q].fade * workspaces[q]->coefficients).cast<float>();
+      } else {
+        coefficients.setZero();
+      }
+    }
+  }
 }
 
 double DetailModel::Predict(const Eigen::Ref<const Eigen::VectorXd>& features, Workspace* workspace,

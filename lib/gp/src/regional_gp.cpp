@@ -1,14 +1,14 @@
 #include "pleat/gp/regional_gp.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <map>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "dense.h"
 #include "feature_sets.h"
 #include "pleat/base/status.h"
+#include "regional_factors.h"
 #include "weighted_rows.h"
 
 namespace pleat {
@@ -65,35 +65,15 @@ absl::StatusOr<RegionalGp> RegionalGp::FromParameters(RegionalGpParameters param
   return RegionalGp(std::move(parameters));
 }
 
-RegionalGp::RegionalGp(RegionalGpParameters parameters) : parameters_(std::move(parameters)) {
+RegionalGp::RegionalGp(RegionalGpParameters parameters)
+    : parameters_(std::move(parameters)),
+      factors_(std::make_shared<const RegionalFactors>(parameters_)) {
   const Eigen::Index n = parameters_.inputs.rows();
   alphas_.resize(n * static_cast<Eigen::Index>(parameters_.regions.size()), num_outputs());
-  std::map<std::vector<int>, int> set_of_columns;
   for (size_t r = 0; r < parameters_.regions.size(); ++r) {
     RegionalGpParameters::Region& region = parameters_.regions[r];
     alphas_.middleRows(n * static_cast<Eigen::Index>(r), n) = region.alpha;
     region.alpha.resize(0, 0);
-    scale_set_.emplace_back();
-    for (const RegionalGpParameters::Scale& scale : region.scales) {
-      const auto next = static_cast<int>(set_of_columns.size());
-      scale_set_.back().push_back(set_of_columns.try_emplace(scale.columns, next).first->second);
-    }
-  }
-  std::vector<std::vector<int>> sets_of_column(num_inputs());
-  for (const auto& [columns, set] : set_of_columns) {
-    for (const int column : columns) sets_of_column[column].push_back(set);
-  }
-  set_atoms_.resize(set_of_columns.size());
-  std::map<std::vector<int>, int> atom_of_sets;
-  for (int column = 0; column < num_inputs(); ++column) {
-    const std::vector<int>& sets = sets_of_column[column];
-    if (sets.empty()) continue;
-    const auto [entry, is_new] = atom_of_sets.try_emplace(sets, static_cast<int>(atoms_.size()));
-    if (is_new) {
-      for (const int set : sets) set_atoms_[set].push_back(entry->second);
-      atoms_.emplace_back();
-    }
-    atoms_[entry->second].push_back(column);
   }
 }
 
@@ -108,47 +88,45 @@ RegionalGpParameters RegionalGp::parameters() const {
 
 size_t RegionalGp::memory_bytes() const {
   return static_cast<size_t>(parameters_.inputs.size()) * sizeof(double) +
-         static_cast<size_t>(alphas_.size()) * sizeof(float);
+         factors_->memory_bytes() + static_cast<size_t>(alphas_.size()) * sizeof(float);
 }
 
 void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
                          Eigen::Ref<Eigen::VectorXd> mean) const {
-  Workspace& w = *workspace;
-  const RegionalGpParameters& p = parameters_;
-  const Eigen::Index n = p.inputs.rows();
-  assert(row.size() == num_inputs() && mean.size() == num_outputs());
-  w.row = (row - p.input_mean).cwiseQuotient(p.input_scales);
-  w.atom_distances.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
-  w.atom_products.setZero(n, static_cast<Eigen::Index>(atoms_.size()));
-  for (size_t a = 0; a < atoms_.size(); ++a) {
-    for (const int column : atoms_[a]) {
-      w.atom_distances.col(a).array() += (p.inputs.col(column).array() - w.row[column]).square();
-      w.atom_products.col(a) += w.row[column] * p.inputs.col(column);
+  assert(mean.size() == num_outputs());
+  double* const target = mean.data();
+  SetRow(row, workspace);
+  PredictRows({&workspace, 1}, {&target, 1});
+}
+
+void RegionalGp::SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace) const {
+  assert(row.size() == num_inputs());
+  workspace->row = (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales);
+  workspace->scratch.resize(static_cast<Eigen::Index>(factors_->scratch_size()));
+  workspace->factors.resize(alphas_.rows());
+  factors_->Compute(workspace->row.data(), workspace->scratch.data(), workspace->factors.data());
+}
+
+void RegionalGp::PredictRows(std::span<Workspace* const> workspaces,
+                             std::span<double* const> means) const {
+  assert(workspaces.size() == means.size());
+  for (size_t begin = 0; begin < workspaces.size(); begin += kMaxWeightedTogether) {
+    const size_t count = std::min<size_t>(kMaxWeightedTogether, workspaces.size() - begin);
+    std::array<const float*, kMaxWeightedTogether> factors{};
+    std::array<float*, kMaxWeightedTogether> sums{};
+    for (size_t q = 0; q < count; ++q) {
+      Workspace& w = *workspaces[begin + q];
+      w.sum.setZero(num_outputs());
+      factors[q] = w.factors.data();
+      sums[q] = w.sum.data();
+    }
+    AddWeightedRows({factors.data(), count}, alphas_.data(), alphas_.rows(), alphas_.cols(),
+                    {sums.data(), count});
+    for (size_t q = 0; q < count; ++q) {
+      Eigen::Map<Eigen::VectorXd>(means[begin + q], num_outputs()) =
+          parameters_.output_mean + workspaces[begin + q]->sum.cast<double>();
     }
   }
-  w.distances.setZero(n, static_cast<Eigen::Index>(set_atoms_.size()));
-  w.products.setZero(n, static_cast<Eigen::Index>(set_atoms_.size()));
-  for (size_t set = 0; set < set_atoms_.size(); ++set) {
-    for (const int atom : set_atoms_[set]) {
-      w.distances.col(set) += w.atom_distances.col(atom);
-      w.products.col(set) += w.atom_products.col(atom);
-    }
-  }
-  w.factors.resize(alphas_.rows());
-  for (size_t r = 0; r < p.regions.size(); ++r) {
-    w.kernel.setConstant(n, p.regions[r].bias);
-    for (size_t s = 0; s < p.regions[r].scales.size(); ++s) {
-      const RegionalGpParameters::Scale& scale = p.regions[r].scales[s];
-      const int set = scale_set_[r][s];
-      w.rbf = -.5 * scale.inverse_width * w.distances.col(set);
-      ChosenDenseOps().exp_in_place(w.rbf.data(), n);
-      w.kernel += scale.amplitude * w.rbf + scale.linear * w.products.col(set);
-    }
-    w.factors.segment(n * static_cast<Eigen::Index>(r), n) = w.kernel.cast<float>();
-  }
-  w.sum.setZero(num_outputs());
-  AddWeightedRows(w.factors.data(), alphas_.data(), alphas_.rows(), alphas_.cols(), w.sum.data());
-  mean = p.output_mean + w.sum.cast<double>();
 }
 
 }  // namespace pleat

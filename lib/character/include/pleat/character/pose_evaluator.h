@@ -80,6 +80,8 @@ class PoseEvaluator {
  private:
   struct Scratch;  // of one query
   absl::Status Prepare(const PoseQuery& query, Scratch* scratch) const;
+  // The coefficients of those with details, which come first.
+  void Predict(std::span<Scratch* const> scratches) const;
   // The motions of the bones in history[0] and the expansion of the coefficients.
   void Place(const std::vector<double>& bone_scales, Scratch* scratch) const;
   static void TakeParameters(const Scratch& scratch, FrameParameters* parameters);

@@ -13,6 +13,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -134,12 +135,29 @@ class DetailModel {
   double PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>& features,
                              Workspace* workspace, Eigen::Ref<Eigen::VectorXf> coefficients) const;
 
+  // The same for several rows, which read the model once; the same bits.
+  struct Query {
+    const double* features = nullptr;  // D_S
+    Workspace* workspace = nullptr;    // another for each query
+    float* coefficients = nullptr;     // r, out
+    double confidence = 0;             // out
+  };
+  void PredictCoefficients(std::span<Query> queries) const;
+
   // The same expanded: detail (D_M), unit of Y_M.
   double Predict(const Eigen::Ref<const Eigen::VectorXd>& features, Workspace* workspace,
                  Eigen::Ref<Eigen::VectorXf> detail) const;
 
  private:
   DetailModel() = default;
+
+  // What the stages predict at `features`, in workspace->coefficients, and how sure they are.
+  struct Certainty {
+    double confidence = 0, fade = 0;
+  };
+  Certainty PredictStages(const Eigen::Ref<const Eigen::VectorXd>& features,
+                          Workspace* workspace) const;
+  void MixRegional(std::span<Workspace* const> workspaces) const;
 
   Learner learner_ = Learner::kGp;
   std::vector<GpRegression> stages_;

@@ -11,6 +11,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -56,17 +58,17 @@ struct RegionalGpParameters {
   std::vector<Region> regions;
 };
 
+class RegionalFactors;  // src/regional_factors.h
+
 // Immutable after training: queries share it without locks.
 class RegionalGp {
  public:
   // What one thread needs for its queries. Sized by the first query, reused without allocation.
   struct Workspace {
-    Eigen::VectorXd row;                            // D, normalised
-    Eigen::MatrixXd atom_distances, atom_products;  // N x atoms
-    Eigen::MatrixXd distances, products;            // N x sets
-    Eigen::VectorXd rbf, kernel;                    // N
-    Eigen::VectorXf factors;                        // R N, all kernels
-    Eigen::VectorXf sum;                            // r
+    Eigen::VectorXd row;      // D, normalised
+    Eigen::VectorXd scratch;  // of RegionalFactors
+    Eigen::VectorXf factors;  // R N, all kernels
+    Eigen::VectorXf sum;      // r
   };
 
   // inputs: N x D, rows are samples. kInvalidArgument when sizes differ, a column is out of range
@@ -88,17 +90,19 @@ class RegionalGp {
   void Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
                Eigen::Ref<Eigen::VectorXd> mean) const;
 
+  // The same in two halves, for several rows at once: the kernels of a row, and the means of
+  // several such workspaces, which read the alphas once. means[q] receives r entries. The bits are
+  // those of single predictions.
+  void SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace) const;
+  void PredictRows(std::span<Workspace* const> workspaces, std::span<double* const> means) const;
+
  private:
   explicit RegionalGp(RegionalGpParameters parameters);
 
   RegionalGpParameters parameters_;  // without the alphas
   // R N x r: the alphas of all regions, so that a query reads them once from front to back.
   Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> alphas_;
-  // Columns that belong to the same sets are one atom: distances are summed over them only once,
-  // and the sum over a set that several scales share is formed only once.
-  std::vector<std::vector<int>> atoms_;      // columns
-  std::vector<std::vector<int>> set_atoms_;  // of each different set: atoms
-  std::vector<std::vector<int>> scale_set_;  // [region][scale]: set
+  std::shared_ptr<const RegionalFactors> factors_;  // the kernels
 };
 
 }  // namespace pleat
