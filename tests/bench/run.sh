@@ -78,6 +78,13 @@ load one_client_points --clients 1 --rate 30 --seconds 10 --encoding points
 load thirty_clients --clients 30 --rate 30 --seconds 10
 load thirty_clients_poisson --clients 30 --rate 30 --seconds 10 --arrivals poisson
 load throughput --clients 4 --seconds 5 --closed-loop
+echo "== compression by that server, from upload to download"
+for where in "--server $address" ""; do
+  TIMEFORMAT="%R s ${where:-here}"
+  # shellcheck disable=SC2086  # a flag and its value
+  time "$pleat" compress "${inputs[0]}" $where --kg 1 -o "$out/x.plt" --quiet --report "$out/c.json"
+  python3 tests/bench/summarize.py "$out/c.json"
+done
 kill $pleatd
 
 for input in "${inputs[@]}"; do

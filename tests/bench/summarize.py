@@ -1,4 +1,4 @@
-"""One line per report of `pleat train` or `pleat evaluate`: mean errors in % of the diagonal."""
+"""One line per report of `pleat train`, `evaluate` (mean errors in % of the diagonal) or `compress`."""
 
 import json
 import sys
@@ -15,6 +15,9 @@ if report["schema"].startswith("pleat.train"):
         print(f"  smoothness {report['options']['smoothness']}: jitter {poses['unsmoothed_jitter_degrees']:.3f} -> "
               f"{poses['jitter_degrees']:.3f} degrees, fit rms {poses['unsmoothed_rms_percent']:.3f} -> "
               f"{report['fit']['rms_percent']:.3f} %")
+elif report["schema"].startswith("pleat.compress"):
+    print(f"{report['bytes']} bytes, {report['bpvf']:.3f} bits per vertex and frame, KG {report['kg_percent']:.2f} %, "
+          f"encoded in {report['encode_seconds']:.2f} s, decoded in {report['decode_seconds']:.3f} s")
 else:
     errors = {"skinned": report["skinned"], **report["baselines"], **report["learners"]}
     errors.pop("zero", None)
