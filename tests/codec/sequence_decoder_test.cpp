@@ -113,9 +113,9 @@ TEST(SequenceDecoderTest, OtherFilesAndVersionsAreNamed) {
   EXPECT_THAT(DecodeAll("POINTCACHE2"),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(".plt")));
   std::string other = SmallFile();
-  other[8] = 2;
+  other[8] = 9;
   EXPECT_THAT(DecodeAll(other),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("version 2")));
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("version 9")));
   EXPECT_THAT(DecodeAll(SmallFile() + "x"),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("too many")));
 }
@@ -140,6 +140,16 @@ TEST(SequenceDecoderTest, TheGoldenFileStaysReadable) {
   EXPECT_EQ(decoded.name(), "waving torus");
   EXPECT_EQ(decoded.num_frames(), 18);
   EXPECT_TRUE(decoded.topology() == MakeTorus(6, 5, 5).topology);
+}
+
+TEST(SequenceDecoderTest, TheGoldenFileWithAListOfFacesStaysReadable) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
+                             ReadFile(PLEAT_SOURCE_DIR "/tests/golden/compressed_v2.plt"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(SequenceDecoder decoder, SequenceDecoder::Open(bytes));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence decoded, decoder.DecodeAll());
+  EXPECT_EQ(decoded.num_frames(), 3);
+  EXPECT_TRUE(decoded.topology() == QuadsAsModelled(4, 5));
+  EXPECT_NEAR(decoded.frame(2)(1, 7), 2, 1e-3);
 }
 
 }  // namespace

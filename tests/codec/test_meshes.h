@@ -65,4 +65,24 @@ inline Eigen::Matrix3Xf Bend(const Eigen::Matrix3Xf& positions, int t) {
   return result;
 }
 
+// Rows of quads as pairs of triangles, vertices numbered as the faces first use them.
+inline Topology QuadsAsModelled(int rows, int columns) {
+  std::vector<int> numbers((rows + 1) * (columns + 1), -1);
+  int num_vertices = 0;
+  std::vector<int32_t> corners;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const int first = row * (columns + 1) + column;
+      int quad[4] = {first, first + 1, first + columns + 2, first + columns + 1};
+      for (int& corner : quad) {
+        if (numbers[corner] < 0) numbers[corner] = num_vertices++;
+        corner = numbers[corner];
+      }
+      corners.insert(corners.end(), {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]});
+    }
+  }
+  return *Topology::Create(num_vertices, corners,
+                           std::vector<int32_t>(2 * static_cast<size_t>(rows * columns), 3));
+}
+
 }  // namespace pleat

@@ -139,10 +139,10 @@ absl::StatusOr<std::vector<Section>> ReadSections(std::string_view bytes) {
     return absl::InvalidArgumentError("this is not a compressed sequence of Pleat (.plt)");
   }
   PLEAT_ASSIGN_OR_RETURN(const uint32_t version, reader.Read<uint32_t>("version"));
-  if (version != kCompressedVersion) {
-    return absl::InvalidArgumentError(absl::StrCat("compressed sequence of version ", version,
-                                                   "; this program reads version ",
-                                                   kCompressedVersion));
+  if (version < kOldestCompressedVersion || version > kCompressedVersion) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("compressed sequence of version ", version, "; this program reads versions ",
+                     kOldestCompressedVersion, " to ", kCompressedVersion));
   }
   std::vector<Section> sections;
   do {
@@ -151,7 +151,7 @@ absl::StatusOr<std::vector<Section>> ReadSections(std::string_view bytes) {
     PLEAT_ASSIGN_OR_RETURN(const uint32_t checksum, reader.Read<uint32_t>("section checksum"));
     PLEAT_ASSIGN_OR_RETURN(const std::string_view payload, reader.ReadRaw(size, "section"));
     if (kind < static_cast<uint8_t>(SectionKind::kHeader) ||
-        kind > static_cast<uint8_t>(SectionKind::kEnd)) {
+        kind > static_cast<uint8_t>(version == 1 ? SectionKind::kEnd : SectionKind::kFaceList)) {
       return absl::DataLossError(absl::StrCat("section ", sections.size(), " is of no known kind"));
     }
     if (ShortChecksum(payload) != checksum) {

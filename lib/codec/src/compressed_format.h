@@ -23,6 +23,7 @@ enum class SectionKind : uint8_t {
   kMotion = 5,
   kGroup = 6,
   kEnd = 7,
+  kFaceList = 8,  // the topology in the order of the file, in place of kTopology
 };
 
 struct Section {
@@ -43,7 +44,8 @@ struct CompressedHeader {
 };
 
 inline constexpr std::string_view kCompressedMagic = "PLEATCMP";
-inline constexpr uint32_t kCompressedVersion = 1;
+// Version 1 had no kFaceList.
+inline constexpr uint32_t kCompressedVersion = 2, kOldestCompressedVersion = 1;
 inline constexpr int kMaxSegmentFrames = 512;
 
 // First four bytes of the SHA-256.

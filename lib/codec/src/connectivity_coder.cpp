@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "free_numbers.h"
 #include "integer_model.h"
+#include "number_difference.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -58,7 +59,11 @@ class ConnectivityWalk {
   }
 
   absl::Status Run() {
+    const uint64_t max_looked_at = MaxEdgesLookedAt(num_corners_);
     while (num_done_ < num_faces_) {
+      if (known_ == nullptr && num_looked_at_ > max_looked_at) {
+        return absl::ResourceExhaustedError("too many open edges meet at one vertex");
+      }
       if (gates_.empty()) {
         PLEAT_RETURN_IF_ERROR(CodeSeed());
         continue;
@@ -77,8 +82,9 @@ class ConnectivityWalk {
  private:
   absl::Status Damaged() const { return absl::DataLossError("the connectivity is damaged"); }
 
-  bool IsOpen(const Gate& gate) const {
+  bool IsOpen(const Gate& gate) {
     const auto& heads = out_[gate.from];
+    num_looked_at_ += heads.size();
     return std::find(heads.begin(), heads.end(), gate.to) != heads.end();
   }
 
@@ -250,6 +256,7 @@ class ConnectivityWalk {
 
   bool RemoveOpen(int from, int to) {
     auto& heads = out_[from];
+    num_looked_at_ += heads.size();
     const auto head = std::find(heads.begin(), heads.end(), to);
     if (head == heads.end()) return false;
     heads.erase(head);
@@ -259,13 +266,10 @@ class ConnectivityWalk {
   }
 
   // The rank of a free number: one of the neighbours of `near`, or a signed difference to `base`.
-  // The last magnitudes tell how far numbers jump just now.
   struct RankModel {
     IntegerModel<2> hits{{256, 16 * 4}, 1};
     int history = 0;
-    IntegerModel<2> bits{{16 * 16, 16}, 1};
-    IntegerModel<2> mantissas{{20 * 8, 20}, 1};
-    int last = 0;
+    NumberDifference differences;
 
     int Code(BinaryCoder* coder, const FreeNumbers& free, const std::array<int, 3>& near, int base,
              int context, int rank) {
@@ -276,28 +280,7 @@ class ConnectivityWalk {
         history = (history << 1 | (hit != 0)) & 255;
         if (hit == 1) return candidate;
       }
-      return base + CodeDelta(coder, rank - base, context);
-    }
-
-   private:
-    int CodeDelta(BinaryCoder* coder, int delta, int context) {
-      const int zigzag = delta < 0 ? -2 * delta - 1 : 2 * delta;
-      int length = 0;
-      while (zigzag >> length != 0) ++length;
-      length = bits.CodeUnsigned(coder, length, {context * 16 + last, last}, 0);
-      if (length > 28) return 1 << 30;
-      last = std::min(length, 15);
-      if (length <= 1) return length == 0 ? 0 : -1;
-      // The two bits below the highest are modelled, the rest is noise.
-      const int num_modelled = std::min(length - 1, 2), num_raw = length - 1 - num_modelled;
-      const int place = std::min(length, 19);
-      int high = zigzag >> num_raw & ((1 << num_modelled) - 1);
-      high = mantissas.CodeUnsigned(coder, high, {place * 8 + num_modelled, place}, 0);
-      if (high >= 1 << num_modelled) return 1 << 30;
-      const int raw = static_cast<int>(
-          coder->CodeBits(static_cast<uint32_t>(zigzag) & ((1u << num_raw) - 1), num_raw));
-      const int decoded = 1 << (length - 1) | high << num_raw | raw;
-      return decoded & 1 ? -(decoded + 1) / 2 : decoded / 2;
+      return base + differences.Code(coder, rank - base, context);
     }
   };
 
@@ -315,6 +298,7 @@ class ConnectivityWalk {
   std::vector<bool> done_;
   std::deque<Gate> gates_;
   std::vector<FaceVisit> visits_;
+  uint64_t num_looked_at_ = 0;  // open edges
   int num_done_ = 0, last_vertex_ = 0, last_border_ = 0, last_first_ = 0, history_ = 0;
 
   IntegerModel<1> sizes_{{1}, 1}, others_{{1}, 1};

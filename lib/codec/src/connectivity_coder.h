@@ -4,6 +4,7 @@
 // accepted.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -11,6 +12,12 @@
 #include "pleat/mesh/topology.h"
 
 namespace pleat {
+
+// How many open edges a decoder of faces may look through: all that real meshes need, and about a
+// second for bytes that let one vertex have them all.
+inline uint64_t MaxEdgesLookedAt(int num_corners) {
+  return (uint64_t{1} << 28) + 64 * static_cast<uint64_t>(num_corners);
+}
 
 // A face and which of its corners is visited first.
 struct FaceVisit {
@@ -22,7 +29,8 @@ std::vector<FaceVisit> VisitOrder(const Topology& topology);
 
 void EncodeTopology(const Topology& topology, BinaryCoder* coder);
 
-// num_corners: the sum of all face sizes. kDataLoss when the code is damaged.
+// num_corners: the sum of all face sizes. kDataLoss when the code is damaged, kResourceExhausted
+// when it would take too long.
 absl::StatusOr<Topology> DecodeTopology(int num_vertices, int num_faces, int num_corners,
                                         BinaryCoder* coder);
 

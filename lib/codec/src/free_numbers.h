@@ -14,6 +14,7 @@ class FreeNumbers {
   }
 
   int num_free() const { return num_free_; }
+  int num_taken() const { return static_cast<int>(tree_.size()) - 1 - num_free_; }
   // Free numbers below `number`.
   int Rank(int number) const {
     int rank = 0;
@@ -31,13 +32,29 @@ class FreeNumbers {
     }
     return position;
   }
-  // `number` must be free.
-  void Take(int number) {
-    for (int i = number + 1; i < static_cast<int>(tree_.size()); i += i & -i) --tree_[i];
-    --num_free_;
+  // The number of that rank among those that are not free; 0 <= rank < num_taken().
+  int SelectTaken(int rank) const {
+    int position = 0;
+    for (int step = top_; step > 0; step /= 2) {
+      if (position + step < static_cast<int>(tree_.size()) &&
+          step - tree_[position + step] <= rank) {
+        position += step;
+        rank -= step - tree_[position];
+      }
+    }
+    return position;
   }
+  // `number` must be free.
+  void Take(int number) { Add(number, -1); }
+  // `number` must not be free.
+  void Return(int number) { Add(number, 1); }
 
  private:
+  void Add(int number, int change) {
+    for (int i = number + 1; i < static_cast<int>(tree_.size()); i += i & -i) tree_[i] += change;
+    num_free_ += change;
+  }
+
   std::vector<int32_t> tree_;
   int num_free_;
   int top_ = 1;

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "compressed_format.h"
 #include "connectivity_coder.h"
+#include "face_list_coder.h"
 #include "field_coder.h"
 #include "pleat/base/status.h"
 #include "rest_shape.h"
@@ -36,8 +37,11 @@ class SectionReader {
  public:
   explicit SectionReader(std::vector<Section> sections) : sections_(std::move(sections)) {}
 
+  bool IsNext(SectionKind kind) const {
+    return next_ < sections_.size() && sections_[next_].kind == kind;
+  }
   absl::StatusOr<std::string_view> Next(SectionKind kind, absl::string_view what) {
-    if (next_ >= sections_.size() || sections_[next_].kind != kind) {
+    if (!IsNext(kind)) {
       return absl::DataLossError(absl::StrCat("section ", next_, " should be the ", what));
     }
     return sections_[next_++].payload;
@@ -70,12 +74,16 @@ struct SequenceDecoder::State {
     PLEAT_ASSIGN_OR_RETURN(std::string_view payload, reader->Next(SectionKind::kHeader, "header"));
     PLEAT_ASSIGN_OR_RETURN(header, DecodeHeader(payload, limits));
     PLEAT_RETURN_IF_ERROR(CheckPlausible(uint64_t{3} * header.num_vertices, bytes, "rest shape"));
-    PLEAT_ASSIGN_OR_RETURN(payload, reader->Next(SectionKind::kTopology, "topology"));
+    const bool is_list = reader->IsNext(SectionKind::kFaceList);
+    PLEAT_ASSIGN_OR_RETURN(
+        payload,
+        reader->Next(is_list ? SectionKind::kFaceList : SectionKind::kTopology, "topology"));
     PLEAT_RETURN_IF_ERROR(CheckPlausible(header.num_corners, payload, "topology"));
     BinaryCoder coder = BinaryCoder::ForDecoding(payload);
-    PLEAT_ASSIGN_OR_RETURN(topology, DecodeTopology(static_cast<int>(header.num_vertices),
-                                                    static_cast<int>(header.num_faces),
-                                                    static_cast<int>(header.num_corners), &coder));
+    const auto decode = is_list ? DecodeFaceList : DecodeTopology;
+    PLEAT_ASSIGN_OR_RETURN(
+        topology, decode(static_cast<int>(header.num_vertices), static_cast<int>(header.num_faces),
+                         static_cast<int>(header.num_corners), &coder));
     topology_bytes = payload.size();
     PLEAT_ASSIGN_OR_RETURN(payload, reader->Next(SectionKind::kAppearance, "appearance"));
     appearance.material_library = header.material_library;

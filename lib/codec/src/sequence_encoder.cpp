@@ -8,6 +8,7 @@
 
 #include "compressed_format.h"
 #include "connectivity_coder.h"
+#include "face_list_coder.h"
 #include "field_coder.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
@@ -139,6 +140,11 @@ SequenceEncoder::SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis 
       keep_face_order ? Faces{sequence.topology(), sequence.appearance()} : Reordered(sequence);
   EncodeTopology(faces.topology, &coder);
   topology_ = coder.Finish();
+  BinaryCoder list_coder = BinaryCoder::ForEncoding();
+  EncodeFaceList(faces.topology, &list_coder);
+  std::string list = list_coder.Finish();
+  is_face_list_ = list.size() < topology_.size();
+  if (is_face_list_) topology_ = std::move(list);
   appearance_ = EncodeAppearance(faces.appearance, faces.topology);
 }
 
@@ -205,7 +211,7 @@ absl::StatusOr<std::string> SequenceEncoder::Encode(double step_m, const Residua
   ByteWriter writer;
   WriteMagic(&writer);
   WriteSection(SectionKind::kHeader, EncodeHeader(header), &writer);
-  WriteSection(SectionKind::kTopology, topology_, &writer);
+  WriteSection(is_face_list_ ? SectionKind::kFaceList : SectionKind::kTopology, topology_, &writer);
   WriteSection(SectionKind::kAppearance, appearance_, &writer);
 
   BinaryCoder coder = BinaryCoder::ForEncoding();

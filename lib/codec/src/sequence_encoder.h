@@ -38,6 +38,7 @@ class SequenceEncoder {
   const SequenceAnalysis analysis_;
   const int num_threads_;
   std::string topology_, appearance_;
+  bool is_face_list_ = false;  // the topology is coded in the order of the file
 };
 
 }  // namespace pleat
