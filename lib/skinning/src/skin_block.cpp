@@ -77,14 +77,17 @@ PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* po
   // R(q) d = d + 2 / |q|^2 (w u + q x u), u = q x d: no root is needed.
   const Sixteen scale = 2.0f / squared;
   Sixteen detail[3];
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     detail[axis] = *reinterpret_cast<const UnalignedSixteen*>(details + axis * kLanes);
   }
   Sixteen u[3];
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const int next = (axis + 1) % 3, last = (axis + 2) % 3;
     u[axis] = m[4 * next + 3] * detail[last] - m[4 * last + 3] * detail[next];
   }
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     const int next = (axis + 1) % 3, last = (axis + 2) % 3;
     const Sixteen turned =
@@ -93,19 +96,20 @@ PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* po
   }
 }
 
-// position = [m] rest, and the detail.
+// position = [m] rest.
 PLEAT_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, Sixteen* position) {
   const auto* x = reinterpret_cast<const Sixteen*>(inputs.block->rest);
+#pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
     position[axis] = (m[axis] * x[0] + m[4 + axis] * x[1]) + (m[8 + axis] * x[2] + m[12 + axis]);
   }
-  if (inputs.details != nullptr) AddDetails(m, inputs.details, position);
 }
 
 PLEAT_INLINE void SkinVertices(const SkinBlockInputs& inputs, float* positions) {
   Sixteen m[kParameters], position[3];
   BlendVertices(inputs, m);
   Move(m, inputs, position);
+  if (inputs.details != nullptr) AddDetails(m, inputs.details, position);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int axis = 0; axis < 3; ++axis) positions[3 * lane + axis] = position[axis][lane];
   }
@@ -124,26 +128,27 @@ __attribute__((target("avx2"))) void SkinBlockForAvx2(const SkinBlockInputs& inp
 // The same sums with all vertices side by side: the bones' numbers lie in registers.
 #define PLEAT_AVX512 __attribute__((target("avx512f,avx512bw,prefer-vector-width=512")))
 
-PLEAT_AVX512 inline void BlendByLookup(const SkinBlockInputs& inputs, bool with_axes, Sixteen* m) {
+PLEAT_AVX512 PLEAT_INLINE void BlendByLookup(const SkinBlockInputs& inputs, bool with_axes,
+                                             Sixteen* m) {
   const FrameSkinning::Block& block = *inputs.block;
   __m512i bones[kMaxInfluences];
-  Sixteen weights[kMaxInfluences], quaternion_weights[kMaxInfluences];
+#pragma GCC unroll 4
   for (int k = 0; k < kMaxInfluences; ++k) {
     // The plain conversion reads an undefined register, of which gcc 12 warns.
     bones[k] = _mm512_maskz_cvtepu16_epi32(
         0xffff, _mm256_load_si256(reinterpret_cast<const __m256i*>(block.bones + k * kLanes)));
-    weights[k] = *reinterpret_cast<const Sixteen*>(block.weights + k * kLanes);
-    quaternion_weights[k] =
-        *reinterpret_cast<const UnalignedSixteen*>(inputs.quaternion_weights + k * kLanes);
   }
+#pragma GCC unroll 16
   for (int p = 0; p < kParameters; ++p) {
     if (IsQuaternion(p) && !with_axes) continue;
-    const Sixteen* w = IsQuaternion(p) ? quaternion_weights : weights;
+    const float* weights = IsQuaternion(p) ? inputs.quaternion_weights : block.weights;
     const __m512 low = _mm512_loadu_ps(inputs.tables + p * kLookupBones);
     const __m512 high = _mm512_loadu_ps(inputs.tables + p * kLookupBones + kLanes);
-    m[p] = w[0] * _mm512_permutex2var_ps(low, bones[0], high);
-    for (int k = 1; k < kMaxInfluences; ++k) {
-      m[p] += w[k] * _mm512_permutex2var_ps(low, bones[k], high);
+#pragma GCC unroll 4
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      const Sixteen weight = *reinterpret_cast<const UnalignedSixteen*>(weights + k * kLanes);
+      const Sixteen part = weight * _mm512_permutex2var_ps(low, bones[k], high);
+      m[p] = k == 0 ? part : m[p] + part;
     }
   }
 }
@@ -162,7 +167,8 @@ constexpr Interleaving kInterleaving = [] {
   return from;
 }();
 
-PLEAT_AVX512 inline void StoreByVertex(const Sixteen* position, float* positions) {
+PLEAT_AVX512 PLEAT_INLINE void StoreByVertex(const Sixteen* position, float* positions) {
+#pragma GCC unroll 3
   for (int part = 0; part < 3; ++part) {
     const __m512i from_xy = _mm512_loadu_si512(kInterleaving.from_xy + part * kLanes);
     const __m512i from_z = _mm512_loadu_si512(kInterleaving.from_z + part * kLanes);
@@ -177,8 +183,14 @@ PLEAT_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float* posit
     return;
   }
   Sixteen m[kParameters], position[3];
-  BlendByLookup(inputs, inputs.details != nullptr, m);
-  Move(m, inputs, position);
+  if (inputs.details != nullptr) {
+    BlendByLookup(inputs, true, m);
+    Move(m, inputs, position);
+    AddDetails(m, inputs.details, position);
+  } else {
+    BlendByLookup(inputs, false, m);
+    Move(m, inputs, position);
+  }
   StoreByVertex(position, positions);
 }
 #endif
