@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <vector>
 
@@ -43,7 +44,8 @@ TEST_P(DenseTest, FactorsAndInverts) {
     EXPECT_LT((Lower(factor) * Lower(factor).transpose() - k).norm(), 1e-12 * k.norm());
     EXPECT_LT((inverse_factor * Lower(factor) - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-11);
     EXPECT_EQ((inverse_factor - Lower(inverse_factor)).norm(), 0);
-    solver.GradientFromNarrow(inverse_factor, 1, Eigen::MatrixXd(n, 0), none, inverse);
+    solver.Whiten(inverse_factor, Eigen::MatrixXd(n, 0), false);
+    solver.Gradient(inverse_factor, 1, none, inverse);
     const Eigen::MatrixXd full = inverse.selfadjointView<Eigen::Lower>();
     EXPECT_LT((full * k - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10) << ops->name;
   }
@@ -52,21 +54,38 @@ TEST_P(DenseTest, FactorsAndInverts) {
 TEST_P(DenseTest, MultipliesByTriangles) {
   const int n = GetParam();
   const Eigen::MatrixXd w = Lower(RandomMatrix(n, n, 1));
-  const Eigen::MatrixXd wide = RandomMatrix(n, 7, 2), lower = Lower(RandomMatrix(n, n, 3));
+  const Eigen::MatrixXd wide = RandomMatrix(n, 7, 2);
   for (const DenseOps* ops : RunnableOps()) {
     DenseSolver solver(*ops);
     Eigen::MatrixXd h;
-    solver.MultiplyByFactor(w, false, wide, false, h);
+    solver.MultiplyByFactor(w, false, wide, h);
     EXPECT_LT((h - w * wide).norm(), 1e-12 * n * n);
-    solver.MultiplyByFactor(w, true, wide, false, h);
+    solver.MultiplyByFactor(w, true, wide, h);
     EXPECT_LT((h - w.transpose() * wide).norm(), 1e-12 * n * n);
-    solver.MultiplyByFactor(w, false, lower, true, h);
-    EXPECT_LT((h - w * lower).norm(), 1e-12 * n * n);
-    solver.MultiplyByFactor(w, true, lower, true, h);
-    EXPECT_LT((h - w.transpose() * lower).norm(), 1e-12 * n * n);
     Eigen::MatrixXd s;
     solver.OuterProduct(wide, s);
     EXPECT_LT((Lower(s) - Lower(wide * wide.transpose())).norm(), 1e-12 * n * n) << ops->name;
+  }
+}
+
+// D K^-1 - K^-1 G K^-1 from a lower triangular factor of G and from a narrow one.
+TEST_P(DenseTest, GradientsAgreeWithEigen) {
+  const int n = GetParam();
+  const Eigen::MatrixXd k = RandomPositiveDefinite(n);
+  const Eigen::MatrixXd inverse = k.inverse();
+  const Eigen::MatrixXd square = Lower(RandomMatrix(n, n, 3)), narrow = RandomMatrix(n, 5, 8);
+  for (const DenseOps* ops : RunnableOps()) {
+    DenseSolver solver(*ops);
+    Eigen::MatrixXd factor = k, w, solution, gradient;
+    ASSERT_TRUE(solver.FactorAndInvert(factor, w));
+    for (const Eigen::MatrixXd& f : {square, narrow}) {
+      const Eigen::MatrixXd truth = 9 * inverse - inverse * f * f.transpose() * inverse;
+      const double trace = (inverse * f).cwiseProduct(f).sum();
+      EXPECT_NEAR(solver.Whiten(w, f, f.cols() == n), trace, 1e-10 * (1 + trace)) << ops->name;
+      solver.Gradient(w, 9, solution, gradient);
+      EXPECT_LT((Lower(gradient) - Lower(truth)).norm(), 1e-10 * (1 + truth.norm())) << ops->name;
+    }
+    EXPECT_LT((solution - inverse * narrow).norm(), 1e-10 * (1 + solution.norm())) << ops->name;
   }
 }
 

@@ -63,11 +63,7 @@ bool AdditiveLikelihood::Factor(const Eigen::VectorXd& values) {
 
 void AdditiveLikelihood::Gradient(const Eigen::VectorXd& values, Eigen::VectorXd& gradient) {
   const int scales = num_scales();
-  if (data_.lower_triangular) {
-    solver_.GradientFromSquare(whitener_, data_.num_outputs, whitened_, outer_);
-  } else {
-    solver_.GradientFromNarrow(whitener_, data_.num_outputs, whitened_, solution_, outer_);
-  }
+  solver_.Gradient(whitener_, data_.num_outputs, solution_, outer_);
   // A = (D K^-1 - K^-1 G K^-1) / 2 below the diagonal, doubled there: sums run over both halves.
   outer_.triangularView<Eigen::StrictlyUpper>().setZero();
   outer_.diagonal() *= .5;
@@ -90,10 +86,10 @@ double AdditiveLikelihood::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* g
   const Eigen::VectorXd values = x.cwiseMax(-kMaxKernelLog).cwiseMin(kMaxKernelLog).array().exp();
   if (progress_.cancelled() || !Factor(values)) return kNone;
   const double log_determinant = 2 * kernel_.diagonal().array().log().sum();
-  solver_.MultiplyByFactor(whitener_, false, data_.factor, data_.lower_triangular, whitened_);
+  const double trace = solver_.Whiten(whitener_, data_.factor, data_.lower_triangular);
   const Eigen::VectorXd away = x.head(scales) - prior_center_;
-  const double value = .5 * (data_.num_outputs * log_determinant + whitened_.squaredNorm()) +
-                       .5 * precision_ * away.squaredNorm();
+  const double value =
+      .5 * (data_.num_outputs * log_determinant + trace) + .5 * precision_ * away.squaredNorm();
   if (gradient) {
     gradient->resize(num_unknowns());
     Gradient(values, *gradient);
@@ -106,8 +102,9 @@ double AdditiveLikelihood::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* g
 }
 
 void AdditiveLikelihood::Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) {
-  solver_.MultiplyByFactor(whitener_, false, right, false, whitened_);
-  solver_.MultiplyByFactor(whitener_, true, whitened_, false, solution);
+  Eigen::MatrixXd whitened;
+  solver_.MultiplyByFactor(whitener_, false, right, whitened);
+  solver_.MultiplyByFactor(whitener_, true, whitened, solution);
 }
 
 }  // namespace pleat

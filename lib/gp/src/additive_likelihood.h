@@ -45,7 +45,7 @@ class AdditiveLikelihood : public Objective {
   std::vector<Eigen::MatrixXd> distances_, products_, rbf_;  // N x N each, lower
   Eigen::VectorXd prior_center_;                             // of log g
   double precision_;
-  Eigen::MatrixXd kernel_, whitener_, whitened_, solution_, outer_;
+  Eigen::MatrixXd kernel_, whitener_, solution_, outer_;
 };
 
 }  // namespace pleat

@@ -28,15 +28,21 @@ struct DenseView {
   }
 };
 
-// C (m x n, leading dimension ldc) = or += alpha A B^T for packed A (m x k) and B (n x k). With
-// `lower` only the entries on and below the diagonal of C are needed; what else is written is not
-// defined.
+// Which entries of a product are needed; what else is written is not defined.
+enum class DensePart {
+  kAll,
+  kLower,  // on and below the diagonal
+  kUpper,  // on and above the diagonal
+};
+
+// C (m x n, leading dimension ldc) = or += alpha A B^T for packed A (m x k) and B (n x k).
 struct DenseProduct {
   double alpha = 1;
   double* c = nullptr;
   ptrdiff_t ldc = 0, m = 0, n = 0;
-  bool lower = false;
+  DensePart part = DensePart::kAll;
   bool overwrite = false;  // C is not read
+  bool packed = false;     // C becomes packed rows; ldc: their number as padded
 };
 
 // Columns of a matrix. Products sum over one chunk after the other.
@@ -76,6 +82,9 @@ struct DenseOps {
   // a sum in the order of k, chunk after chunk: the same bits whatever the width of the registers.
   void (*multiply)(const DenseProduct& product, DenseChunk chunk, const PackedChunk& a,
                    const PackedChunk& b);
+
+  // Sum of the squares of one packed chunk that has its shape's zeros.
+  double (*squared_norm)(const PackedChunk& a, ptrdiff_t rows, DenseChunk chunk);
 
   // Cholesky K = L L^T of the lower triangle of K (n x n, n <= kDenseLeaf, leading dimension ld) in
   // place, and W = L^-1 with zeros above the diagonal. False when K is not positive definite.

@@ -65,12 +65,8 @@ bool GramTerm::State::Factor() {
 }
 
 void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, double weight) {
-  if (data.lower_triangular) {
-    solver.GradientFromSquare(whitener, data.num_outputs, whitened, kernel);
-  } else {
-    solver.GradientFromNarrow(whitener, data.num_outputs, whitened, solution, kernel);
-    solution *= weight;
-  }
+  solver.Gradient(whitener, data.num_outputs, solution, kernel);
+  if (!data.lower_triangular) solution *= weight;
   const GramSums sums = solver.ops().gram_gradient(
       kernel.data(), in->distances.data(), options.linear ? in->products.data() : nullptr, n,
       values.g, values.a, .5 * weight, weighted().data());
@@ -124,9 +120,8 @@ double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double w
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   s.values = KernelValuesOf(s.options, logs);
   if (progress.cancelled() || !s.Factor() || progress.cancelled()) return kNone;
-  s.solver.MultiplyByFactor(s.whitener, false, data.factor, data.lower_triangular, s.whitened);
-  const double value =
-      .5 * weight * (data.num_outputs * s.log_determinant + s.whitened.squaredNorm());
+  const double trace = s.solver.Whiten(s.whitener, data.factor, data.lower_triangular);
+  const double value = .5 * weight * (data.num_outputs * s.log_determinant + trace);
   if (with_gradient) {
     if (progress.cancelled()) return kNone;
     s.Gradient(logs, data, weight);
@@ -153,8 +148,9 @@ const Eigen::MatrixXd& GramTerm::weighted_solution() const { return state_->solu
 
 void GramTerm::Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) {
   State& s = *state_;
-  s.solver.MultiplyByFactor(s.whitener, false, right, false, s.whitened);
-  s.solver.MultiplyByFactor(s.whitener, true, s.whitened, false, solution);
+  Eigen::MatrixXd whitened;
+  s.solver.MultiplyByFactor(s.whitener, false, right, whitened);
+  s.solver.MultiplyByFactor(s.whitener, true, whitened, solution);
 }
 
 const Eigen::MatrixXd& GramTerm::whitener() const { return state_->whitener; }
@@ -194,7 +190,7 @@ absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& o
   const DenseView view{outputs.data(), 1, outputs.outerStride()};
   solver.MultiplyRows(
       view, view, outputs.cols(),
-      {.c = gram.data(), .ldc = n, .m = n, .n = n, .lower = true, .overwrite = true});
+      {.c = gram.data(), .ldc = n, .m = n, .n = n, .part = DensePart::kLower, .overwrite = true});
   gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
   return MakeGramDataFromGram(gram, static_cast<double>(outputs.cols()));
 }

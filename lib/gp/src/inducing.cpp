@@ -71,7 +71,7 @@ bool SolveInduced(
         {.c = whitened.data(), .ldc = count, .m = count, .n = m, .overwrite = true});
     const DenseView columns = ViewOf(whitened).Transposed();
     solver.MultiplyRows(columns, columns, count,
-                        {.c = gain.data(), .ldc = m, .m = m, .n = m, .lower = true});
+                        {.c = gain.data(), .ldc = m, .m = m, .n = m, .part = DensePart::kLower});
     const DenseView targets{outputs.data() + begin, 1, outputs.outerStride()};
     solver.MultiplyRows(columns, targets.Transposed(), count,
                         {.c = right.data(), .ldc = m, .m = m, .n = num_outputs});
@@ -83,9 +83,9 @@ bool SolveInduced(
   b.diagonal().array() += 1;
   if (cancelled() || !solver.FactorAndInvert(b, b_whitener)) return false;
   Eigen::MatrixXd x, y;
-  solver.MultiplyByFactor(b_whitener, false, right, false, y);
-  solver.MultiplyByFactor(b_whitener, true, y, false, x);
-  solver.MultiplyByFactor(w, true, x, false, y);
+  solver.MultiplyByFactor(b_whitener, false, right, y);
+  solver.MultiplyByFactor(b_whitener, true, y, x);
+  solver.MultiplyByFactor(w, true, x, y);
   weights->alpha = y / noise;
   if (!with_whitener) return true;
 

@@ -117,9 +117,13 @@ DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, View
   view.gram.setZero(n, n);
   DenseSolver solver;
   const DenseView rows = ViewOf(centred);
-  solver.MultiplyRows(
-      rows, rows, centred.cols(),
-      {.c = view.gram.data(), .ldc = n, .m = n, .n = n, .lower = true, .overwrite = true});
+  solver.MultiplyRows(rows, rows, centred.cols(),
+                      {.c = view.gram.data(),
+                       .ldc = n,
+                       .m = n,
+                       .n = n,
+                       .part = DensePart::kLower,
+                       .overwrite = true});
   view.gram.triangularView<Eigen::StrictlyUpper>() = view.gram.transpose();
   return view;
 }
@@ -179,8 +183,8 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
     if (!solver.FactorAndInvert(ridged, whitener)) {
       return absl::InvalidArgumentError("the back-constraint kernel cannot be factored");
     }
-    solver.MultiplyByFactor(whitener, false, start, false, whitened);
-    solver.MultiplyByFactor(whitener, true, whitened, false, points);
+    solver.MultiplyByFactor(whitener, false, start, whitened);
+    solver.MultiplyByFactor(whitener, true, whitened, points);
   }
   Eigen::MatrixXd distances = Eigen::MatrixXd::Zero(n, n);
   ChosenDenseOps().squared_distances(start.data(), n, start.cols(), distances.data());
