@@ -26,7 +26,8 @@ struct GramInputs {
 
 struct GramTerm::State {
   KernelOptions options;
-  DenseSolver solver;
+  std::shared_ptr<DenseSolver> scratch = std::make_shared<DenseSolver>();
+  DenseSolver& solver() { return *scratch; }
   Eigen::Index n = 0;
 
   std::shared_ptr<GramInputs> in = std::make_shared<GramInputs>();
@@ -53,10 +54,10 @@ bool GramTerm::State::Factor() {
   for (double jitter = 0; jitter <= kLargestJitter;
        jitter = jitter == 0 ? kFirstJitter : 10 * jitter) {
     relative_floor = options.relative_noise_floor + jitter;
-    solver.ops().kernel(in->distances.data(), linear, n, values.g, values.a, values.b, values.c,
+    solver().ops().kernel(in->distances.data(), linear, n, values.g, values.a, values.b, values.c,
                         kernel.data());
     kernel.diagonal().array() += values.s2 + relative_floor * values.a + options.absolute_jitter;
-    if (solver.FactorAndInvert(kernel, whitener)) {
+    if (solver().FactorAndInvert(kernel, whitener)) {
       log_determinant = 2 * kernel.diagonal().array().log().sum();
       return std::isfinite(log_determinant);
     }
@@ -65,9 +66,9 @@ bool GramTerm::State::Factor() {
 }
 
 void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, double weight) {
-  solver.Gradient(whitener, data.num_outputs, solution, kernel);
+  solver().Gradient(whitener, data.num_outputs, solution, kernel);
   if (!data.lower_triangular) solution *= weight;
-  const GramSums sums = solver.ops().gram_gradient(
+  const GramSums sums = solver().ops().gram_gradient(
       kernel.data(), in->distances.data(), options.linear ? in->products.data() : nullptr, n,
       values.g, values.a, .5 * weight, weighted().data());
   KernelLogs gradient;
@@ -105,8 +106,8 @@ void GramTerm::SetInputs(const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   in.inputs = inputs;
   in.extended.resize(s.n, inputs.cols() + 1);
   in.extended << inputs, Eigen::VectorXd::Ones(s.n);
-  s.solver.ops().squared_distances(in.inputs.data(), s.n, inputs.cols(), in.distances.data());
-  if (s.options.linear) s.solver.OuterProduct(in.inputs, in.products);
+  s.solver().ops().squared_distances(in.inputs.data(), s.n, inputs.cols(), in.distances.data());
+  if (s.options.linear) s.solver().OuterProduct(in.inputs, in.products);
 }
 
 void GramTerm::ShareInputs(const GramTerm& other) {
@@ -114,13 +115,15 @@ void GramTerm::ShareInputs(const GramTerm& other) {
   state_->in = other.state_->in;
 }
 
+void GramTerm::ShareScratch(const GramTerm& other) { state_->scratch = other.state_->scratch; }
+
 double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double weight,
                           bool with_gradient, const Progress& progress) {
   State& s = *state_;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   s.values = KernelValuesOf(s.options, logs);
   if (progress.cancelled() || !s.Factor() || progress.cancelled()) return kNone;
-  const double trace = s.solver.Whiten(s.whitener, data.factor, data.lower_triangular);
+  const double trace = s.solver().Whiten(s.whitener, data.factor, data.lower_triangular);
   const double value = .5 * weight * (data.num_outputs * s.log_determinant + trace);
   if (with_gradient) {
     if (progress.cancelled()) return kNone;
@@ -136,11 +139,11 @@ void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
   const GramInputs& in = *s.in;
   const Eigen::Index dims = in.inputs.cols();
   // -2 g (diag(P 1) - P) X.
-  s.solver.SymmetricMultiply(s.weighted(), in.extended, s.product);
+  s.solver().SymmetricMultiply(s.weighted(), in.extended, s.product);
   gradient =
       2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * in.inputs);
   if (!s.options.linear) return;
-  s.solver.SymmetricMultiply(s.kernel, in.inputs, s.product);
+  s.solver().SymmetricMultiply(s.kernel, in.inputs, s.product);
   gradient += 2 * s.values.c * s.product;
 }
 
@@ -149,8 +152,8 @@ const Eigen::MatrixXd& GramTerm::weighted_solution() const { return state_->solu
 void GramTerm::Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) {
   State& s = *state_;
   Eigen::MatrixXd whitened;
-  s.solver.MultiplyByFactor(s.whitener, false, right, whitened);
-  s.solver.MultiplyByFactor(s.whitener, true, whitened, solution);
+  s.solver().MultiplyByFactor(s.whitener, false, right, whitened);
+  s.solver().MultiplyByFactor(s.whitener, true, whitened, solution);
 }
 
 const Eigen::MatrixXd& GramTerm::whitener() const { return state_->whitener; }

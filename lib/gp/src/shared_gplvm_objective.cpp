@@ -69,6 +69,8 @@ struct SharedGplvmObjective::State {
         rows(std::move(dynamics_rows)),
         dynamics(static_cast<int>(rows.targets.size()), dynamics_kernel) {
     detail.term.ShareInputs(pose.term);
+    detail.term.ShareScratch(pose.term);
+    dynamics.ShareScratch(pose.term);
   }
 
   bool has_dynamics() const { return options.dynamics_weight > 0; }
