@@ -24,6 +24,12 @@ struct GramInputs {
   Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
 };
 
+// What an evaluation works in.
+struct GramMatrices {
+  Eigen::MatrixXd kernel;    // N x N, lower: K, then L, then A, then (not linear) P = A o K0
+  Eigen::MatrixXd whitener;  // N x N, lower: W = L^-1
+};
+
 struct GramTerm::State {
   KernelOptions options;
   std::shared_ptr<DenseSolver> scratch = std::make_shared<DenseSolver>();
@@ -31,10 +37,7 @@ struct GramTerm::State {
   Eigen::Index n = 0;
 
   std::shared_ptr<GramInputs> in = std::make_shared<GramInputs>();
-  Eigen::MatrixXd rbf;       // N x N, lower: K0, later unchanged
-  Eigen::MatrixXd kernel;    // N x N, lower: K, then L, then A, then (not linear) P = A o K0
-  Eigen::MatrixXd whitener;  // N x N, lower: W = L^-1
-  Eigen::MatrixXd whitened;  // N x r: W F, lost by the gradient
+  std::shared_ptr<GramMatrices> work = std::make_shared<GramMatrices>();
   Eigen::MatrixXd solution;  // N x r: K^-1 F, then weighted; only of a narrow F
   Eigen::MatrixXd beside;    // N x N, lower: P where A is needed too; only with a linear term
   Eigen::MatrixXd product;   // N x (Q + 1): scratch of InputGradient
@@ -43,7 +46,7 @@ struct GramTerm::State {
   double log_determinant = 0;
   double relative_floor = 0;  // noise floor + jitter of the last factorisation, share of a
 
-  Eigen::MatrixXd& weighted() { return options.linear ? beside : kernel; }
+  Eigen::MatrixXd& weighted() { return options.linear ? beside : work->kernel; }
   bool Factor();
   void Gradient(const KernelLogs& logs, const GramData& data, double weight);
 };
@@ -55,10 +58,11 @@ bool GramTerm::State::Factor() {
        jitter = jitter == 0 ? kFirstJitter : 10 * jitter) {
     relative_floor = options.relative_noise_floor + jitter;
     solver().ops().kernel(in->distances.data(), linear, n, values.g, values.a, values.b, values.c,
-                        kernel.data());
-    kernel.diagonal().array() += values.s2 + relative_floor * values.a + options.absolute_jitter;
-    if (solver().FactorAndInvert(kernel, whitener)) {
-      log_determinant = 2 * kernel.diagonal().array().log().sum();
+                          work->kernel.data());
+    work->kernel.diagonal().array() +=
+        values.s2 + relative_floor * values.a + options.absolute_jitter;
+    if (solver().FactorAndInvert(work->kernel, work->whitener)) {
+      log_determinant = 2 * work->kernel.diagonal().array().log().sum();
       return std::isfinite(log_determinant);
     }
   }
@@ -66,10 +70,10 @@ bool GramTerm::State::Factor() {
 }
 
 void GramTerm::State::Gradient(const KernelLogs& logs, const GramData& data, double weight) {
-  solver().Gradient(whitener, data.num_outputs, solution, kernel);
+  solver().Gradient(work->whitener, data.num_outputs, solution, work->kernel);
   if (!data.lower_triangular) solution *= weight;
   const GramSums sums = solver().ops().gram_gradient(
-      kernel.data(), in->distances.data(), options.linear ? in->products.data() : nullptr, n,
+      work->kernel.data(), in->distances.data(), options.linear ? in->products.data() : nullptr, n,
       values.g, values.a, .5 * weight, weighted().data());
   KernelLogs gradient;
   gradient.inverse_width = -.5 * values.g * sums.distance;
@@ -89,7 +93,7 @@ GramTerm::GramTerm(int num_rows, const KernelOptions& options) : state_(new Stat
   State& s = *state_;
   s.options = options;
   s.n = num_rows;
-  for (Eigen::MatrixXd* m : {&s.in->distances, &s.kernel, &s.whitener}) {
+  for (Eigen::MatrixXd* m : {&s.in->distances, &s.work->kernel, &s.work->whitener}) {
     m->setZero(s.n, s.n);
   }
   if (options.linear) s.in->products = s.beside = s.in->distances;
@@ -115,7 +119,10 @@ void GramTerm::ShareInputs(const GramTerm& other) {
   state_->in = other.state_->in;
 }
 
-void GramTerm::ShareScratch(const GramTerm& other) { state_->scratch = other.state_->scratch; }
+void GramTerm::ShareScratch(const GramTerm& other) {
+  state_->scratch = other.state_->scratch;
+  if (other.state_->n == state_->n) state_->work = other.state_->work;
+}
 
 double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double weight,
                           bool with_gradient, const Progress& progress) {
@@ -123,7 +130,7 @@ double GramTerm::Evaluate(const KernelLogs& logs, const GramData& data, double w
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   s.values = KernelValuesOf(s.options, logs);
   if (progress.cancelled() || !s.Factor() || progress.cancelled()) return kNone;
-  const double trace = s.solver().Whiten(s.whitener, data.factor, data.lower_triangular);
+  const double trace = s.solver().Whiten(s.work->whitener, data.factor, data.lower_triangular);
   const double value = .5 * weight * (data.num_outputs * s.log_determinant + trace);
   if (with_gradient) {
     if (progress.cancelled()) return kNone;
@@ -143,7 +150,7 @@ void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
   gradient =
       2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * in.inputs);
   if (!s.options.linear) return;
-  s.solver().SymmetricMultiply(s.kernel, in.inputs, s.product);
+  s.solver().SymmetricMultiply(s.work->kernel, in.inputs, s.product);
   gradient += 2 * s.values.c * s.product;
 }
 
@@ -152,11 +159,11 @@ const Eigen::MatrixXd& GramTerm::weighted_solution() const { return state_->solu
 void GramTerm::Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) {
   State& s = *state_;
   Eigen::MatrixXd whitened;
-  s.solver().MultiplyByFactor(s.whitener, false, right, whitened);
-  s.solver().MultiplyByFactor(s.whitener, true, whitened, solution);
+  s.solver().MultiplyByFactor(s.work->whitener, false, right, whitened);
+  s.solver().MultiplyByFactor(s.work->whitener, true, whitened, solution);
 }
 
-const Eigen::MatrixXd& GramTerm::whitener() const { return state_->whitener; }
+const Eigen::MatrixXd& GramTerm::whitener() const { return state_->work->whitener; }
 
 absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::MatrixXd>& gram,
                                               double num_outputs) {

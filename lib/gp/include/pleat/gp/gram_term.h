@@ -45,8 +45,8 @@ class GramTerm {
   // From now on both terms have the inputs that either is given: their distances are computed once.
   // Both have the same number of rows and the same `linear`.
   void ShareInputs(const GramTerm& other);
-  // Both terms work in the same memory from now on, which stays in the cache: evaluations of the
-  // one must not overlap with those of the other.
+  // Both terms work in the same memory from now on, which stays in the cache: what one has computed
+  // lasts until the other is evaluated, and they are not for two threads.
   void ShareScratch(const GramTerm& other);
 
   // The value; NaN when K cannot be factored even with more jitter (up to 1e-3 a), or when
