@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 
 #include "pleat/optimize/objective.h"
@@ -96,6 +97,44 @@ TEST_P(GramTermTest, GradientIsRight) {
     const GradientCheck check = CheckGradient(objective, x);
     EXPECT_LT(check.max_relative_error, 1e-5)
         << "unknown " << check.worst_unknown << ": " << check.analytic << " vs " << check.numeric;
+  }
+}
+
+// As the noise falls, K^-1 grows and the two parts of the gradient cancel. Truth: 80-bit floats.
+TEST_P(GramTermTest, GradientIsRightWithLittleNoise) {
+  using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const int n = 60;
+  Eigen::MatrixXd x(n, 2);  // a smooth curve, as motion is
+  for (int i = 0; i < n; ++i) x.row(i) << std::sin(.05 * i), std::cos(.11 * i);
+  KernelOptions options = GetParam();
+  options.relative_noise_floor = options.absolute_jitter = 0;
+  const KernelLogs logs{-.4, .3, -1, std::log(1e-5), -.7};
+  const Eigen::MatrixXd y = WrittenOutKernel(x, options, logs) * RandomMatrix(n, 90, 2) * .1;
+  const Matrix inverse = WrittenOutKernel(x, options, logs).cast<long double>().inverse();
+  Matrix rbf = WrittenOutKernel(x, {.bias = false, .relative_noise_floor = 0},
+                                {logs.inverse_width, logs.amplitude, 0, -1e9, 0})
+                   .cast<long double>();
+  rbf.diagonal().setConstant(std::exp(logs.amplitude));
+  for (const int num_outputs : {90, 20}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(y.leftCols(num_outputs)));
+    const Matrix factor = data.factor.cast<long double>();
+    const Matrix solution = inverse * factor;
+    const Matrix a = .5L * (num_outputs * inverse - solution * solution.transpose());
+    const Matrix p = a.cwiseProduct(rbf), inputs = x.cast<long double>();
+    const Matrix sums = p.rowwise().sum();
+    Matrix truth =
+        2 * std::exp(logs.inverse_width) * (p * inputs - (sums.col(0).asDiagonal() * inputs));
+    if (options.linear) truth += 2 * std::exp(logs.linear) * a * inputs;
+    GramTerm term(n, options);
+    term.SetInputs(x);
+    term.Evaluate(logs, data, 1, true);
+    Eigen::MatrixXd gradient;
+    term.InputGradient(gradient);
+    EXPECT_LT((gradient.cast<long double>() - truth).norm(), 1e-6 * truth.norm()) << num_outputs;
+    EXPECT_NEAR(term.log_gradient()[1], double(p.sum()), 1e-6 * double(p.cwiseAbs().sum()));
+    const int noise = options.bias ? 3 : 2;
+    EXPECT_NEAR(term.log_gradient()[noise], double(1e-5L * a.trace()),
+                1e-6 * double(1e-5L * a.diagonal().cwiseAbs().sum()));
   }
 }
 
