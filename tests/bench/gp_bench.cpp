@@ -51,6 +51,18 @@ void BM_TrainSharedGplvmPaper(benchmark::State& state) {
 }
 BENCHMARK(BM_TrainSharedGplvmPaper)->Arg(100)->Arg(200)->Arg(400)->Unit(benchmark::kMillisecond);
 
+// The shape of a default training: q = 13, N of a clip and of the most rows it learns from.
+void BM_TrainSharedGplvm13(benchmark::State& state) {
+  const Data data = MakeData(static_cast<int>(state.range(0)));
+  SharedGplvmOptions options = SharedGplvmOptions::Paper();
+  options.latent_dimension = 13;
+  const DetailView details = MakeDetailView(data.details, options.scaling);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(TrainSharedGplvm(data.features, details, {0}, options));
+  }
+}
+BENCHMARK(BM_TrainSharedGplvm13)->Arg(175)->Arg(600)->Unit(benchmark::kMillisecond);
+
 // The same learner by L-BFGS with half of the evaluations. "below_scg": by how much its objective
 // is lower, relative to the descent from the start.
 void BM_TrainSharedGplvmLbfgs(benchmark::State& state) {

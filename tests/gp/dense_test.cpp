@@ -147,18 +147,31 @@ TEST(DenseOpsTest, ExponentialIsAccurate) {
 TEST(DenseOpsTest, KernelsWithFmaGiveTheSameBits) {
   const auto all = RunnableOps();
   if (all.size() < 3) GTEST_SKIP() << "this processor has only one set of kernels with FMA";
-  const int n = 150;
-  Eigen::MatrixXd first, first_inverse;
+  const int n = 299;  // longer than a chunk of a sum, and not a multiple of anything
+  const Eigen::MatrixXd x = RandomMatrix(n, 5, 4), f = Lower(RandomMatrix(n, n, 3));
+  std::vector<Eigen::MatrixXd> first;
   for (size_t i = 1; i < all.size(); ++i) {
     DenseSolver solver(*all[i]);
-    Eigen::MatrixXd factor = RandomPositiveDefinite(n), inverse;
-    ASSERT_TRUE(solver.FactorAndInvert(factor, inverse));
-    if (i == 1) {
-      first = Lower(factor);
-      first_inverse = inverse;
-    } else {
-      EXPECT_EQ((first - Lower(factor)).cwiseAbs().maxCoeff(), 0);
-      EXPECT_EQ((first_inverse - inverse).cwiseAbs().maxCoeff(), 0);
+    Eigen::MatrixXd r(n, n), k(n, n), w, solution, gradient, p(n, n), y;
+    all[i]->squared_distances(x.data(), n, 5, r.data());
+    all[i]->kernel(r.data(), nullptr, n, .7, 1.5, .2, 0, k.data());
+    k.diagonal().array() += 1e-2;
+    ASSERT_TRUE(solver.FactorAndInvert(k, w));
+    std::vector<Eigen::MatrixXd> results = {Lower(r), Lower(k), w};
+    for (const Eigen::MatrixXd& factor : {f, x}) {
+      const double trace = solver.Whiten(w, factor, factor.cols() == n);
+      solver.Gradient(w, 7, solution, gradient);
+      const GramSums sums =
+          all[i]->gram_gradient(gradient.data(), r.data(), nullptr, n, .7, 1.5, .5, p.data());
+      solver.SymmetricMultiply(p, x, y);
+      for (const double value : {trace, sums.trace, sums.total, sums.amplitude, sums.distance}) {
+        results.push_back(Eigen::MatrixXd::Constant(1, 1, value));
+      }
+      results.insert(results.end(), {Lower(gradient), Lower(p), y});
+    }
+    if (first.empty()) first = results;
+    for (size_t m = 0; m < results.size(); ++m) {
+      EXPECT_EQ((first[m] - results[m]).cwiseAbs().maxCoeff(), 0) << "matrix " << m;
     }
   }
 }
