@@ -88,9 +88,9 @@ size_t DetailModelBytes(const DetailModel& detail) {
   size_t bytes = detail.basis().memory_bytes();
   for (const GpRegression& stage : detail.stages()) {
     const GpRegressionParameters& parameters = stage.parameters();
-    bytes +=
-        static_cast<size_t>(parameters.inputs.size() + parameters.alpha.size()) * sizeof(double) +
-        static_cast<size_t>(parameters.whitener.size()) * sizeof(float);
+    bytes += static_cast<size_t>(parameters.inputs.size() + 2 * parameters.alpha.size()) *
+                 sizeof(double) +
+             static_cast<size_t>(parameters.whitener.size()) * sizeof(float);
   }
   if (detail.regional()) bytes += detail.regional()->memory_bytes();
   return bytes;

@@ -1,6 +1,7 @@
 #include "pleat/gp/gp_regression.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "dense.h"
 #include "dense_ops.h"
+#include "weighted_rows.h"
 
 namespace pleat {
 namespace {
@@ -23,6 +25,24 @@ void Whiten(const Eigen::MatrixXf& whitener, const Eigen::VectorXf& kernel,
     const Eigen::Index rows = std::min(kBlock, n - i);
     whitened->segment(i, rows).noalias() =
         whitener.block(i, 0, rows, i + rows) * kernel.head(i + rows);
+  }
+}
+
+// sums (r x D) = rows^T slopes, for slopes (N x D).
+void SumRows(const Eigen::MatrixXd& slopes, const GpRegression::RowMajorMatrix& rows,
+             Eigen::MatrixXd* sums) {
+  sums->setZero(rows.cols(), slopes.cols());
+  for (Eigen::Index d = 0; d < slopes.cols(); d += kMaxWeightedTogether) {
+    const Eigen::Index count = std::min<Eigen::Index>(kMaxWeightedTogether, slopes.cols() - d);
+    std::array<const double*, kMaxWeightedTogether> factors{};
+    std::array<double*, kMaxWeightedTogether> columns{};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      factors[i] = slopes.col(d + i).data();
+      columns[i] = sums->col(d + i).data();
+    }
+    const auto num_together = static_cast<size_t>(count);
+    AddWeightedRows({factors.data(), num_together}, rows.data(), rows.rows(), rows.cols(),
+                    {columns.data(), num_together});
   }
 }
 
@@ -77,6 +97,7 @@ absl::Status CheckValues(const GpRegressionParameters& p) {
 GpRegression::GpRegression(GpRegressionParameters parameters)
     : parameters_(std::move(parameters)),
       values_(KernelValuesOf(parameters_.kernel_options, parameters_.kernel)),
+      alpha_rows_(parameters_.alpha),
       squared_norms_(parameters_.inputs.rowwise().squaredNorm()) {
   prior_variance_ = (values_.a + values_.c * squared_norms_.mean()) * parameters_.output_scale *
                     parameters_.output_scale;
@@ -100,8 +121,8 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
   if (const double largest = w.row.cwiseAbs().maxCoeff(); largest > kFarthest) {
     w.row *= kFarthest / largest;
   }
-  w.products.resize(n);
-  w.products.noalias() = p.inputs * w.row;
+  w.products.setZero(n);
+  AddWeightedRows(w.row.data(), p.inputs.data(), p.inputs.cols(), n, w.products.data());
   const double squared_norm = w.row.squaredNorm();
   w.rbf = (-.5 * values_.g * (squared_norms_.array() + squared_norm - 2 * w.products.array()))
               .min(0.0)
@@ -109,7 +130,8 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
   ChosenDenseOps().exp_in_place(w.rbf.data(), n);
   w.rbf *= values_.a;
   w.kernel = (w.rbf.array() + values_.b + values_.c * w.products.array()).matrix();
-  mean.noalias() = p.alpha.transpose() * w.kernel;
+  mean.setZero();
+  AddWeightedRows(w.kernel.data(), alpha_rows_.data(), n, p.alpha.cols(), mean.data());
   mean = p.output_mean + p.output_scale * mean;
   if (variance == nullptr) return;
 
@@ -126,9 +148,8 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
       w.slopes.col(d) =
           (-values_.g * (w.row[d] - column) * w.rbf.array() + values_.c * column).matrix();
     }
-    w.jacobian.resize(p.inputs.cols(), p.alpha.cols());
-    w.jacobian.noalias() = w.slopes.transpose().lazyProduct(p.alpha);
-    w.jacobian.array().colwise() /= p.input_scales.array();
+    SumRows(w.slopes, alpha_rows_, &w.jacobian);
+    w.jacobian.array().rowwise() /= p.input_scales.transpose().array();
     v += input_variance * w.jacobian.squaredNorm() / double(p.alpha.cols());
   }
   *variance = v * p.output_scale * p.output_scale;

@@ -2,44 +2,65 @@
 #include "weighted_rows.h"
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 namespace pleat {
 namespace {
 
-typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
+typedef float FloatLanes __attribute__((vector_size(64)));
+typedef double DoubleLanes __attribute__((vector_size(64)));
 
-template <int kVectors>
-inline __attribute__((always_inline)) void Add(const float* const* factors, const float* rows,
-                                               ptrdiff_t num_rows, ptrdiff_t num_cols,
-                                               float* const* sums) {
-  constexpr ptrdiff_t kLanes = 16, kRegisters = kVectors == 1 ? 8 : 4;
-  ptrdiff_t begin = 0;
+// From any address: as a template argument a type would lose its alignment.
+template <typename Lanes, typename Scalar>
+inline __attribute__((always_inline)) void Load(const Scalar* from, Lanes* lanes) {
+  std::memcpy(lanes, from, sizeof(Lanes));
+}
+
+// The columns from `begin` on, in as many passes of kRegisters registers as fit; returns the first
+// column left.
+template <int kVectors, int kRegisters, typename Lanes, typename Scalar>
+inline __attribute__((always_inline)) ptrdiff_t AddColumns(const Scalar* const* factors,
+                                                           const Scalar* rows, ptrdiff_t num_rows,
+                                                           ptrdiff_t num_cols, ptrdiff_t begin,
+                                                           Scalar* const* sums) {
+  constexpr ptrdiff_t kLanes = sizeof(Lanes) / sizeof(Scalar);
   for (; begin + kLanes * kRegisters <= num_cols; begin += kLanes * kRegisters) {
     Lanes block[kVectors][kRegisters];
 #pragma GCC unroll 4
     for (int q = 0; q < kVectors; ++q) {
 #pragma GCC unroll 8
       for (ptrdiff_t i = 0; i < kRegisters; ++i) {
-        block[q][i] = *reinterpret_cast<const Lanes*>(sums[q] + begin + i * kLanes);
+        Load(sums[q] + begin + i * kLanes, &block[q][i]);
       }
     }
     for (ptrdiff_t n = 0; n < num_rows; ++n) {
-      const Lanes* row = reinterpret_cast<const Lanes*>(rows + n * num_cols + begin);
 #pragma GCC unroll 8
       for (ptrdiff_t i = 0; i < kRegisters; ++i) {
+        Lanes row;
+        Load(rows + n * num_cols + begin + i * kLanes, &row);
 #pragma GCC unroll 4
-        for (int q = 0; q < kVectors; ++q) block[q][i] += factors[q][n] * row[i];
+        for (int q = 0; q < kVectors; ++q) block[q][i] += factors[q][n] * row;
       }
     }
 #pragma GCC unroll 4
     for (int q = 0; q < kVectors; ++q) {
 #pragma GCC unroll 8
       for (ptrdiff_t i = 0; i < kRegisters; ++i) {
-        *reinterpret_cast<Lanes*>(sums[q] + begin + i * kLanes) = block[q][i];
+        std::memcpy(sums[q] + begin + i * kLanes, &block[q][i], sizeof(Lanes));
       }
     }
   }
+  return begin;
+}
+
+template <int kVectors, typename Lanes, typename Scalar>
+inline __attribute__((always_inline)) void Add(const Scalar* const* factors, const Scalar* rows,
+                                               ptrdiff_t num_rows, ptrdiff_t num_cols,
+                                               Scalar* const* sums) {
+  ptrdiff_t begin = AddColumns < kVectors, kVectors == 1 ? 8 : 4,
+            Lanes > (factors, rows, num_rows, num_cols, 0, sums);
+  begin = AddColumns<kVectors, 1, Lanes>(factors, rows, num_rows, num_cols, begin, sums);
   for (int q = 0; q < kVectors; ++q) {
     for (ptrdiff_t n = 0; n < num_rows; ++n) {
       for (ptrdiff_t c = begin; c < num_cols; ++c) {
@@ -49,35 +70,41 @@ inline __attribute__((always_inline)) void Add(const float* const* factors, cons
   }
 }
 
-template <int kVectors>
-void AddForAny(const float* const* factors, const float* rows, ptrdiff_t num_rows,
-               ptrdiff_t num_cols, float* const* sums) {
-  Add<kVectors>(factors, rows, num_rows, num_cols, sums);
+template <int kVectors, typename Lanes, typename Scalar>
+void AddForAny(const Scalar* const* factors, const Scalar* rows, ptrdiff_t num_rows,
+               ptrdiff_t num_cols, Scalar* const* sums) {
+  Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
 }
-constexpr WeightedRowsKernel kAny = {{AddForAny<1>, AddForAny<2>, AddForAny<3>, AddForAny<4>}};
 
 #if defined(__x86_64__)
-template <int kVectors>
-__attribute__((target("avx2"))) void AddForAvx2(const float* const* factors, const float* rows,
+template <int kVectors, typename Lanes, typename Scalar>
+__attribute__((target("avx2"))) void AddForAvx2(const Scalar* const* factors, const Scalar* rows,
                                                 ptrdiff_t num_rows, ptrdiff_t num_cols,
-                                                float* const* sums) {
-  Add<kVectors>(factors, rows, num_rows, num_cols, sums);
+                                                Scalar* const* sums) {
+  Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
 }
-constexpr WeightedRowsKernel kAvx2 = {{AddForAvx2<1>, AddForAvx2<2>, AddForAvx2<3>, AddForAvx2<4>}};
 
-template <int kVectors>
+template <int kVectors, typename Lanes, typename Scalar>
 __attribute__((target("avx512f,prefer-vector-width=512"))) void AddForAvx512(
-    const float* const* factors, const float* rows, ptrdiff_t num_rows, ptrdiff_t num_cols,
-    float* const* sums) {
-  Add<kVectors>(factors, rows, num_rows, num_cols, sums);
+    const Scalar* const* factors, const Scalar* rows, ptrdiff_t num_rows, ptrdiff_t num_cols,
+    Scalar* const* sums) {
+  Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
 }
-constexpr WeightedRowsKernel kAvx512 = {
-    {AddForAvx512<1>, AddForAvx512<2>, AddForAvx512<3>, AddForAvx512<4>}};
 #endif
 
-std::vector<const WeightedRowsKernel*> FindUsable() {
-  std::vector<const WeightedRowsKernel*> usable;
+template <typename Scalar, typename Lanes>
+std::vector<const WeightedRowsKernel<Scalar>*> FindUsable() {
+  static constexpr WeightedRowsKernel<Scalar> kAny = {
+      {AddForAny<1, Lanes, Scalar>, AddForAny<2, Lanes, Scalar>, AddForAny<3, Lanes, Scalar>,
+       AddForAny<4, Lanes, Scalar>}};
+  std::vector<const WeightedRowsKernel<Scalar>*> usable;
 #if defined(__x86_64__)
+  static constexpr WeightedRowsKernel<Scalar> kAvx2 = {
+      {AddForAvx2<1, Lanes, Scalar>, AddForAvx2<2, Lanes, Scalar>, AddForAvx2<3, Lanes, Scalar>,
+       AddForAvx2<4, Lanes, Scalar>}};
+  static constexpr WeightedRowsKernel<Scalar> kAvx512 = {
+      {AddForAvx512<1, Lanes, Scalar>, AddForAvx512<2, Lanes, Scalar>,
+       AddForAvx512<3, Lanes, Scalar>, AddForAvx512<4, Lanes, Scalar>}};
   if (__builtin_cpu_supports("avx512f")) usable.push_back(&kAvx512);
   if (__builtin_cpu_supports("avx2")) usable.push_back(&kAvx2);
 #endif
@@ -85,20 +112,38 @@ std::vector<const WeightedRowsKernel*> FindUsable() {
   return usable;
 }
 
+template <typename Scalar>
+void AddAll(std::span<const Scalar* const> factors, const Scalar* rows, ptrdiff_t num_rows,
+            ptrdiff_t num_cols, std::span<Scalar* const> sums) {
+  const WeightedRowsKernel<Scalar>& kernel = *UsableWeightedRows<Scalar>().front();
+  for (size_t begin = 0; begin < factors.size(); begin += kMaxWeightedTogether) {
+    const size_t count = std::min<size_t>(kMaxWeightedTogether, factors.size() - begin);
+    kernel.add[count - 1](factors.data() + begin, rows, num_rows, num_cols, sums.data() + begin);
+  }
+}
+
 }  // namespace
 
-std::span<const WeightedRowsKernel* const> UsableWeightedRows() {
-  static const std::vector<const WeightedRowsKernel*> usable = FindUsable();
+template <>
+std::span<const WeightedRowsKernel<float>* const> UsableWeightedRows<float>() {
+  static const auto usable = FindUsable<float, FloatLanes>();
+  return usable;
+}
+
+template <>
+std::span<const WeightedRowsKernel<double>* const> UsableWeightedRows<double>() {
+  static const auto usable = FindUsable<double, DoubleLanes>();
   return usable;
 }
 
 void AddWeightedRows(std::span<const float* const> factors, const float* rows, ptrdiff_t num_rows,
                      ptrdiff_t num_cols, std::span<float* const> sums) {
-  const WeightedRowsKernel& kernel = *UsableWeightedRows().front();
-  for (size_t begin = 0; begin < factors.size(); begin += kMaxWeightedTogether) {
-    const size_t count = std::min<size_t>(kMaxWeightedTogether, factors.size() - begin);
-    kernel.add[count - 1](factors.data() + begin, rows, num_rows, num_cols, sums.data() + begin);
-  }
+  AddAll(factors, rows, num_rows, num_cols, sums);
+}
+
+void AddWeightedRows(std::span<const double* const> factors, const double* rows, ptrdiff_t num_rows,
+                     ptrdiff_t num_cols, std::span<double* const> sums) {
+  AddAll(factors, rows, num_rows, num_cols, sums);
 }
 
 }  // namespace pleat

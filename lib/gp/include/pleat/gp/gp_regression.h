@@ -62,6 +62,8 @@ struct GpRegressionParameters {
 // Immutable after training: queries share it without locks.
 class GpRegression {
  public:
+  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
   // What one thread needs for its queries. Sized by the first query, reused without allocation.
   struct Workspace {
     Eigen::VectorXd row;       // D, normalised
@@ -71,7 +73,7 @@ class GpRegression {
     Eigen::VectorXf kernel_f;  // N
     Eigen::VectorXf whitened;  // N
     Eigen::MatrixXd slopes;    // N x D, only with an input variance
-    Eigen::MatrixXd jacobian;  // D x r, only with an input variance
+    Eigen::MatrixXd jacobian;  // r x D, only with an input variance
   };
 
   // Learns the hyperparameters from inputs (N x D) and outputs (N x r), rows are samples. Errors:
@@ -116,6 +118,7 @@ class GpRegression {
 
   GpRegressionParameters parameters_;
   KernelValues values_;
+  RowMajorMatrix alpha_rows_;      // alpha once more, in the order in which a query reads it
   Eigen::VectorXd squared_norms_;  // N, of the normalised inputs
   double prior_variance_ = 1;
 };
