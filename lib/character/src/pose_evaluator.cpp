@@ -106,7 +106,7 @@ void MoveAllWithRoot(BoneTransforms* transforms) {
 }
 
 constexpr size_t kMostTogether = 16;
-constexpr int kTileBlocks = 8;  // whose details stay in the first cache
+constexpr int kTileBlocks = 2;  // few: the sums of the next tile start while this one is skinned
 
 }  // namespace
 
@@ -287,14 +287,11 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
     const int count = std::min(kTileBlocks, num_blocks - block);
     model_->full_basis().ExpandBlocks({expansions.data(), num_detailed}, block, count,
                                       {details.data(), num_detailed});
-    for (int i = 0; i < count; ++i) {
-      for (size_t q = 0; q < scratches.size(); ++q) {
-        const Scratch& s = *scratches[q];
-        const float* tile =
-            s.details.data() + static_cast<ptrdiff_t>(i) * DetailBasis::kBlockDetails;
-        model_->skinning().SkinBlocks(s.motions, block + i, 1, s.has_details ? tile : nullptr,
-                                      &frames[q]->positions);
-      }
+    for (size_t q = 0; q < scratches.size(); ++q) {
+      const Scratch& s = *scratches[q];
+      model_->skinning().SkinBlocks(s.motions, block, count,
+                                    s.has_details ? s.details.data() : nullptr,
+                                    &frames[q]->positions);
     }
   }
 }
