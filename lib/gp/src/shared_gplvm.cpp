@@ -72,8 +72,10 @@ absl::StatusOr<Eigen::VectorXd> Minimize(SharedGplvmObjective& objective,
                                          const SharedGplvmOptions& options,
                                          OptimizationSummary* summary, const Progress& progress) {
   if (options.optimizer == Optimizer::kScg) {
-    return MinimizeScg(objective, start, {.max_iterations = options.max_iterations}, summary,
-                       progress);
+    return MinimizeScg(
+        objective, start,
+        {.max_iterations = options.max_iterations, .curvature = ScgCurvature::kValues}, summary,
+        progress);
   }
   // As many evaluations as SCG would use.
   return MinimizeLbfgs(

@@ -11,6 +11,10 @@
 namespace pleat {
 namespace {
 
+// A second difference of values has to be this share of the value: 1e3 times the rounding of sums
+// of thousands of terms.
+constexpr double kSmallestSecondDifference = 1e-11;
+
 // The state of one run; the names are Moller's.
 class ScaledConjugateGradients {
  public:
@@ -21,8 +25,10 @@ class ScaledConjugateGradients {
                                       const Progress& progress);
 
  private:
-  bool ProbeCurvature();  // false: the direction has vanished
-  bool Step();            // true: accepted
+  bool ProbeCurvature();                   // false: the direction has vanished
+  bool CurvatureFromValues(double sigma);  // false: not precise enough
+  void CurvatureFromGradients(double sigma);
+  bool Step();  // true: accepted
   void ChooseDirection(bool accepted);
 
   Objective& objective_;
@@ -45,12 +51,29 @@ bool ScaledConjugateGradients::ProbeCurvature() {
   kappa_ = direction_.squaredNorm();
   if (kappa_ < std::numeric_limits<double>::epsilon()) return false;
   const double sigma = options_.sigma0 / std::sqrt(kappa_);
+  if (options_.curvature == ScgCurvature::kGradients || !CurvatureFromValues(1.5 * sigma)) {
+    CurvatureFromGradients(sigma);
+  }
+  return true;
+}
+
+// f(x + sigma d) = f + sigma mu + sigma^2/2 theta + ...
+bool ScaledConjugateGradients::CurvatureFromValues(double sigma) {
+  probe_ = x_ + sigma * direction_;
+  const double value = objective_.Evaluate(probe_, nullptr);
+  ++evaluations_;
+  const double difference = value - value_ - sigma * mu_;
+  theta_ = 2 * difference / (sigma * sigma);
+  return std::abs(difference) >= kSmallestSecondDifference * std::abs(value_) &&
+         std::isfinite(theta_);
+}
+
+void ScaledConjugateGradients::CurvatureFromGradients(double sigma) {
   probe_ = x_ + sigma * direction_;
   const double value = objective_.Evaluate(probe_, &probe_gradient_);
   ++evaluations_;
   theta_ = direction_.dot(probe_gradient_ - gradient_) / sigma;
   if (!std::isfinite(value) || !std::isfinite(theta_)) theta_ = 0;  // lambda alone sets the step
-  return true;
 }
 
 bool ScaledConjugateGradients::Step() {

@@ -12,12 +12,22 @@
 
 namespace pleat {
 
+// What the curvature along a direction is estimated from.
+enum class ScgCurvature {
+  kGradients,  // the difference of two gradients: Moller's way
+  // The second difference of two values and a slope, where a value costs much less than a gradient.
+  // The step is half as long again: then the errors of both agree to first order. Differences that
+  // drown in rounding are left to the gradients.
+  kValues,
+};
+
 struct ScgOptions {
   int max_iterations = 100;        // attempted steps; the paper's value
   double gradient_tolerance = 0;   // stop when no gradient entry is larger; 0: run all iterations
   double objective_tolerance = 0;  // stop when a step gains less than this share of |objective|
   double sigma0 = 1e-4;            // length of the finite difference that probes the curvature
-  double initial_lambda = 1;       // scale of the trust region; adapted at every step
+  ScgCurvature curvature = ScgCurvature::kGradients;
+  double initial_lambda = 1;  // scale of the trust region; adapted at every step
   double min_lambda = 1e-15, max_lambda = 1e100;
 };
 
