@@ -83,7 +83,7 @@ class Counted : public Objective {
   int num_values_ = 0, num_gradients_ = 0;
 };
 
-// The errors of both curvatures agree to first order, so the runs stay together for a while.
+// The curvatures differ by the third derivative times the step: the runs stay together for a while.
 TEST(ScgTest, CurvatureFromValuesSavesGradientsAndFollowsTheSamePath) {
   Rosenbrock valley(8);
   Counted from_gradients(valley, 0), from_values(valley, 0);
@@ -91,12 +91,13 @@ TEST(ScgTest, CurvatureFromValuesSavesGradientsAndFollowsTheSamePath) {
   OptimizationSummary gradients, values;
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const Eigen::VectorXd moller,
-      MinimizeScg(from_gradients, start, {.max_iterations = 30}, &gradients));
+      MinimizeScg(from_gradients, start, {.max_iterations = 30, .sigma0 = 1e-5}, &gradients));
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const Eigen::VectorXd cheap,
-      MinimizeScg(from_values, start, {.max_iterations = 30, .curvature = ScgCurvature::kValues},
+      MinimizeScg(from_values, start,
+                  {.max_iterations = 30, .sigma0 = 1e-5, .curvature = ScgCurvature::kValues},
                   &values));
-  EXPECT_LT((moller - cheap).norm(), 1e-3 * moller.norm());
+  EXPECT_LT((moller - cheap).norm(), 1e-2 * moller.norm());
   EXPECT_NEAR(values.final_objective, gradients.final_objective, 1e-3 * gradients.final_objective);
   EXPECT_EQ(from_gradients.num_values(), 0);
   EXPECT_GT(from_values.num_values(), 20);

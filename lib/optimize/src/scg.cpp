@@ -11,9 +11,10 @@
 namespace pleat {
 namespace {
 
-// A second difference of values has to be this share of the value: 1e3 times the rounding of sums
-// of thousands of terms.
-constexpr double kSmallestSecondDifference = 1e-11;
+constexpr double kValueStep = 10;  // of a second difference of values, in those of gradients
+// Smallest share of the value that such a difference may be. Values of likelihoods with kernel
+// matrices at the edge of double precision are rounded at 1e-11 (measured), others at 1e-14.
+constexpr double kSmallestSecondDifference = 1e-10;
 
 // The state of one run; the names are Moller's.
 class ScaledConjugateGradients {
@@ -51,7 +52,7 @@ bool ScaledConjugateGradients::ProbeCurvature() {
   kappa_ = direction_.squaredNorm();
   if (kappa_ < std::numeric_limits<double>::epsilon()) return false;
   const double sigma = options_.sigma0 / std::sqrt(kappa_);
-  if (options_.curvature == ScgCurvature::kGradients || !CurvatureFromValues(1.5 * sigma)) {
+  if (options_.curvature == ScgCurvature::kGradients || !CurvatureFromValues(kValueStep * sigma)) {
     CurvatureFromGradients(sigma);
   }
   return true;

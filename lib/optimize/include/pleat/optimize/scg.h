@@ -16,8 +16,8 @@ namespace pleat {
 enum class ScgCurvature {
   kGradients,  // the difference of two gradients: Moller's way
   // The second difference of two values and a slope, where a value costs much less than a gradient.
-  // The step is half as long again: then the errors of both agree to first order. Differences that
-  // drown in rounding are left to the gradients.
+  // Rounding weighs with 1 / step^2 here, so the step is ten times as long. Differences that drown
+  // in rounding all the same are left to the gradients.
   kValues,
 };
 
