@@ -5,6 +5,7 @@
 #include <map>
 
 #include "dense.h"
+#include "pleat/base/cpu_target.h"
 
 namespace pleat {
 namespace {
@@ -155,8 +156,9 @@ __attribute__((target("avx2"))) void ComputeForAvx2(const RegionalFactors& f, co
                                                     double* scratch, float* factors) {
   RegionalFactorsKernels::Compute(f, row, scratch, factors);
 }
-__attribute__((target("avx512f,prefer-vector-width=512"))) void ComputeForAvx512(
-    const RegionalFactors& f, const double* row, double* scratch, float* factors) {
+PLEAT_TARGET_AVX512("avx512f")
+void ComputeForAvx512(const RegionalFactors& f, const double* row, double* scratch,
+                      float* factors) {
   RegionalFactorsKernels::Compute(f, row, scratch, factors);
 }
 #endif

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "pleat/base/cpu_target.h"
+
 namespace pleat {
 namespace {
 
@@ -85,9 +87,9 @@ __attribute__((target("avx2"))) void AddForAvx2(const Scalar* const* factors, co
 }
 
 template <int kVectors, typename Lanes, typename Scalar>
-__attribute__((target("avx512f,prefer-vector-width=512"))) void AddForAvx512(
-    const Scalar* const* factors, const Scalar* rows, ptrdiff_t num_rows, ptrdiff_t num_cols,
-    Scalar* const* sums) {
+PLEAT_TARGET_AVX512("avx512f")
+void AddForAvx512(const Scalar* const* factors, const Scalar* rows, ptrdiff_t num_rows,
+                  ptrdiff_t num_cols, Scalar* const* sums) {
   Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
 }
 #endif

@@ -5,6 +5,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+
+#include "pleat/base/cpu_target.h"
 #endif
 
 #define PLEAT_INLINE inline __attribute__((always_inline))
@@ -17,7 +19,6 @@ constexpr int kLanes = kSkinningLanes, kParameters = kMotionParameters;
 typedef float Four __attribute__((vector_size(16)));
 typedef float Sixteen __attribute__((vector_size(64)));
 typedef float UnalignedSixteen __attribute__((vector_size(64), aligned(4), may_alias));
-typedef int FourIndices __attribute__((vector_size(16)));
 
 // The fourth row of a bone's columns, its quaternion.
 constexpr bool IsQuaternion(int parameter) { return parameter % 4 == 3; }
@@ -33,17 +34,17 @@ PLEAT_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
         return *reinterpret_cast<const Four*>(&blended[lane + i][parameter]);
       };
       const Four a = row(0), b = row(1), c = row(2), d = row(3);
-      const Four ab_low = __builtin_shuffle(a, b, FourIndices{0, 4, 1, 5});
-      const Four ab_high = __builtin_shuffle(a, b, FourIndices{2, 6, 3, 7});
-      const Four cd_low = __builtin_shuffle(c, d, FourIndices{0, 4, 1, 5});
-      const Four cd_high = __builtin_shuffle(c, d, FourIndices{2, 6, 3, 7});
+      const Four ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+      const Four ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+      const Four cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+      const Four cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
       const auto column = [&](int i) -> Four& {
         return *reinterpret_cast<Four*>(&lanes[parameter + i][lane]);
       };
-      column(0) = __builtin_shuffle(ab_low, cd_low, FourIndices{0, 1, 4, 5});
-      column(1) = __builtin_shuffle(ab_low, cd_low, FourIndices{2, 3, 6, 7});
-      column(2) = __builtin_shuffle(ab_high, cd_high, FourIndices{0, 1, 4, 5});
-      column(3) = __builtin_shuffle(ab_high, cd_high, FourIndices{2, 3, 6, 7});
+      column(0) = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+      column(1) = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+      column(2) = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+      column(3) = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
     }
   }
 }
@@ -126,7 +127,7 @@ __attribute__((target("avx2"))) void SkinBlockForAvx2(const SkinBlockInputs& inp
 }
 
 // The same sums with all vertices side by side: the bones' numbers lie in registers.
-#define PLEAT_AVX512 __attribute__((target("avx512f,avx512bw,prefer-vector-width=512")))
+#define PLEAT_AVX512 PLEAT_TARGET_AVX512("avx512f,avx512bw")
 
 PLEAT_AVX512 PLEAT_INLINE void BlendByLookup(const SkinBlockInputs& inputs, bool with_axes,
                                              Sixteen* m) {
