@@ -166,6 +166,7 @@ class FieldWalk {
 
 absl::Status CodeFields(const SurfaceHierarchy& hierarchy, float step, BinaryCoder* coder,
                         FieldMatrix* fields) {
+  if (fields->cols() == 0) return absl::OkStatus();  // rigid motion
   if (!coder->decoding()) hierarchy.Analyze(fields);
   const absl::Status status = FieldWalk(hierarchy, step, coder, fields).Run();
   if (status.ok()) hierarchy.Synthesize(fields);
