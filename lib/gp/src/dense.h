@@ -21,6 +21,10 @@ inline DenseView ViewOf(const Eigen::MatrixXd& m, DenseShape shape = DenseShape:
 // The rows of a matrix as products read them.
 class PackedRows {
  public:
+  PackedRows() = default;
+  PackedRows(PackedRows&&) = default;  // no copies: data_ points into storage_
+  PackedRows& operator=(PackedRows&&) = default;
+
   // `view`: rows x cols.
   void Pack(const DenseOps& ops, const DenseView& view, ptrdiff_t rows, ptrdiff_t cols);
   // Some columns of it; columns.begin is a multiple of kDenseDepth.
@@ -68,7 +72,7 @@ class DenseSolver {
   void SymmetricMultiply(const Eigen::MatrixXd& m, const Eigen::MatrixXd& x, Eigen::MatrixXd& y);
 
   // tr(K^-1 G) of G = F F^T (F: N x r, lower triangular with `f_lower`) from W = L^-1. Keeps W F
-  // for Gradient and Solution.
+  // for Gradient.
   double Whiten(const Eigen::MatrixXd& w, const Eigen::MatrixXd& f, bool f_lower);
   // After Whiten: a (lower) = D K^-1 - K^-1 G K^-1, twice the gradient in K of
   // D/2 log|K| + 1/2 tr(K^-1 G). `solution` = K^-1 F (N x r), unless F is lower triangular.

@@ -5,7 +5,7 @@
 
 namespace pleat {
 
-// What is known of a matrix. Entries that follow from the rest are neither read nor computed with.
+// What is known of a matrix. Entries that follow from the rest are not used.
 enum class DenseShape {
   kFull,
   kLower,      // zero above the diagonal
@@ -101,7 +101,7 @@ struct DenseOps {
                  double c, double* k);
 
   // `gradient` (lower) is replaced by A = half_weight gradient; P (lower) = A o K0 and may take its
-  // place. K0 is computed again: faster than to read it from memory.
+  // place. K0 is computed again, which costs no more than to store and read it.
   GramSums (*gram_gradient)(double* gradient, const double* r, const double* t, ptrdiff_t n,
                             double g, double a, double half_weight, double* p);
 };
