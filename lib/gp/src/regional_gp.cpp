@@ -18,6 +18,8 @@ absl::Status Refuse(const std::string& what) {
   return absl::InvalidArgumentError("regional GP parameters: " + what);
 }
 
+using RowMajorMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false for not a number
 
 absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index num_inputs) {
@@ -69,10 +71,11 @@ RegionalGp::RegionalGp(RegionalGpParameters parameters)
     : parameters_(std::move(parameters)),
       factors_(std::make_shared<const RegionalFactors>(parameters_)) {
   const Eigen::Index n = parameters_.inputs.rows();
-  alphas_.resize(n * static_cast<Eigen::Index>(parameters_.regions.size()), num_outputs());
-  for (size_t r = 0; r < parameters_.regions.size(); ++r) {
-    RegionalGpParameters::Region& region = parameters_.regions[r];
-    alphas_.middleRows(n * static_cast<Eigen::Index>(r), n) = region.alpha;
+  alphas_.resize(static_cast<size_t>(n) * num_outputs() * parameters_.regions.size());
+  float* alpha = alphas_.data();
+  for (RegionalGpParameters::Region& region : parameters_.regions) {
+    Eigen::Map<RowMajorMatrix>(alpha, n, num_outputs()) = region.alpha;
+    alpha += n * num_outputs();
     region.alpha.resize(0, 0);
   }
 }
@@ -80,15 +83,17 @@ RegionalGp::RegionalGp(RegionalGpParameters parameters)
 RegionalGpParameters RegionalGp::parameters() const {
   RegionalGpParameters p = parameters_;
   const Eigen::Index n = p.inputs.rows();
-  for (size_t r = 0; r < p.regions.size(); ++r) {
-    p.regions[r].alpha = alphas_.middleRows(n * static_cast<Eigen::Index>(r), n);
+  const float* alpha = alphas_.data();
+  for (RegionalGpParameters::Region& region : p.regions) {
+    region.alpha = Eigen::Map<const RowMajorMatrix>(alpha, n, num_outputs());
+    alpha += n * num_outputs();
   }
   return p;
 }
 
 size_t RegionalGp::memory_bytes() const {
   return static_cast<size_t>(parameters_.inputs.size()) * sizeof(double) +
-         factors_->memory_bytes() + static_cast<size_t>(alphas_.size()) * sizeof(float);
+         factors_->memory_bytes() + alphas_.size() * sizeof(float);
 }
 
 void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
@@ -103,7 +108,7 @@ void RegionalGp::SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace*
   assert(row.size() == num_inputs());
   workspace->row = (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales);
   workspace->scratch.resize(static_cast<Eigen::Index>(factors_->scratch_size()));
-  workspace->factors.resize(alphas_.rows());
+  workspace->factors.resize(num_factors());
   factors_->Compute(workspace->row.data(), workspace->scratch.data(), workspace->factors.data());
 }
 
@@ -120,7 +125,7 @@ void RegionalGp::PredictRows(std::span<Workspace* const> workspaces,
       factors[q] = w.factors.data();
       sums[q] = w.sum.data();
     }
-    AddWeightedRows({factors.data(), count}, alphas_.data(), alphas_.rows(), alphas_.cols(),
+    AddWeightedRows({factors.data(), count}, alphas_.data(), num_factors(), num_outputs(),
                     {sums.data(), count});
     for (size_t q = 0; q < count; ++q) {
       Eigen::Map<Eigen::VectorXd>(means[begin + q], num_outputs()) =

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/base/large_page_allocator.h"
 
 namespace pleat {
 
@@ -85,7 +86,7 @@ class DetailBasis {
   std::vector<float> scales_;    // P
   std::vector<float> mean_;      // by blocks
   // By blocks, in a block by pairs of planes, in a pair row by row.
-  std::vector<int8_t> values_;
+  std::vector<int8_t, LargePageAllocator<int8_t>> values_;
 };
 
 }  // namespace pleat

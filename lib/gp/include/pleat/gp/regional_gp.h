@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/base/large_page_allocator.h"
 #include "pleat/base/progress.h"
 
 namespace pleat {
@@ -98,10 +99,14 @@ class RegionalGp {
 
  private:
   explicit RegionalGp(RegionalGpParameters parameters);
+  Eigen::Index num_factors() const {  // R N
+    return parameters_.inputs.rows() * static_cast<Eigen::Index>(parameters_.regions.size());
+  }
 
   RegionalGpParameters parameters_;  // without the alphas
-  // R N x r: the alphas of all regions, so that a query reads them once from front to back.
-  Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> alphas_;
+  // R N x r, row by row: the alphas of all regions, so that a query reads them once from front to
+  // back.
+  std::vector<float, LargePageAllocator<float>> alphas_;
   std::shared_ptr<const RegionalFactors> factors_;  // the kernels
 };
 
