@@ -59,6 +59,31 @@ BENCHMARK_CAPTURE(EvaluatePose, gp, "gp")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(EvaluatePose, sgplvm, "sgplvm")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(EvaluatePose, regional, "regional")->Unit(benchmark::kMicrosecond);
 
+// The same after something else has used the caches, as in a live session between two frames.
+void EvaluateColdPose(benchmark::State& state, const std::string& learner) {
+  constexpr size_t kOthersBytes = 64 << 20, kCacheLineBytes = 64;
+  const std::shared_ptr<const CharacterModel> model = BenchCharacter(learner);
+  const PoseTrack track = FitMotion(*model, BenchPerformer().sequence).value();
+  PoseEvaluator evaluator(model);
+  EvaluatedFrame frame;
+  std::vector<char> others(kOthersBytes);
+  int t = 1;
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (size_t i = 0; i < kOthersBytes; i += kCacheLineBytes) ++others[i];
+    benchmark::DoNotOptimize(others.data());
+    state.ResumeTiming();
+    const absl::Status status =
+        evaluator.Evaluate({&track.poses[t], &track.poses[t - 1]}, {}, &frame);
+    if (!status.ok()) state.SkipWithError(status.ToString().c_str());
+    t = t + 1 < track.num_frames() ? t + 1 : 1;
+  }
+}
+BENCHMARK_CAPTURE(EvaluateColdPose, gp, "gp")->Unit(benchmark::kMicrosecond)->Iterations(300);
+BENCHMARK_CAPTURE(EvaluateColdPose, regional, "regional")
+    ->Unit(benchmark::kMicrosecond)
+    ->Iterations(300);
+
 // Sixteen queries together; the time is that of one.
 void EvaluateBatch(benchmark::State& state, const std::string& learner) {
   constexpr int kBatch = 16;
