@@ -88,6 +88,7 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
   const int num_features = num_values * options.history;
   stage.kernel_options.linear = true;
   stage.input_mean = Eigen::VectorXd::Zero(num_features);
+  stage.input_scales = Eigen::VectorXd::Ones(num_features);
   stage.inputs = matrix(kRows, num_features);
   stage.output_mean = matrix(kComponents, 1).col(0);
   stage.alpha = matrix(kRows, kComponents);
