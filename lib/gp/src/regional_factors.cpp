@@ -10,7 +10,7 @@
 namespace pleat {
 namespace {
 
-// Sets of columns that differ, in the order of their first scale; `set_of_scale` in that order.
+// Sets of columns that differ, numbered in the order of their first scale.
 std::map<std::vector<int>, int> DifferentSets(const RegionalGpParameters& parameters) {
   std::map<std::vector<int>, int> sets;
   for (const RegionalGpParameters::Region& region : parameters.regions) {

@@ -72,10 +72,13 @@ absl::StatusOr<Eigen::VectorXd> Minimize(SharedGplvmObjective& objective,
                                          const SharedGplvmOptions& options,
                                          OptimizationSummary* summary, const Progress& progress) {
   if (options.optimizer == Optimizer::kScg) {
-    return MinimizeScg(
-        objective, start,
-        {.max_iterations = options.max_iterations, .curvature = ScgCurvature::kValues}, summary,
-        progress);
+    // Kernels of back-constrained points are at the edge of double precision, where values round
+    // too much for a second difference.
+    const ScgCurvature curvature =
+        options.back_constraints ? ScgCurvature::kGradients : ScgCurvature::kValues;
+    return MinimizeScg(objective, start,
+                       {.max_iterations = options.max_iterations, .curvature = curvature}, summary,
+                       progress);
   }
   // As many evaluations as SCG would use.
   return MinimizeLbfgs(

@@ -60,8 +60,9 @@ template <int kVectors, typename Lanes, typename Scalar>
 inline __attribute__((always_inline)) void Add(const Scalar* const* factors, const Scalar* rows,
                                                ptrdiff_t num_rows, ptrdiff_t num_cols,
                                                Scalar* const* sums) {
-  ptrdiff_t begin = AddColumns < kVectors, kVectors == 1 ? 8 : 4,
-            Lanes > (factors, rows, num_rows, num_cols, 0, sums);
+  constexpr int kRegisters = kVectors == 1 ? 8 : 4;
+  ptrdiff_t begin =
+      AddColumns<kVectors, kRegisters, Lanes>(factors, rows, num_rows, num_cols, 0, sums);
   begin = AddColumns<kVectors, 1, Lanes>(factors, rows, num_rows, num_cols, begin, sums);
   for (int q = 0; q < kVectors; ++q) {
     for (ptrdiff_t n = 0; n < num_rows; ++n) {
