@@ -11,6 +11,7 @@
 #include "free_numbers.h"
 #include "integer_model.h"
 #include "number_difference.h"
+#include "open_edges.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -40,8 +41,7 @@ class ConnectivityWalk {
         num_corners_(num_corners),
         known_(known),
         coder_(coder),
-        out_(num_vertices),
-        in_(num_vertices),
+        open_edges_(num_vertices, num_corners),
         valence_(num_vertices, 0),
         seen_(num_vertices, false),
         face_sum_(num_vertices, 0),
@@ -59,18 +59,15 @@ class ConnectivityWalk {
   }
 
   absl::Status Run() {
-    const uint64_t max_looked_at = MaxEdgesLookedAt(num_corners_);
     while (num_done_ < num_faces_) {
-      if (known_ == nullptr && num_looked_at_ > max_looked_at) {
-        return absl::ResourceExhaustedError("too many open edges meet at one vertex");
-      }
+      if (known_ == nullptr) PLEAT_RETURN_IF_ERROR(open_edges_.CheckEffort());
       if (gates_.empty()) {
         PLEAT_RETURN_IF_ERROR(CodeSeed());
         continue;
       }
       const Gate gate = gates_.front();
       gates_.pop_front();
-      if (!IsOpen(gate)) continue;
+      if (!open_edges_.Contains(gate.from, gate.to)) continue;
       PLEAT_RETURN_IF_ERROR(CodeBehind(gate));
     }
     return absl::OkStatus();
@@ -81,12 +78,6 @@ class ConnectivityWalk {
 
  private:
   absl::Status Damaged() const { return absl::DataLossError("the connectivity is damaged"); }
-
-  bool IsOpen(const Gate& gate) {
-    const auto& heads = out_[gate.from];
-    num_looked_at_ += heads.size();
-    return std::find(heads.begin(), heads.end(), gate.to) != heads.end();
-  }
 
   // Encoder: a face that has the directed edge and is not coded yet, or -1.
   int FindFace(const Gate& gate) const {
@@ -129,7 +120,7 @@ class ConnectivityWalk {
     last_border_ = present;
     if (present > 1) return Damaged();
     if (present == 1) {  // a border of the surface
-      RemoveOpen(gate.from, gate.to);
+      open_edges_.Remove(gate.from, gate.to);
       return absl::OkStatus();
     }
     std::vector<int32_t> corners;
@@ -152,11 +143,15 @@ class ConnectivityWalk {
     return CodeNumber(gate.face, face, rotation, std::move(corners));
   }
 
+  static int Newest(const std::vector<int32_t>& vertices) {
+    return vertices.empty() ? -1 : vertices.back();
+  }
+
   // The corner that follows `before`; `after`: the corner behind it where that is known, or -1.
   absl::Status CodeCorner(int before, int after, int opposite, int32_t* vertex) {
     const bool any = num_done_ > 0;
-    const int next = any && !out_[before].empty() ? out_[before].back() : -1;
-    const int previous = any && after >= 0 && !in_[after].empty() ? in_[after].back() : -1;
+    const int next = any ? Newest(open_edges_.EndsFrom(before)) : -1;
+    const int previous = any && after >= 0 ? Newest(open_edges_.StartsTo(after)) : -1;
     int kind = kOtherVertex;
     if (known_ != nullptr) {
       kind = !seen_[*vertex]       ? kNewVertex
@@ -181,7 +176,7 @@ class ConnectivityWalk {
     if (kind == kOtherVertex) {
       const int delta = others_.CodeSigned(coder_, *vertex - before, {0}, 0);
       const int64_t value = int64_t{before} + delta;
-      if (value < 0 || value >= static_cast<int64_t>(out_.size()) || !seen_[value]) {
+      if (value < 0 || value >= static_cast<int64_t>(seen_.size()) || !seen_[value]) {
         return Damaged();
       }
       *vertex = static_cast<int32_t>(value);
@@ -238,9 +233,8 @@ class ConnectivityWalk {
     const size_t size = corners.size();
     for (size_t i = 0; i < size; ++i) {
       const int from = corners[i], to = corners[(i + 1) % size];
-      if (!RemoveOpen(from, to)) {
-        out_[to].push_back(from);
-        in_[from].push_back(to);
+      if (!open_edges_.Remove(from, to)) {
+        open_edges_.Add(to, from);
         gates_.push_back({to, from, corners[(i + 2) % size], face});
       }
       ++valence_[from];
@@ -252,17 +246,6 @@ class ConnectivityWalk {
     std::rotate(corners.begin(), corners.begin() + first, corners.end());
     faces_[face] = std::move(corners);
     return absl::OkStatus();
-  }
-
-  bool RemoveOpen(int from, int to) {
-    auto& heads = out_[from];
-    num_looked_at_ += heads.size();
-    const auto head = std::find(heads.begin(), heads.end(), to);
-    if (head == heads.end()) return false;
-    heads.erase(head);
-    auto& tails = in_[to];
-    tails.erase(std::find(tails.begin(), tails.end(), from));
-    return true;
   }
 
   // The rank of a free number: one of the neighbours of `near`, or a signed difference to `base`.
@@ -289,8 +272,8 @@ class ConnectivityWalk {
   const Topology* known_;
   BinaryCoder* coder_;
   std::unordered_multimap<uint64_t, int> edge_faces_;  // encoder
-  std::vector<std::vector<int32_t>> out_, in_;         // ends of the open edges of every vertex
-  std::vector<int32_t> valence_;                       // faces so far
+  OpenEdges open_edges_;
+  std::vector<int32_t> valence_;  // faces so far
   std::vector<bool> seen_;
   std::vector<int64_t> face_sum_;  // of the numbers of those faces
   FreeNumbers free_vertices_, free_faces_;
@@ -298,7 +281,6 @@ class ConnectivityWalk {
   std::vector<bool> done_;
   std::deque<Gate> gates_;
   std::vector<FaceVisit> visits_;
-  uint64_t num_looked_at_ = 0;  // open edges
   int num_done_ = 0, last_vertex_ = 0, last_border_ = 0, last_first_ = 0, history_ = 0;
 
   IntegerModel<1> sizes_{{1}, 1}, others_{{1}, 1};

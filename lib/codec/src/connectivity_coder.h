@@ -4,7 +4,6 @@
 // accepted.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -12,12 +11,6 @@
 #include "pleat/mesh/topology.h"
 
 namespace pleat {
-
-// How many open edges a decoder of faces may look through: all that real meshes need, and about a
-// second for bytes that let one vertex have them all.
-inline uint64_t MaxEdgesLookedAt(int num_corners) {
-  return (uint64_t{1} << 28) + 64 * static_cast<uint64_t>(num_corners);
-}
 
 // A face and which of its corners is visited first.
 struct FaceVisit {

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "connectivity_coder.h"
 #include "free_numbers.h"
 #include "integer_model.h"
 #include "number_difference.h"
+#include "open_edges.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -42,19 +42,14 @@ class FaceListCoder {
         num_corners_(num_corners),
         known_(known),
         coder_(coder),
-        out_(num_vertices),
-        in_(num_vertices),
-        open_(num_vertices, 0),
+        edges_(num_vertices, num_corners),
         seen_(num_vertices, false),
         unused_(num_vertices),
         closed_(num_vertices) {}
 
   absl::Status Run() {
-    const uint64_t max_looked_at = MaxEdgesLookedAt(num_corners_);
     for (int f = 0; f < num_faces_; ++f) {
-      if (known_ == nullptr && num_looked_at_ > max_looked_at) {
-        return absl::ResourceExhaustedError("too many open edges meet at one vertex");
-      }
+      if (known_ == nullptr) PLEAT_RETURN_IF_ERROR(edges_.CheckEffort());
       std::vector<int32_t> face;
       if (known_ != nullptr) face.assign(known_->face(f).begin(), known_->face(f).end());
       const int size = sizes_.CodeUnsigned(coder_, static_cast<int>(face.size()) - 3, {0}, 0) + 3;
@@ -86,10 +81,10 @@ class FaceListCoder {
       candidates[kind] = vertex;
     };
     if (place > 0) {
-      const std::vector<int32_t>& ends = out_[face[place - 1]];
+      const std::vector<int32_t>& ends = edges_.EndsFrom(face[place - 1]);
       const bool is_last = place + 1 == static_cast<int>(face.size());
       const std::vector<int32_t> none;
-      const std::vector<int32_t>& starts = is_last ? in_[face[0]] : none;
+      const std::vector<int32_t>& starts = is_last ? edges_.StartsTo(face[0]) : none;
       for (int i = 0; i < Newest(ends) && candidates[kBetween] < 0; ++i) {
         const auto newest = starts.end() - Newest(starts);
         const int32_t end = ends[ends.size() - 1 - i];
@@ -152,7 +147,7 @@ class FaceListCoder {
     const int near = place > 0 ? face[place - 1] : previous_.empty() ? 0 : previous_[0];
     const int context = std::min(place, 3);
     const int is_open =
-        has_edges_.CodeUnsigned(coder_, known_ != nullptr && open_[*vertex] > 0, {context}, 0);
+        has_edges_.CodeUnsigned(coder_, known_ != nullptr && HasEdges(*vertex), {context}, 0);
     if (is_open > 1) return Damaged();
     if (is_open == 1) {
       const int base = OpenRank(near);
@@ -176,21 +171,11 @@ class FaceListCoder {
     const size_t size = face.size();
     for (size_t i = 0; i < size; ++i) {
       const int from = face[i], to = face[(i + 1) % size];
-      auto& ends = out_[from];
-      num_looked_at_ += ends.size();
-      const auto end = std::find(ends.begin(), ends.end(), to);
-      if (end == ends.end()) {  // the face on the other side will need the edge
-        out_[to].push_back(from);
-        in_[from].push_back(to);
-        Open(from, 1);
-        Open(to, 1);
-      } else {
-        ends.erase(end);
-        auto& starts = in_[to];
-        starts.erase(std::find(starts.begin(), starts.end(), from));
-        Open(from, -1);
-        Open(to, -1);
-      }
+      const bool from_was_open = HasEdges(from), to_was_open = HasEdges(to);
+      // Else the face on the other side will need the edge.
+      if (!edges_.Remove(from, to)) edges_.Add(to, from);
+      NoteEdges(from, from_was_open);
+      if (to != from) NoteEdges(to, to_was_open);
     }
     corners_.insert(corners_.end(), face.begin(), face.end());
     face_sizes_.push_back(static_cast<int32_t>(size));
@@ -198,26 +183,29 @@ class FaceListCoder {
     shapes_ = {shape, shapes_[0]};
   }
 
-  // Adds to the number of open edges at `vertex`.
-  void Open(int vertex, int change) {
-    const bool was_open = open_[vertex] > 0;
-    open_[vertex] += change;
-    if (!was_open && open_[vertex] > 0) closed_.Take(vertex);
-    if (was_open && open_[vertex] == 0) closed_.Return(vertex);
+  bool HasEdges(int vertex) const {
+    return !edges_.EndsFrom(vertex).empty() || !edges_.StartsTo(vertex).empty();
+  }
+  // After a change of the edges at `vertex`.
+  void NoteEdges(int vertex, bool was_open) {
+    if (HasEdges(vertex) == was_open) return;
+    if (was_open) {
+      closed_.Return(vertex);
+    } else {
+      closed_.Take(vertex);
+    }
   }
 
   const int num_faces_;
   int num_corners_;
   const Topology* known_;
   BinaryCoder* coder_;
-  std::vector<std::vector<int32_t>> out_, in_;  // ends of the open edges of every vertex
-  std::vector<int32_t> open_;                   // how many edges those are
+  OpenEdges edges_;
   std::vector<bool> seen_;
   FreeNumbers unused_, closed_;  // vertices without a face; without open edges
   std::vector<int32_t> corners_, face_sizes_, previous_;
   std::array<uint32_t, 2> shapes_{};  // of the last two faces
   int last_new_ = -1;
-  uint64_t num_looked_at_ = 0;  // open edges
 
   IntegerModel<1> sizes_{{1}, 1}, has_edges_{{4}, 1};
   IntegerModel<3> kinds_{{kNumHashes, kNumHashes, kNumHashes}, 4};
