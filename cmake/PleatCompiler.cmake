@@ -5,7 +5,9 @@ endif()
 
 find_program(PLEAT_CCACHE ccache)
 if(PLEAT_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${PLEAT_CCACHE})
+  # With precompiled headers ccache must be told that what they define is known to it.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+      ${PLEAT_CCACHE})
 endif()
 
 # -ffp-contract=off and no -ffast-math: the same bytes in must give the same model bytes out on
@@ -13,6 +15,9 @@ endif()
 add_compile_options(-Wall -Wextra -Werror -Wno-psabi -ffp-contract=off)
 string(REPLACE "-O2" "-O3" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
+
+# Tests spend their time in the library: optimising their own code costs more than it gives.
+set(PLEAT_TEST_OPTIONS -O1)
 
 if(PLEAT_SANITIZE)
   add_compile_options(-fsanitize=${PLEAT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

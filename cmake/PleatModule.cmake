@@ -6,11 +6,13 @@
 # DEPENDS are modules whose headers the module's own public headers or sources may include; the
 # call fails when one of them has not been declared before it, so the declaration order in
 # lib/CMakeLists.txt is the only include order and cycles cannot exist.
-# PRIVATE_PACKAGES stay out of the include path of dependants (Draco, protobuf, ...).
+# PRIVATE_PACKAGES stay out of the include path of dependants (Draco, protobuf, ...). PRECOMPILED names
+# the layer whose precompiled headers it uses (PleatPrecompiled.cmake); a module that depends on math
+# uses those of math.
 set_property(GLOBAL PROPERTY PLEAT_MODULES "")
 
 function(pleat_add_module name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PACKAGES;PRIVATE_PACKAGES" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "DEPENDS;PACKAGES;PRIVATE_PACKAGES" ${ARGN})
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "pleat_add_module(${name}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
   endif()
@@ -35,6 +37,11 @@ function(pleat_add_module name)
   list(TRANSFORM ARG_DEPENDS PREPEND pleat_)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} ${ARG_PACKAGES}
                         PRIVATE ${ARG_PRIVATE_PACKAGES})
+  if(ARG_PRECOMPILED)
+    pleat_use_precompiled(${target} ${ARG_PRECOMPILED})
+  elseif("pleat_math" IN_LIST ARG_DEPENDS)
+    pleat_use_precompiled(${target} math)
+  endif()
   set_property(GLOBAL APPEND PROPERTY PLEAT_MODULES ${name})
 endfunction()
 
@@ -42,12 +49,12 @@ endfunction()
 # into gp_test and registers every case with CTest. LIBRARIES adds what the tests use beyond the
 # module itself and tests/support.
 function(pleat_add_tests name)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "LIBRARIES" ${ARGN})
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
   if(IS_DIRECTORY ${folder}/${name})
     string(APPEND folder /${name})
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp ${folder}/*/*_test.cpp)
   if(NOT sources)
     message(FATAL_ERROR "${folder} has no *_test.cpp")
   endif()
@@ -58,6 +65,12 @@ function(pleat_add_tests name)
   endif()
   target_link_libraries(${name}_test PRIVATE ${module} ${ARG_LIBRARIES} pleat_test_support
                         GTest::gmock_main)
+  target_compile_options(${name}_test PRIVATE ${PLEAT_TEST_OPTIONS})
+  if(ARG_PRECOMPILED)
+    pleat_use_precompiled(${name}_test ${ARG_PRECOMPILED})
+  else()
+    pleat_use_precompiled(${name}_test test)
+  endif()
   gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600 LABELS ${name})
 endfunction()

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "pleat/handlers/grpc_server.h"
+#include "pleat/grpc/grpc_server.h"
+#include "pleat/local/local_character_service.h"
 #include "pleat/observe/logging.h"
-#include "pleat/service/local_character_service.h"
 
 namespace pleat {
 

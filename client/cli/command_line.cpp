@@ -5,7 +5,7 @@
 #include <new>
 
 #include "CLI/CLI.hpp"
-#include "cli/verbs.h"
+#include "cli/verbs/verbs.h"
 
 namespace pleat {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/interrupt.h"
-#include "cli/progress_display.h"
 #include "cli/service.h"
+#include "cli/show/progress_display.h"
 #include "pleat/base/status.h"
 
 namespace pleat {

@@ -2,11 +2,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
-#include "cli/progress_display.h"
+#include "cli/show/progress_display.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
-#include "pleat/client/remote_character_service.h"
-#include "pleat/service/local_character_service.h"
+#include "pleat/local/local_character_service.h"
+#include "pleat/remote/remote_character_service.h"
 
 namespace pleat {
 

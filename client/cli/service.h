@@ -8,7 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "cli/session.h"
-#include "pleat/character/character_service.h"
+#include "pleat/service/character_service.h"
 
 namespace pleat {
 

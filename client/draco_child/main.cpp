@@ -13,8 +13,8 @@
 #include <new>
 #include <string>
 
-#include "cli/draco_process_protocol.h"
-#include "pleat/codec/draco_file.h"
+#include "cli/io/draco_process_protocol.h"
+#include "pleat/stream/draco_file.h"
 
 namespace pleat {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "pleat/codec/frame_decoder.h"
-#include "pleat/codec/frame_encoder.h"
 #include "pleat/formats/sequence_reader.h"
 #include "pleat/performer/performer.h"
+#include "pleat/stream/frame_decoder.h"
+#include "pleat/stream/frame_encoder.h"
 #include "support/shared_data.h"
 
 namespace pleat {

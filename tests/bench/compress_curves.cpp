@@ -10,10 +10,10 @@
 
 #include "bench/pca_draco.h"
 #include "pleat/base/file.h"
-#include "pleat/codec/compress_sequence.h"
-#include "pleat/codec/sequence_decoder.h"
 #include "pleat/formats/sequence_reader.h"
 #include "pleat/render/line_plot.h"
+#include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/sequence_codec/sequence_decoder.h"
 
 namespace pleat {
 namespace {

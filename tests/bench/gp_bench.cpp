@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pleat/base/random.h"
-#include "pleat/gp/detail_model.h"
 #include "pleat/gp/shared_gplvm.h"
+#include "pleat/learner/detail_model.h"
 
 namespace pleat {
 namespace {

@@ -3,10 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include "pleat/character/train_character.h"
-#include "pleat/client/remote_character_service.h"
-#include "pleat/handlers/grpc_server.h"
+#include "pleat/grpc/grpc_server.h"
+#include "pleat/local/local_character_service.h"
 #include "pleat/performer/performer.h"
-#include "pleat/service/local_character_service.h"
+#include "pleat/remote/remote_character_service.h"
 #include "support/temporary_folder.h"
 
 namespace pleat {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run_pleat.h"
+#include "client/run_pleat.h"
 
 namespace pleat {
 namespace {

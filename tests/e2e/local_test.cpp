@@ -6,8 +6,8 @@
 #include "e2e/pleat_program.h"
 #include "e2e/report_checks.h"
 #include "e2e/sequence_difference.h"
-#include "pleat/codec/frame_decoder.h"
 #include "pleat/formats/sequence_reader.h"
+#include "pleat/stream/frame_decoder.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

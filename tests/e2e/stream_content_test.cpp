@@ -10,8 +10,8 @@
 #include "e2e/report_checks.h"
 #include "e2e/sequence_difference.h"
 #include "e2e/server_program.h"
-#include "pleat/codec/draco_file.h"
 #include "pleat/formats/sequence_reader.h"
+#include "pleat/stream/draco_file.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string>
 
-#include "codec/compressed_clip.h"
-#include "pleat/codec/sequence_decoder.h"
+#include "pleat/sequence_codec/sequence_decoder.h"
+#include "sequence_codec/compressed_clip.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   // With the right checksums, so that the fuzzer gets behind them.

@@ -6,7 +6,7 @@
 #include <new>
 #include <string_view>
 
-#include "pleat/codec/draco_file.h"
+#include "pleat/stream/draco_file.h"
 
 namespace {
 constexpr size_t kMaxAllocationBytes = size_t{64} << 20;

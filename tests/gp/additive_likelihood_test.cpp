@@ -1,4 +1,4 @@
-#include "additive_likelihood.h"
+#include "pleat/gp/additive_likelihood.h"
 
 #include <gtest/gtest.h>
 

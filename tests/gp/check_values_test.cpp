@@ -1,8 +1,8 @@
 // The training of the paper's learner against the check values of method.md section 7.
 #include <gtest/gtest.h>
 
-#include "gplvm_data.h"
 #include "pleat/gp/shared_gplvm.h"
+#include "support/gplvm_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "allocation_counter.h"
-#include "random_data.h"
+#include "support/allocation_counter.h"
+#include "support/random_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "pleat/optimize/objective.h"
-#include "random_data.h"
+#include "support/random_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

@@ -1,11 +1,11 @@
-#include "inducing.h"
+#include "pleat/gp/inducing.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "random_data.h"
+#include "support/random_data.h"
 
 namespace pleat {
 namespace {

@@ -1,10 +1,10 @@
-#include "marginal_likelihood.h"
+#include "pleat/gp/marginal_likelihood.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "random_data.h"
+#include "support/random_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

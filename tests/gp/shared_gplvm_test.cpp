@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "pleat/optimize/objective.h"
-#include "random_data.h"
+#include "support/random_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

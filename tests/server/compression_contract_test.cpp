@@ -6,9 +6,9 @@
 
 #include "pleat/base/random.h"
 #include "pleat/base/sha256.h"
-#include "pleat/codec/compress_sequence.h"
-#include "pleat/codec/sequence_decoder.h"
 #include "pleat/formats/sequence_file.h"
+#include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/sequence_codec/sequence_decoder.h"
 #include "server/running_service.h"
 #include "server/watch_to_end.h"
 #include "support/status_matchers.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "pleat/base/random.h"
-#include "pleat/codec/compress_sequence.h"
+#include "pleat/sequence_codec/compress_sequence.h"
 #include "pleat/v1/compressed_sequence_service.grpc.pb.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/model_service.grpc.pb.h"

@@ -1,6 +1,6 @@
 // Live sessions over a real socket: credits, the latest pose, rejections, slow readers,
 // reconnection and shutdown.
-#include "pleat/client/live_session.h"
+#include "pleat/remote/live_session.h"
 
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "pleat/client/remote_character_service.h"
-#include "server/fake_training.h"
+#include "pleat/remote/remote_character_service.h"
+#include "support/fake_training.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 

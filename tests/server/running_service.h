@@ -8,10 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "pleat/client/remote_character_service.h"
-#include "pleat/handlers/grpc_server.h"
-#include "pleat/service/local_character_service.h"
-#include "server/fake_training.h"
+#include "pleat/grpc/grpc_server.h"
+#include "pleat/local/local_character_service.h"
+#include "pleat/remote/remote_character_service.h"
+#include "support/fake_training.h"
 #include "support/temporary_folder.h"
 
 namespace pleat {

@@ -1,8 +1,8 @@
 // Streams of parameters and of the control mesh, over a real socket.
 #include <gtest/gtest.h>
 
-#include "pleat/codec/frame_decoder.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/stream/frame_decoder.h"
 #include "pleat/wire/stream_messages.h"
 #include "server/running_service.h"
 #include "support/status_matchers.h"

@@ -4,12 +4,12 @@
 
 #include "pleat/base/sha256.h"
 #include "pleat/character/train_with_rig.h"
-#include "pleat/client/remote_character_service.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/rig_file.h"
 #include "pleat/formats/sequence_file.h"
-#include "pleat/handlers/grpc_server.h"
+#include "pleat/grpc/grpc_server.h"
 #include "pleat/performer/performer.h"
+#include "pleat/remote/remote_character_service.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "pleat/character/character_service.h"
+#include "pleat/service/character_service.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

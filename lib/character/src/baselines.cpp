@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "pleat/base/status.h"
-#include "pleat/gp/nearest.h"
-#include "pleat/gp/ridge.h"
+#include "pleat/learner/nearest.h"
+#include "pleat/learner/ridge.h"
 
 namespace pleat {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pleat/character/train_options.h"
-#include "pleat/gp/detail_model.h"
+#include "pleat/learner/detail_model.h"
 #include "pleat/skinning/rig.h"
 
 namespace pleat {

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
-#include "pleat/gp/detail_model.h"
+#include "pleat/learner/detail_model.h"
 #include "training_steps.h"
 
 namespace pleat {

@@ -9,7 +9,7 @@
 #include "option_values.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/details.h"
-#include "pleat/gp/detail_model.h"
+#include "pleat/learner/detail_model.h"
 #include "pleat/skeleton/pose_history.h"
 #include "pleat/skinning/frame_skinning.h"
 

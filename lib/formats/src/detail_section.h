@@ -3,7 +3,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/base/bytes.h"
-#include "pleat/gp/detail_model.h"
+#include "pleat/learner/detail_model.h"
 
 namespace pleat {
 

@@ -1,4 +1,4 @@
-#include "additive_likelihood.h"
+#include "pleat/gp/additive_likelihood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pleat/gp/kernel.h"
-#include "scaling.h"
+#include "pleat/gp/scaling.h"
 
 namespace pleat {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "dense.h"
-#include "dense_ops.h"
-#include "weighted_rows.h"
+#include "pleat/simd/dense.h"
+#include "pleat/simd/dense_ops.h"
+#include "pleat/simd/weighted_rows.h"
 
 namespace pleat {
 namespace {

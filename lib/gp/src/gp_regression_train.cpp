@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "dense.h"
-#include "inducing.h"
-#include "marginal_likelihood.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/gp_regression.h"
 #include "pleat/gp/gram_term.h"
+#include "pleat/gp/inducing.h"
+#include "pleat/gp/marginal_likelihood.h"
+#include "pleat/gp/scaling.h"
 #include "pleat/optimize/lbfgs.h"
-#include "scaling.h"
+#include "pleat/simd/dense.h"
 
 namespace pleat {
 namespace {

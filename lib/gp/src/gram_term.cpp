@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
-#include "dense.h"
+#include "pleat/simd/dense.h"
 
 namespace pleat {
 namespace {

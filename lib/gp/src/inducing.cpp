@@ -1,4 +1,4 @@
-#include "inducing.h"
+#include "pleat/gp/inducing.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

@@ -1,4 +1,4 @@
-#include "marginal_likelihood.h"
+#include "pleat/gp/marginal_likelihood.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scaling.h"
+#include "pleat/gp/scaling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "dense.h"
 #include "pleat/base/status.h"
+#include "pleat/gp/scaling.h"
 #include "pleat/math/pca.h"
 #include "pleat/optimize/lbfgs.h"
 #include "pleat/optimize/scg.h"
-#include "scaling.h"
+#include "pleat/simd/dense.h"
 
 namespace pleat {
 namespace {

@@ -157,7 +157,7 @@ std::vector<std::string> DescribeFaults(const MeshReport& report) {
   add(report.num_duplicate_vertices, "vertices at the exact place of another");
   add(report.num_degenerate_faces, "faces without area");
   if (report.closed() && report.signed_volume_m3 < 0) {
-    faults.push_back("the faces point inwards (negative volume)");
+    faults.emplace_back("the faces point inwards (negative volume)");
   }
   return faults;
 }

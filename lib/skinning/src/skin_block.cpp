@@ -6,7 +6,7 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
-#include "pleat/base/cpu_target.h"
+#include "pleat/simd/cpu_target.h"
 #endif
 
 #define PLEAT_INLINE inline __attribute__((always_inline))

@@ -1,6 +1,6 @@
 
 #include "pleat/base/status.h"
-#include "unary_handlers.h"
+#include "pleat/handlers/unary_handlers.h"
 
 namespace pleat {
 

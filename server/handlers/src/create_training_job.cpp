@@ -1,8 +1,8 @@
 #include "pleat/base/status.h"
+#include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
-#include "unary_handlers.h"
 
 namespace pleat {
 

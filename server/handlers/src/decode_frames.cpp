@@ -5,9 +5,9 @@
 
 #include "pleat/base/status.h"
 #include "pleat/formats/sequence_file.h"
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/pull_stream.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pull_stream.h"
-#include "stream_handlers.h"
 
 namespace pleat {
 namespace {

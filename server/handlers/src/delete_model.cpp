@@ -1,6 +1,6 @@
 #include "pleat/base/status.h"
+#include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "unary_handlers.h"
 
 namespace pleat {
 

@@ -1,5 +1,5 @@
-#include "download_stream.h"
-#include "stream_handlers.h"
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/download_stream.h"
 
 namespace pleat {
 

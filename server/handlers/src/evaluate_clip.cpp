@@ -2,11 +2,11 @@
 #include <utility>
 
 #include "pleat/base/status.h"
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/pull_stream.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
-#include "pull_stream.h"
 #include "session_messages.h"
-#include "stream_handlers.h"
 
 namespace pleat {
 namespace {

@@ -1,7 +1,7 @@
 #include "pleat/base/status.h"
+#include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
-#include "unary_handlers.h"
 
 namespace pleat {
 

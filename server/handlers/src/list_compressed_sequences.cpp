@@ -1,7 +1,7 @@
-#include "paging.h"
 #include "pleat/base/status.h"
+#include "pleat/handlers/unary_handlers.h"
+#include "pleat/reactors/paging.h"
 #include "pleat/wire/service_messages.h"
-#include "unary_handlers.h"
 
 namespace pleat {
 

@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "grpc_status.h"
 #include "pleat/base/status.h"
-#include "pleat/service/live_queue.h"
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/local/live_queue.h"
+#include "pleat/reactors/grpc_status.h"
+#include "pleat/reactors/run_unary.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
-#include "run_unary.h"
 #include "session_messages.h"
-#include "stream_handlers.h"
 
 namespace pleat {
 namespace {

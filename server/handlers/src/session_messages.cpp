@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "grpc_status.h"
 #include "pleat/base/status.h"
+#include "pleat/reactors/grpc_status.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "pleat/service/live_queue.h"
-#include "pleat/service/pose_session.h"
+#include "pleat/local/live_queue.h"
+#include "pleat/local/pose_session.h"
 #include "pleat/v1/pose_service.pb.h"
 
 namespace pleat {

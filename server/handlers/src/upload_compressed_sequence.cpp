@@ -1,7 +1,7 @@
 #include "pleat/base/status.h"
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/upload_stream.h"
 #include "pleat/wire/service_messages.h"
-#include "stream_handlers.h"
-#include "upload_stream.h"
 
 namespace pleat {
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
-#include "grpc_status.h"
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/grpc_status.h"
+#include "pleat/reactors/run_unary.h"
 #include "pleat/wire/service_messages.h"
-#include "run_unary.h"
-#include "stream_handlers.h"
 
 namespace pleat {
 namespace {

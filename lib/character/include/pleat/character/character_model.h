@@ -11,7 +11,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/character/train_options.h"
 #include "pleat/geometry/rbf_upsampling.h"
-#include "pleat/gp/detail_model.h"
+#include "pleat/learner/detail_model.h"
 #include "pleat/mesh/error_metrics.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/mesh/topology.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "pleat/character/character_service.h"
+#include "pleat/service/character_service.h"
 
 namespace pleat {
 

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "pleat/character/character_service.h"
 #include "pleat/character/pose_evaluator.h"
-#include "pleat/codec/frame_encoder.h"
-#include "pleat/codec/stream_header.h"
+#include "pleat/service/character_service.h"
+#include "pleat/stream/frame_encoder.h"
+#include "pleat/stream/stream_header.h"
 #include "pleat/v1/pose_service.pb.h"
 
 namespace pleat {

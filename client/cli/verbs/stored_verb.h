@@ -1,0 +1,92 @@
+// The verbs over what a service stores: list, show, delete, download.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "cli/exit_code.h"
+#include "cli/service.h"
+#include "cli/show/progress_display.h"
+#include "cli/show/text_table.h"
+#include "cli/verbs/verbs.h"
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+
+// One kind of stored things; Info has an id.
+template <typename Info>
+struct StoredThings {
+  std::string verb, description;
+  std::string kind;  // "model": for messages and --help
+  absl::StatusOr<std::vector<Info>> (CharacterService::*list)();
+  absl::Status (CharacterService::*remove)(const std::string& id);
+  // Null where there is none.
+  absl::StatusOr<std::string> (CharacterService::*download)(const std::string& id,
+                                                            const Progress& progress);
+  nlohmann::ordered_json (*json)(const Info&);
+  std::vector<std::string> header;
+  std::vector<std::string> (*row)(const Info&);
+};
+
+struct StoredVerbOptions {
+  std::string action = "list", id, output;
+};
+
+template <typename Info>
+absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOptions& options,
+                           const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<Info> infos, (service.get()->*things.list)());
+  if (options.action == "list") {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    std::vector<std::vector<std::string>> rows;
+    for (const Info& info : infos) {
+      json.push_back(things.json(info));
+      rows.push_back(things.row(info));
+    }
+    *session.out << (session.json ? json.dump(2) + "\n" : FormatTable(things.header, rows));
+    return absl::OkStatus();
+  }
+  if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
+  PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(infos, options.id, things.kind));
+  if (options.action == "delete") return (service.get()->*things.remove)(id);
+  if (options.action == "download") {
+    if (options.output.empty()) return UsageError("'download' needs -o FILE");
+    ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+    PLEAT_ASSIGN_OR_RETURN(const std::string bytes,
+                           (service.get()->*things.download)(
+                               id, InterruptibleProgress(&display).Stage("download", 0, 1)));
+    return WriteFile(options.output, bytes);
+  }
+  for (const Info& info : infos) {
+    if (info.id == id) *session.out << things.json(info).dump(2) << "\n";
+  }
+  return absl::OkStatus();
+}
+
+template <typename Info>
+void AddStoredVerb(CLI::App& app, Session& session, StoredThings<Info> things) {
+  auto options = std::make_shared<StoredVerbOptions>();
+  const bool can_download = things.download != nullptr;
+  CLI::App* verb =
+      AddVerb(app, session, things.verb, things.description,
+              [options, things, &session] { return RunStoredVerb(things, *options, session); });
+  std::vector<std::string> actions = {"list", "show", "delete"};
+  if (can_download) actions.push_back("download");
+  verb->add_option("ACTION", options->action,
+                   can_download ? "list, show, delete or download" : "list, show or delete")
+      ->check(CLI::IsMember(actions))
+      ->capture_default_str();
+  verb->add_option("ID", options->id,
+                   absl::StrCat("id of a ", things.kind, ", or its first digits"));
+  if (can_download) verb->add_option("-o,--output", options->output, "file to download to");
+  AddServerFlags(verb, session);
+}
+
+}  // namespace pleat

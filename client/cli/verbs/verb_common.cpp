@@ -1,0 +1,56 @@
+#include <utility>
+
+#include "cli/verbs/verbs.h"
+
+namespace pleat {
+
+CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
+                  const std::string& description, std::function<absl::Status()> run) {
+  CLI::App* verb = app.add_subcommand(name, description);
+  verb->add_flag("--json", session.json, "print the result as JSON on stdout, nothing else");
+  verb->add_flag("--quiet,-q", session.quiet, "no progress");
+  verb->callback([&session, name, run = std::move(run)] {
+    session.verb = name;
+    session.run = run;
+  });
+  return verb;
+}
+
+void AddServerFlags(CLI::App* verb, Session& session) {
+  CLI::Option* server = verb->add_option("--server", session.server,
+                                         "address of pleatd [PLEAT_SERVER, else 127.0.0.1:7320]");
+  CLI::Option* local =
+      verb->add_flag("--local", session.local, "run in this process, without a server");
+  server->excludes(local);
+  verb->add_flag("--tls", session.tls, "encrypted connection")->excludes(local);
+  verb->add_option("--tls-ca", session.tls_ca, "PEM file of the authority to trust [the system's]")
+      ->excludes(local);
+  CLI::Option* certificate =
+      verb->add_option("--tls-cert", session.tls_certificate, "PEM file: this client's certificate")
+          ->excludes(local);
+  CLI::Option* key = verb->add_option("--tls-key", session.tls_key, "PEM file: its private key")
+                         ->needs(certificate);
+  certificate->needs(key);
+  verb->add_option("--data-dir", session.data_dir,
+                   "with --local: folder of sequences, jobs and models "
+                   "[PLEAT_DATA, else ~/.local/share/pleat]")
+      ->needs(local);
+}
+
+void AddOptionalServerFlags(CLI::App* verb, Session& session) {
+  AddServerFlags(verb, session);
+  verb->get_option("--server")
+      ->description("address of pleatd: compute there instead of in this process");
+  verb->get_option("--data-dir")
+      ->description("with --local: go through the store in this folder, as a server would");
+}
+
+bool RunsOnService(const Session& session) {
+  return !session.server.empty() || !session.data_dir.empty();
+}
+
+void AddInProcessFlag(CLI::App* verb, Session& session) {
+  verb->add_flag("--local", session.local, "accepted: this verb always runs in this process");
+}
+
+}  // namespace pleat

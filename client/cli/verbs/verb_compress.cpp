@@ -1,0 +1,148 @@
+// compress INPUT -o x.plt: a mesh sequence as a small file with a promised error.
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "cli/exit_code.h"
+#include "cli/io/input.h"
+#include "cli/service.h"
+#include "cli/show/progress_display.h"
+#include "cli/show/report_json.h"
+#include "cli/show/text_table.h"
+#include "cli/verbs/verbs.h"
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+#include "pleat/local/compression.h"
+#include "pleat/sequence_codec/compress_sequence.h"
+
+namespace pleat {
+namespace {
+
+struct CompressVerbOptions {
+  std::string input, output, report, fps;
+  double max_error_mm = 0, kg_percent = 0;  // 0: not given
+  int grid_bits = 0;
+  int num_threads = 0;
+  bool any_face_order = false;
+};
+
+absl::StatusOr<CompressOptions> ChooseGoal(const CompressVerbOptions& flags) {
+  CompressOptions options;
+  options.num_threads = flags.num_threads;
+  options.keep_face_order = !flags.any_face_order;
+  const int given = (flags.max_error_mm != 0) + (flags.kg_percent != 0) + (flags.grid_bits != 0);
+  if (given != 1) {
+    return UsageError("say one of --max-error-mm E, --kg PERCENT and --lossless-at-bits B");
+  }
+  if (flags.max_error_mm != 0) {
+    options.goal = CompressionGoal::kMaxError;
+    options.max_error_mm = flags.max_error_mm;
+  } else if (flags.kg_percent != 0) {
+    options.goal = CompressionGoal::kKg;
+    options.kg_percent = flags.kg_percent;
+  } else {
+    options.goal = CompressionGoal::kGrid;
+    options.grid_bits = flags.grid_bits;
+  }
+  return options;
+}
+
+struct Compressed {
+  std::string bytes;
+  CompressionRecord record;
+};
+
+absl::StatusOr<Compressed> CompressHere(const MeshSequence& sequence,
+                                        const CompressOptions& options, const Session& session) {
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  PLEAT_ASSIGN_OR_RETURN(MeasuredCompression result,
+                         CompressMeasured(sequence, options, InterruptibleProgress(&display)));
+  return Compressed{std::move(result.bytes), std::move(result.record)};
+}
+
+absl::StatusOr<Compressed> CompressOnService(const MeshSequence& sequence,
+                                             const CompressOptions& options,
+                                             const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo uploaded,
+                         UploadWithProgress(*service, sequence, session));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->CreateCompressionJob(uploaded.id, options));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
+                         WatchJobToEnd(*service, job.id, session, true, nullptr));
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  PLEAT_ASSIGN_OR_RETURN(
+      std::string bytes,
+      service->DownloadCompressedSequence(done.result_id,
+                                          InterruptibleProgress(&display).Stage("download", 0, 1)));
+  PLEAT_ASSIGN_OR_RETURN(CompressedSequenceInfo info,
+                         service->GetCompressedSequence(done.result_id));
+  if (!info.record) return absl::InternalError("the service kept no report of the compression");
+  return Compressed{std::move(bytes), *std::move(info.record)};
+}
+
+void PrintText(const CompressVerbOptions& flags, const MeshSequence& sequence,
+               const CompressionRecord& record, std::ostream& out) {
+  const CompressSummary& summary = record.summary;
+  const double raw_bytes = 12.0 * sequence.num_vertices() * sequence.num_frames();
+  out << absl::StrFormat(
+      "%s: %s, 1/%.0f of its positions as float32; %.3f bits per vertex and frame\n"
+      "error: KG %.4g %%, largest %.4g mm; encoded in %.1f s, decodes at %.0f frames/s\n",
+      flags.output, FormatBytes(static_cast<double>(summary.num_bytes)),
+      raw_bytes / static_cast<double>(summary.num_bytes), summary.bpvf, summary.kg_percent,
+      summary.max_error_mm, record.encode_seconds, sequence.num_frames() / record.decode_seconds);
+}
+
+absl::Status RunCompress(const CompressVerbOptions& flags, const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, ChooseGoal(flags));
+  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, flags.input, flags.fps));
+  PLEAT_ASSIGN_OR_RETURN(const Compressed compressed,
+                         RunsOnService(session) ? CompressOnService(sequence, options, session)
+                                                : CompressHere(sequence, options, session));
+  PLEAT_RETURN_IF_ERROR(WriteFile(flags.output, compressed.bytes));
+  const nlohmann::ordered_json json =
+      CompressReportJson(compressed.record, sequence.num_frames(), sequence.num_vertices());
+  if (!flags.report.empty()) {
+    PLEAT_RETURN_IF_ERROR(WriteFile(flags.report, json.dump(2) + "\n"));
+  }
+  if (session.json) {
+    *session.out << json.dump(2) << "\n";
+  } else if (!session.quiet) {
+    PrintText(flags, sequence, compressed.record, *session.out);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddCompressVerb(CLI::App& app, Session& session) {
+  auto options = std::make_shared<CompressVerbOptions>();
+  CLI::App* verb =
+      AddVerb(app, session, "compress", "make an animation small, with a promised error",
+              [options, &session] { return RunCompress(*options, session); });
+  verb->add_option("INPUT", options->input, "folder, glob, .pc2 or .pseq")->required();
+  verb->add_option("-o,--output", options->output, "the compressed sequence, OUT.plt")->required();
+  verb->add_option("--max-error-mm", options->max_error_mm,
+                   "no vertex of any frame is further off than this, mm")
+      ->check(CLI::Range(1e-3, 1e6));
+  verb->add_option("--kg", options->kg_percent,
+                   "the error of all positions is at most PERCENT of their spread about each "
+                   "frame's centroid (Karni and Gotsman)")
+      ->check(CLI::Range(1e-4, 50.0));
+  verb->add_option(
+          "--lossless-at-bits", options->grid_bits,
+          "positions are exact on a grid of 2^B points along the longest side of the bounds")
+      ->check(CLI::Range(8, 20));
+  verb->add_flag("--any-face-order", options->any_face_order,
+                 "faces may change their order (vertices never do): about 1.5 bytes less per face");
+  verb->add_option("--report", options->report, "JSON report (pleat.compress/1)");
+  verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
+  verb->add_option("--threads", options->num_threads,
+                   "in this process: 0 = one per core; the result does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  AddOptionalServerFlags(verb, session);
+}
+
+}  // namespace pleat

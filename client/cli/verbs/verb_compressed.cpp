@@ -1,0 +1,35 @@
+// compressed: compressed sequences of a service.
+#include "absl/strings/str_format.h"
+#include "cli/show/info_json.h"
+#include "cli/verbs/stored_verb.h"
+
+namespace pleat {
+namespace {
+
+std::vector<std::string> Row(const CompressedSequenceInfo& info) {
+  return {info.id.substr(0, 12),
+          info.name,
+          absl::StrCat(info.num_frames),
+          absl::StrCat(info.num_vertices),
+          info.record ? absl::StrFormat("%.4g", info.record->summary.max_error_mm) : "",
+          info.record ? absl::StrFormat("%.4g", info.record->summary.kg_percent) : "",
+          FormatBytes(static_cast<double>(info.size_bytes))};
+}
+
+}  // namespace
+
+void AddCompressedVerb(CLI::App& app, Session& session) {
+  AddStoredVerb<CompressedSequenceInfo>(
+      app, session,
+      {.verb = "compressed",
+       .description = "list, show, delete or download compressed sequences",
+       .kind = "compressed sequence",
+       .list = &CharacterService::ListCompressedSequences,
+       .remove = &CharacterService::DeleteCompressedSequence,
+       .download = &CharacterService::DownloadCompressedSequence,
+       .json = CompressedSequenceJson,
+       .header = {"id", "name", "frames", "vertices", "max mm", "KG %", "size"},
+       .row = Row});
+}
+
+}  // namespace pleat

@@ -1,0 +1,74 @@
+// jobs: training and compression jobs of a service.
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cli/exit_code.h"
+#include "cli/interrupt.h"
+#include "cli/service.h"
+#include "cli/show/info_json.h"
+#include "cli/show/text_table.h"
+#include "cli/verbs/verbs.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+struct JobsOptions {
+  std::string action = "list", id;
+};
+
+void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
+  std::vector<std::vector<std::string>> rows;
+  for (const JobInfo& job : jobs) {
+    rows.push_back({job.id, JobStateName(job.state), job.stage,
+                    absl::StrFormat("%.0f %%", 100 * job.fraction), JobKindName(job), job.name,
+                    job.result_id.substr(0, 12)});
+  }
+  out << FormatTable({"id", "state", "stage", "done", "kind", "name", "result"}, rows);
+}
+
+absl::Status WatchJob(CharacterService& service, const std::string& id, const Session& session) {
+  ExitOnInterrupt();  // watching stops, the job goes on
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, WatchJobToEnd(service, id, session, false, nullptr));
+  *session.out << (session.json ? JobJson(job).dump(2) : job.result_id) << "\n";
+  return absl::OkStatus();
+}
+
+absl::Status RunJobs(const JobsOptions& options, const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> jobs, service->ListJobs());
+  if (options.action == "list") {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const JobInfo& job : jobs) json.push_back(JobJson(job));
+    if (session.json)
+      *session.out << json.dump(2) << "\n";
+    else
+      PrintTable(jobs, *session.out);
+    return absl::OkStatus();
+  }
+  if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
+  PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(jobs, options.id, "job"));
+  if (options.action == "cancel") return service->CancelJob(id);
+  if (options.action == "watch") return WatchJob(*service, id, session);
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->GetJob(id));
+  *session.out << JobJson(job).dump(2) << "\n";
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddJobsVerb(CLI::App& app, Session& session) {
+  auto options = std::make_shared<JobsOptions>();
+  CLI::App* verb =
+      AddVerb(app, session, "jobs", "list, show, cancel or watch training and compression jobs",
+              [options, &session] { return RunJobs(*options, session); });
+  verb->add_option("ACTION", options->action, "list, show, cancel or watch")
+      ->check(CLI::IsMember({"list", "show", "cancel", "watch"}))
+      ->capture_default_str();
+  verb->add_option("ID", options->id, "id of a job, or its first digits");
+  AddServerFlags(verb, session);
+}
+
+}  // namespace pleat

@@ -1,0 +1,35 @@
+// models: trained characters of a service.
+#include "absl/strings/str_format.h"
+#include "cli/show/info_json.h"
+#include "cli/verbs/stored_verb.h"
+
+namespace pleat {
+namespace {
+
+std::vector<std::string> Row(const ModelInfo& model) {
+  return {model.id.substr(0, 12),
+          model.name,
+          model.record.learner,
+          absl::StrCat(model.num_vertices),
+          absl::StrCat(model.record.num_frames),
+          absl::StrFormat("%.3f", model.record.reconstruction.mean_percent),
+          FormatBytes(static_cast<double>(model.size_bytes))};
+}
+
+}  // namespace
+
+void AddModelsVerb(CLI::App& app, Session& session) {
+  AddStoredVerb<ModelInfo>(
+      app, session,
+      {.verb = "models",
+       .description = "list, show, delete or download characters",
+       .kind = "model",
+       .list = &CharacterService::ListModels,
+       .remove = &CharacterService::DeleteModel,
+       .download = &CharacterService::DownloadModel,
+       .json = ModelJson,
+       .header = {"id", "name", "learner", "vertices", "frames", "error %", "size"},
+       .row = Row});
+}
+
+}  // namespace pleat

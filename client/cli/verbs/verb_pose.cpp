@@ -1,0 +1,277 @@
+// pose MODEL --motion FILE -o OUT: the character in other poses, evaluated here or on a server.
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_format.h"
+#include "cli/exit_code.h"
+#include "cli/io/animation_writer.h"
+#include "cli/io/draco_folder.h"
+#include "cli/io/frame_rate.h"
+#include "cli/io/model_input.h"
+#include "cli/io/motion_edit.h"
+#include "cli/service.h"
+#include "cli/show/progress_display.h"
+#include "cli/verbs/content_flag.h"
+#include "cli/verbs/verbs.h"
+#include "pleat/base/status.h"
+#include "pleat/character/pose_evaluator.h"
+#include "pleat/formats/model_file.h"
+#include "pleat/formats/motion_file.h"
+#include "pleat/remote/remote_character_service.h"
+#include "pleat/stream/frame_encoder.h"
+
+namespace pleat {
+namespace {
+
+struct PoseVerbOptions {
+  std::string model, motion, output, format = "auto", encoding = "mesh";
+  StreamContent content = StreamContent::kMesh;
+  int position_bits = FrameEncoderOptions().position_bits;
+  std::vector<std::string> bone_scales;
+  bool skinned_only = false;
+};
+
+// How near the motion is to what training has seen.
+struct Confidence {
+  double sum = 0, lowest = 1;
+  int num_frames = 0, lowest_frame = 0;
+
+  void Add(int t, double confidence) {
+    sum += confidence;
+    ++num_frames;
+    if (confidence < lowest) {
+      lowest = confidence;
+      lowest_frame = t;
+    }
+  }
+  double mean() const { return num_frames == 0 ? 0 : sum / num_frames; }
+};
+
+FrameEncoderOptions EncoderOptions(const PoseVerbOptions& options) {
+  FrameEncoderOptions encoder;
+  encoder.encoding =
+      options.encoding == "mesh" ? FrameEncoding::kDracoMesh : FrameEncoding::kDracoPointCloud;
+  encoder.content = options.content;
+  encoder.position_bits = options.position_bits;
+  return encoder;
+}
+
+absl::StatusOr<ClipQuery> ReadQuery(const PoseVerbOptions& options, const Skeleton& skeleton,
+                                    const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(Motion motion, ReadMotion(options.motion, skeleton));
+  for (const std::string& warning : motion.warnings) {
+    if (session.talkative()) *session.err << "warning: " << warning << "\n";
+  }
+  PLEAT_ASSIGN_OR_RETURN(std::vector<double> scales,
+                         ParseJointFactors(JointNames(skeleton), options.bone_scales));
+  ClipQuery query;
+  query.track = std::move(motion.track);
+  query.bone_scales = scales.empty() ? std::move(motion.bone_scales) : std::move(scales);
+  query.skinned_only = options.skinned_only;
+  return query;
+}
+
+using ConsumeFrame = std::function<absl::Status(int t, const EvaluatedFrame& frame)>;
+
+absl::Status EvaluateHere(std::shared_ptr<const CharacterModel> model, const ClipQuery& query,
+                          const ConsumeFrame& consume) {
+  PoseEvaluator evaluator(std::move(model));
+  if (!query.skinned_only) {
+    return evaluator.EvaluateClip(query.track, query.bone_scales, consume);
+  }
+  EvaluatedFrame frame;
+  for (int t = 0; t < query.track.num_frames(); ++t) {
+    PLEAT_RETURN_IF_ERROR(
+        evaluator.EvaluateSkinned(query.track.poses[t], query.bone_scales, &frame));
+    PLEAT_RETURN_IF_ERROR(consume(t, frame));
+  }
+  return absl::OkStatus();
+}
+
+void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, int num_vertices,
+                  double seconds, const Session& session) {
+  if (session.json) {
+    const nlohmann::ordered_json json = {{"schema", "pleat.pose/1"},
+                                         {"output", options.output},
+                                         {"num_frames", confidence.num_frames},
+                                         {"num_vertices", num_vertices},
+                                         {"confidence",
+                                          {{"mean", confidence.mean()},
+                                           {"lowest", confidence.lowest},
+                                           {"lowest_frame", confidence.lowest_frame}}},
+                                         {"seconds", seconds}};
+    *session.out << json.dump(2) << "\n";
+  } else if (!session.quiet) {
+    *session.out << absl::StrFormat("%s: %d frames of %d vertices in %.2f s", options.output,
+                                    confidence.num_frames, num_vertices, seconds);
+    if (!options.skinned_only) {
+      *session.out << absl::StrFormat("; confidence %.2f, lowest %.2f in frame %d",
+                                      confidence.mean(), confidence.lowest,
+                                      confidence.lowest_frame);
+    }
+    *session.out << "\n";
+  }
+}
+
+// Frames of `query` through an AnimationWriter, from wherever `evaluate` takes them.
+absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
+                         const CharacterModel& model, const ClipQuery& query,
+                         const std::function<absl::Status(const ConsumeFrame&)>& evaluate,
+                         const Progress& progress, Confidence* confidence) {
+  AnimationOptions animation;
+  animation.frame_rate = FrameRateFromFps(query.track.fps);
+  animation.appearance = model.parts().appearance;
+  animation.name = model.name();
+  animation.encoder = EncoderOptions(options);
+  animation.reference = model.rig().rest_positions.cast<float>();
+  const std::unique_ptr<AnimationWriter> writer =
+      MakeAnimationWriter(format, options.output, model.topology(), std::move(animation));
+  PLEAT_RETURN_IF_ERROR(evaluate([&](int t, const EvaluatedFrame& frame) {
+    confidence->Add(t, frame.confidence);
+    PLEAT_RETURN_IF_ERROR(writer->AddFrame(frame.positions));
+    return progress.Report((t + 1.0) / query.track.num_frames());
+  }));
+  return writer->Finish();
+}
+
+// The server's Draco bytes as they come. The number of their vertices.
+absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, RemoteCharacterService& service,
+                                const ClipQuery& query, const Progress& progress,
+                                Confidence* confidence) {
+  DracoFolderWriter writer(options.output, FrameRateFromFps(query.track.fps));
+  StreamHeader header;
+  ClipStreamSink sink;
+  sink.on_header = [&](const StreamHeader& received) {
+    header = received;
+    return absl::OkStatus();
+  };
+  sink.on_frame = [&](int t, std::string_view draco, const FrameMark&, double frame_confidence) {
+    confidence->Add(t, frame_confidence);
+    PLEAT_RETURN_IF_ERROR(writer.AddFrame(draco));
+    return progress.Report((t + 1.0) / query.track.num_frames());
+  };
+  PLEAT_RETURN_IF_ERROR(service.StreamClip(query, EncoderOptions(options), sink));
+  PLEAT_RETURN_IF_ERROR(writer.Finish(header));
+  return header.num_vertices;
+}
+
+// Poses and coefficients from the server, shown by the model here.
+absl::Status EvaluateByParameters(RemoteCharacterService& service,
+                                  std::shared_ptr<const CharacterModel> model,
+                                  const ClipQuery& query, const ConsumeFrame& consume) {
+  PoseEvaluator evaluator(std::move(model));
+  EvaluatedFrame frame;
+  ClipStreamSink sink;
+  sink.on_parameters = [&](int t, const FrameParameters& parameters) -> absl::Status {
+    PLEAT_RETURN_IF_ERROR(evaluator.Show(parameters, query.bone_scales, &frame));
+    return consume(t, frame);
+  };
+  return service.StreamClip(query, {.content = StreamContent::kParameters}, sink);
+}
+
+// What a server can send for this output, and only a server.
+absl::Status CheckContent(StreamContent content, AnimationFormat format, bool from_server) {
+  if (content == StreamContent::kMesh) return absl::OkStatus();
+  if (!from_server) {
+    return UsageError("--content is about frames from a server; this model is evaluated here");
+  }
+  const bool is_draco = format == AnimationFormat::kDraco;
+  if (content == StreamContent::kControlMesh && !is_draco) {
+    return UsageError("--content control is a stream of another mesh: write it with --format drc");
+  }
+  if (content == StreamContent::kParameters && is_draco) {
+    return UsageError("--content parameters has no Draco frames: choose pc2, pseq, obj or ply");
+  }
+  return absl::OkStatus();
+}
+
+// The number of vertices of what was written.
+absl::StatusOr<int> PoseFromFile(const PoseVerbOptions& options, AnimationFormat format,
+                                 const Session& session, const Progress& progress,
+                                 Confidence* confidence) {
+  PLEAT_RETURN_IF_ERROR(CheckContent(options.content, format, false));
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
+                         ReadModelFile(options.model));
+  PLEAT_ASSIGN_OR_RETURN(const ClipQuery query, ReadQuery(options, model->skeleton(), session));
+  PLEAT_RETURN_IF_ERROR(WriteFrames(
+      options, format, *model, query,
+      [&](const ConsumeFrame& consume) { return EvaluateHere(model, query, consume); }, progress,
+      confidence));
+  return model->num_vertices();
+}
+
+// The same for a model that a service keeps: evaluated there.
+absl::StatusOr<int> PoseFromService(const PoseVerbOptions& options, AnimationFormat format,
+                                    const Session& session, const Progress& progress,
+                                    Confidence* confidence) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+  PLEAT_ASSIGN_OR_RETURN(const std::string id, FindModel(*service, options.model));
+  PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, service->GetModel(id));
+  PLEAT_ASSIGN_OR_RETURN(ClipQuery query, ReadQuery(options, info.skeleton, session));
+  query.model_id = id;
+  auto* remote = dynamic_cast<RemoteCharacterService*>(service.get());
+  PLEAT_RETURN_IF_ERROR(CheckContent(options.content, format, remote != nullptr));
+  if (remote != nullptr && format == AnimationFormat::kDraco) {
+    return WriteStream(options, *remote, query, progress, confidence);
+  }
+  // Polygons and texture coordinates are not in a stream.
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, service->DownloadModel(id, {}));
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
+  PLEAT_RETURN_IF_ERROR(WriteFrames(
+      options, format, *model, query,
+      [&](const ConsumeFrame& consume) {
+        return options.content == StreamContent::kParameters
+                   ? EvaluateByParameters(*remote, model, query, consume)
+                   : service->EvaluateClip(query, consume);
+      },
+      progress, confidence));
+  return info.num_vertices;
+}
+
+absl::Status RunPose(const PoseVerbOptions& options, const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const AnimationFormat format,
+                         ChooseAnimationFormat(options.format, options.output));
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  const Progress progress = InterruptibleProgress(&display).Stage("pose", 0, 1);
+  const double start_seconds = MonotonicSeconds();
+  Confidence confidence;
+  const auto run = IsModelFile(options.model) ? PoseFromFile : PoseFromService;
+  PLEAT_ASSIGN_OR_RETURN(const int num_vertices,
+                         run(options, format, session, progress, &confidence));
+  display.Finish();
+  PrintSummary(options, confidence, num_vertices, MonotonicSeconds() - start_seconds, session);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddPoseVerb(CLI::App& app, Session& session) {
+  auto options = std::make_shared<PoseVerbOptions>();
+  CLI::App* verb = AddVerb(app, session, "pose", "show a character in the poses of a motion",
+                           [options, &session] { return RunPose(*options, session); });
+  verb->add_option("MODEL", options->model, "a .pleat file, or the id of a model on the server")
+      ->required();
+  verb->add_option("--motion", options->motion, "motion file (.json)")->required();
+  verb->add_option("-o,--output", options->output, "OUT.pc2, OUT.pseq or a folder")->required();
+  verb->add_option("--format", options->format,
+                   "auto (by the ending of OUT; a folder gets drc), pc2, pseq, obj, ply or drc")
+      ->capture_default_str();
+  verb->add_option("--encoding", options->encoding,
+                   "of drc: mesh (every frame can be read alone) or points (smaller)")
+      ->check(CLI::IsMember({"mesh", "points"}))
+      ->capture_default_str();
+  verb->add_option("--bits", options->position_bits, "of drc: bits per coordinate of the grid")
+      ->check(CLI::Range(QuantizationBox::kMinBits, QuantizationBox::kMaxBits))
+      ->capture_default_str();
+  AddContentFlag(verb, &options->content);
+  verb->add_option("--bone-scale", options->bone_scales,
+                   "JOINT=FACTOR: length of the bone that ends in JOINT; wins over the motion's");
+  verb->add_flag("--skinned-only", options->skinned_only, "without the learnt detail");
+  AddServerFlags(verb, session);
+}
+
+}  // namespace pleat

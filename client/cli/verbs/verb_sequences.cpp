@@ -1,0 +1,35 @@
+// sequences: what a store holds.
+#include "cli/io/frame_rate.h"
+#include "cli/show/info_json.h"
+#include "cli/verbs/stored_verb.h"
+
+namespace pleat {
+namespace {
+
+std::vector<std::string> Row(const SequenceInfo& info) {
+  return {info.id.substr(0, 12),
+          info.name,
+          absl::StrCat(info.num_frames),
+          absl::StrCat(info.num_vertices),
+          absl::StrCat(info.num_faces),
+          FormatFrameRate(info.frame_rate),
+          FormatBytes(static_cast<double>(info.size_bytes))};
+}
+
+}  // namespace
+
+void AddSequencesVerb(CLI::App& app, Session& session) {
+  AddStoredVerb<SequenceInfo>(
+      app, session,
+      {.verb = "sequences",
+       .description = "list, show or delete stored sequences",
+       .kind = "sequence",
+       .list = &CharacterService::ListSequences,
+       .remove = &CharacterService::DeleteSequence,
+       .download = nullptr,
+       .json = SequenceJson,
+       .header = {"id", "name", "frames", "vertices", "faces", "fps", "size"},
+       .row = Row});
+}
+
+}  // namespace pleat

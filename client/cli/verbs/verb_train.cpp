@@ -1,0 +1,246 @@
+// train INPUT... -o model.pleat: a character, computed here or on a server, with the same bytes.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cli/exit_code.h"
+#include "cli/io/input.h"
+#include "cli/service.h"
+#include "cli/show/error_text.h"
+#include "cli/show/info_json.h"
+#include "cli/show/progress_display.h"
+#include "cli/show/report_json.h"
+#include "cli/show/text_table.h"
+#include "cli/verbs/train_flags.h"
+#include "cli/verbs/verbs.h"
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+#include "pleat/character/train_character.h"
+#include "pleat/character/train_with_rig.h"
+#include "pleat/formats/model_file.h"
+#include "pleat/formats/rig_file.h"
+
+namespace pleat {
+namespace {
+
+struct TrainVerbOptions {
+  std::vector<std::string> inputs;
+  std::string output, report, fps, rig;
+  std::vector<std::string> locked;  // joints of `rig`
+  TrainFlags flags;
+  TrainResources resources;
+  bool detach = false;
+};
+
+struct TrainedModel {
+  std::shared_ptr<const CharacterModel> model;
+  std::string bytes;
+  std::string id;                         // on the service that trained it, if one did
+  std::map<std::string, double> seconds;  // per stage
+};
+
+// `rig` may be null: found automatically.
+absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips, const UserRig* rig,
+                                       const TrainOptions& options, const TrainResources& resources,
+                                       const Session& session) {
+  TrainedModel trained;
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  const Progress progress = InterruptibleProgress(&display);
+  PLEAT_ASSIGN_OR_RETURN(
+      trained.model, rig ? TrainCharacterWithRig(clips, *rig, options, resources, nullptr, progress)
+                         : TrainCharacter(clips, options, resources, nullptr, progress));
+  display.Finish();
+  trained.seconds = display.stage_seconds();
+  trained.bytes = EncodeModel(*trained.model);
+  return trained;
+}
+
+// The rig of --rig for the first clip, with the joints of --lock; none without --rig.
+absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& options,
+                                                   const MeshSequence& clip) {
+  if (options.rig.empty()) return std::optional<UserRig>();
+  PLEAT_ASSIGN_OR_RETURN(RigFile file, ReadRigFile(options.rig));
+  PLEAT_RETURN_IF_ERROR(LockJoints(options.locked, &file));
+  PLEAT_ASSIGN_OR_RETURN(UserRig rig, ResolveRig(file, clip));
+  return std::optional<UserRig>(std::move(rig));
+}
+
+// `rig` may be null: found automatically.
+absl::StatusOr<JobInfo> CreateJob(CharacterService& service, const std::vector<MeshSequence>& clips,
+                                  const UserRig* rig, const TrainOptions& options,
+                                  const Session& session) {
+  // Without a name of its own the model is called like its first clip, as in TrainHere.
+  TrainingRequest request{.options = options};
+  if (rig) request.rig = EncodeRig(*rig);
+  for (const MeshSequence& clip : clips) {
+    PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, UploadWithProgress(service, clip, session));
+    request.sequence_ids.push_back(info.id);
+  }
+  return service.CreateTrainingJob(request);
+}
+
+absl::StatusOr<TrainedModel> TrainOnService(CharacterService& service, const JobInfo& job,
+                                            const Session& session) {
+  TrainedModel trained;
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
+                         WatchJobToEnd(service, job.id, session, true, &trained.seconds));
+  trained.id = done.result_id;
+  ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  PLEAT_ASSIGN_OR_RETURN(
+      trained.bytes, service.DownloadModel(
+                         done.result_id, InterruptibleProgress(&display).Stage("download", 0, 1)));
+  PLEAT_ASSIGN_OR_RETURN(trained.model, DecodeModel(trained.bytes));
+  return trained;
+}
+
+// The steps of training that a report names; a learner's own stages count as "learn".
+std::map<std::string, double> StepSeconds(const std::map<std::string, double>& stage_seconds) {
+  static const std::set<std::string> steps = {"queued", "read",   "rig",     "fit",
+                                              "refine", "detail", "measure", "store"};
+  std::map<std::string, double> seconds = {{"rig", 0}, {"fit", 0}, {"learn", 0}};
+  for (const auto& [stage, value] : stage_seconds) {
+    seconds[steps.count(stage) > 0 ? stage : "learn"] += value;
+  }
+  return seconds;
+}
+
+uint64_t PeakMemoryBytes() {
+  struct rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+// Where to look: the frames and bones that skinning fits worst, and what smoothing did.
+void PrintWorst(const CharacterModel& model, std::ostream& out) {
+  const TrainingRecord& record = model.record();
+  const bool several = std::any_of(record.worst_frames.begin(), record.worst_frames.end(),
+                                   [](const FrameError& error) { return error.clip > 0; });
+  out << "worst frames, skinned only:";
+  for (const FrameError& error : record.worst_frames) {
+    out << (several ? absl::StrFormat(" %d:%d", error.clip, error.frame)
+                    : absl::StrFormat(" %d", error.frame))
+        << absl::StrFormat(" (%.2f %%)", error.mean_percent);
+  }
+  std::vector<int> joints(record.joint_fit_percent.size());
+  std::iota(joints.begin(), joints.end(), 0);
+  std::stable_sort(joints.begin(), joints.end(), [&](int a, int b) {
+    return record.joint_fit_percent[a] > record.joint_fit_percent[b];
+  });
+  joints.resize(std::min<size_t>(3, joints.size()));
+  out << "\nworst bones:";
+  for (const int j : joints) {
+    out << absl::StrFormat(" %s (%.2f %%)", model.skeleton().joint(j).name,
+                           record.joint_fit_percent[j]);
+  }
+  out << "\n";
+  if (model.options().smoothness > 0) {
+    out << absl::StrFormat("smoothing: jitter %.2f -> %.2f degrees, fit RMS %.3f -> %.3f %%\n",
+                           record.unsmoothed_jitter_degrees, record.pose_jitter_degrees,
+                           record.unsmoothed_rms_percent, record.fit.rms_percent);
+  }
+}
+
+void PrintText(const TrainedModel& trained, const std::string& output, std::ostream& out) {
+  const TrainingRecord& record = trained.model->record();
+  for (const std::string& warning : record.warnings) out << "warning: " << warning << "\n";
+  out << absl::StrFormat("rig from frame %d, facing %.0f degrees, residual %.4f; learner %s\n",
+                         record.rest_frame, record.yaw_degrees, record.rig_residual, record.learner)
+      << FormatTable(ErrorTableHeader("training frames"),
+                     {ErrorTableRow("skinned only", record.fit, record.diagonal_m),
+                      ErrorTableRow("hybrid", record.reconstruction, record.diagonal_m)});
+  out << ValidationText(record.validation);
+  PrintWorst(*trained.model, out);
+  if (!trained.id.empty()) out << "model " << trained.id << "\n";
+  if (!output.empty()) {
+    out << output << ", " << FormatBytes(static_cast<double>(trained.bytes.size())) << "\n";
+  }
+}
+
+absl::Status PrintDetached(const JobInfo& job, const Session& session) {
+  *session.out << (session.json ? JobJson(job).dump(2) : job.id) << "\n";
+  return absl::OkStatus();
+}
+
+absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
+  const bool here = session.local && session.data_dir.empty();
+  if (options.output.empty() && here) return UsageError("--local without --data-dir needs -o FILE");
+  if (!options.locked.empty() && options.rig.empty()) {
+    return UsageError("--lock needs --rig: `pleat rig INPUT -o rig.json` writes the automatic one");
+  }
+  if (options.detach && session.local) return UsageError("--detach needs a server");
+  PLEAT_ASSIGN_OR_RETURN(const TrainOptions train, ResolveTrainFlags(options.flags));
+  const double start_seconds = MonotonicSeconds();
+  std::vector<MeshSequence> clips;
+  for (const std::string& input : options.inputs) {
+    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, input, options.fps));
+    clips.push_back(std::move(clip));
+  }
+  const double read_seconds = MonotonicSeconds() - start_seconds;
+
+  PLEAT_ASSIGN_OR_RETURN(const std::optional<UserRig> rig, ReadUserRig(options, clips[0]));
+  const UserRig* user_rig = rig ? &*rig : nullptr;
+
+  TrainedModel trained;
+  if (here) {
+    PLEAT_ASSIGN_OR_RETURN(trained, TrainHere(clips, user_rig, train, options.resources, session));
+  } else {
+    PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(*service, clips, user_rig, train, session));
+    if (options.detach) return PrintDetached(job, session);
+    PLEAT_ASSIGN_OR_RETURN(trained, TrainOnService(*service, job, session));
+  }
+  trained.seconds = StepSeconds(trained.seconds);
+  trained.seconds["read"] = read_seconds;
+  trained.seconds["total"] = MonotonicSeconds() - start_seconds;
+
+  if (!options.output.empty()) PLEAT_RETURN_IF_ERROR(WriteFile(options.output, trained.bytes));
+  const nlohmann::ordered_json report = TrainReportJson(
+      *trained.model,
+      {trained.seconds, PeakMemoryBytes(), trained.bytes.size(), ModelId(trained.bytes)});
+  if (!options.report.empty()) {
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, report.dump(2) + "\n"));
+  }
+  if (session.json) {
+    *session.out << report.dump(2) << "\n";
+  } else if (!session.quiet) {
+    PrintText(trained, options.output, *session.out);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddTrainVerb(CLI::App& app, Session& session) {
+  auto options = std::make_shared<TrainVerbOptions>();
+  CLI::App* verb = AddVerb(app, session, "train", "turn clips of one character into a model",
+                           [options, &session] { return RunTrain(*options, session); });
+  verb->add_option("INPUT", options->inputs, "clips of one connectivity")->required();
+  verb->add_option("-o,--output", options->output, "model file (.pleat)");
+  verb->add_option("--report", options->report, "JSON report (pleat.train/1)");
+  verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  verb->add_option("--threads", options->resources.num_threads,
+                   "with --local: threads, 0 = one per core; the result does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  verb->add_flag("--detach", options->detach, "print the job's id and do not wait for it");
+  verb->add_option(
+      "--rig", options->rig,
+      "your own rig instead of the automatic one: .json or .glb (docs/formats/rig.md)");
+  verb->add_option("--lock", options->locked,
+                   "joints of --rig that refinement leaves where they are: NAME,NAME,...")
+      ->delimiter(',');
+  AddTrainFlags(verb, &options->flags);
+  AddServerFlags(verb, session);
+}
+
+}  // namespace pleat

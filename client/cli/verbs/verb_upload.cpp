@@ -1,0 +1,45 @@
+// upload INPUT: puts a sequence into a store.
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_format.h"
+#include "cli/io/input.h"
+#include "cli/service.h"
+#include "cli/show/info_json.h"
+#include "cli/show/progress_display.h"
+#include "cli/show/text_table.h"
+#include "cli/verbs/verbs.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+struct UploadOptions {
+  std::string input, fps;
+};
+
+absl::Status RunUpload(const UploadOptions& options, const Session& session) {
+  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
+                         ReadInput(session, options.input, options.fps));
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
+  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, UploadWithProgress(*service, sequence, session));
+  if (session.json) {
+    *session.out << SequenceJson(info).dump(2) << "\n";
+  } else {
+    *session.out << info.id << "\n";
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddUploadVerb(CLI::App& app, Session& session) {
+  auto options = std::make_shared<UploadOptions>();
+  CLI::App* verb = AddVerb(app, session, "upload", "store a sequence and print its id",
+                           [options, &session] { return RunUpload(*options, session); });
+  verb->add_option("INPUT", options->input, "folder, glob, .pc2, .obj, .ply or .pseq")->required();
+  verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
+  AddServerFlags(verb, session);
+}
+
+}  // namespace pleat

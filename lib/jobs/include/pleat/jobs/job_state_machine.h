@@ -1,0 +1,86 @@
+// The state of one job, in one thread-safe place.
+//
+//   queued --Start--> running --Succeed--> succeeded
+//     |  ^               |------Fail-----> failed
+//     |  '---Requeue-----|
+//     |                  '--Cancelled----> cancelled   (after RequestCancel, when the worker stops)
+//     '------------------RequestCancel---> cancelled   (at once)
+//
+// succeeded, failed and cancelled are final.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "pleat/base/progress.h"
+#include "pleat/service/character_service.h"
+
+namespace pleat {
+
+// Seconds of a clock that never goes back.
+using MonotonicClock = std::function<double()>;
+double SteadySeconds();
+
+struct JobSnapshot {
+  JobInfo info;
+  int attempts = 0;       // how often the job was started
+  uint64_t revision = 0;  // grows with every change
+};
+
+class JobStateMachine {
+ public:
+  JobStateMachine(JobInfo info, int attempts, MonotonicClock clock = SteadySeconds);
+  JobStateMachine(const JobStateMachine&) = delete;
+  JobStateMachine& operator=(const JobStateMachine&) = delete;
+
+  JobSnapshot snapshot() const;
+
+  // Each returns false, and does nothing, when the job is not in the state that it starts from.
+  bool Start();
+  void Report(const ProgressUpdate& update);  // ignored unless running; fractions never fall
+  bool Succeed(const std::string& result_id, const std::vector<std::string>& warnings);
+  bool Fail(const absl::Status& error);
+  bool Cancelled();
+  bool Requeue();  // the attempt that ends here does not count
+
+  // A queued job is cancelled, a running one asked to stop (cancel_requested). kFailedPrecondition
+  // when the job is final.
+  absl::Status RequestCancel();
+  bool cancel_requested() const { return cancel_requested_.load(std::memory_order_relaxed); }
+
+  void AddWarning(const std::string& warning);
+
+  // Waits until the revision is above `revision` or `timeout_seconds` are over.
+  JobSnapshot WaitForChange(uint64_t revision, double timeout_seconds) const;
+
+  // Calls `listener` after every change, until RemoveListener. The listener must be quick and must
+  // not call this object; RemoveListener returns only when no call is running.
+  int AddListener(std::function<void()> listener);
+  void RemoveListener(int token);
+  void Wake();  // calls the listeners although nothing has changed
+
+ private:
+  bool Finish(JobState state, const absl::Status& error);
+  void Changed();
+
+  const MonotonicClock clock_;
+  std::atomic<bool> cancel_requested_ = false;
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable changed_;
+  JobSnapshot state_;           // guarded by mutex_
+  double started_seconds_ = 0;  // guarded by mutex_
+
+  std::mutex listeners_mutex_;
+  std::map<int, std::function<void()>> listeners_;  // guarded by listeners_mutex_
+  int next_token_ = 1;                              // guarded by listeners_mutex_
+};
+
+}  // namespace pleat

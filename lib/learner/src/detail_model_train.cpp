@@ -1,0 +1,291 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+#include "pleat/gp/scaling.h"
+#include "pleat/learner/detail_model.h"
+#include "pleat/math/pca.h"
+
+namespace pleat {
+namespace {
+
+absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                       const PrincipalComponents& details, const std::vector<int>& clip_starts,
+                       const DetailModelOptions& options) {
+  const Eigen::Index num_details = details.mean.size();
+  if (features.rows() != details.scores.rows() || features.rows() < 2 || features.cols() < 1 ||
+      num_details < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a detail model needs at least two frames of features and details, got ",
+                     features.rows(), " x ", features.cols(), " features and ",
+                     details.scores.rows(), " x ", num_details, " details"));
+  }
+  if (details.basis.rows() != num_details || details.basis.cols() != details.scores.cols()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the basis of the details is ", details.basis.rows(), " x ", details.basis.cols(),
+        ", expected ", num_details, " x ", details.scores.cols()));
+  }
+  if (!features.allFinite() || !details.mean.allFinite() || !details.basis.allFinite() ||
+      !details.scores.allFinite()) {
+    return absl::InvalidArgumentError("features or details hold a value that is not finite");
+  }
+  if (!(options.fade_confidence >= 0 && options.fade_confidence <= 1) || !(options.rounding >= 0)) {
+    return absl::InvalidArgumentError(
+        "a detail model needs a fading confidence in [0, 1] and a rounding of at least 0");
+  }
+  if (options.learner == Learner::kRegional && options.regions.empty()) {
+    return absl::InvalidArgumentError("the regional learner needs regions");
+  }
+  for (const DetailRegion& region : options.regions) {
+    if (region.weights.size() != num_details) {
+      return absl::InvalidArgumentError(absl::StrCat("a region has ", region.weights.size(),
+                                                     " weights for ", num_details, " details"));
+    }
+  }
+  return CheckClipStarts(clip_starts, features.rows());
+}
+
+// The share of a region in each component, in terms of all: basis^T diag(weights) basis (r x r).
+Eigen::MatrixXd ShareOfRegion(const Eigen::MatrixXd& basis, const Eigen::VectorXd& weights) {
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index d = 0; d < weights.size(); ++d) {
+    if (weights[d] != 0) rows.push_back(d);
+  }
+  const Eigen::MatrixXd part = basis(rows, Eigen::all);
+  return part.transpose() * (weights(rows).asDiagonal() * part);
+}
+
+// Rows spread evenly over all clips, and which of them begin a clip.
+struct SpreadClips {
+  std::vector<Eigen::Index> rows;
+  std::vector<int> clip_starts;
+};
+
+SpreadClips SpreadOverClips(Eigen::Index num_rows, const std::vector<int>& clip_starts,
+                            int max_rows) {
+  SpreadClips spread{SpreadRows(num_rows, max_rows), {}};
+  for (const int start : clip_starts) {
+    const auto first = std::lower_bound(spread.rows.begin(), spread.rows.end(), start);
+    const int row = static_cast<int>(first - spread.rows.begin());
+    if (first == spread.rows.end() ||
+        (!spread.clip_starts.empty() && spread.clip_starts.back() == row))
+      continue;
+    spread.clip_starts.push_back(row);
+  }
+  return spread;
+}
+
+// Coarsest steps of the basis (r). Rounding to a step s errs by s / sqrt(12) RMS in each of the D_M
+// details, times the component's score.
+Eigen::VectorXd LargestSteps(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& scores,
+                             const DetailModelOptions& options) {
+  const Eigen::VectorXd score_rms =
+      (scores.colwise().squaredNorm() / double(scores.rows())).cwiseSqrt();
+  const double detail_rms =
+      std::sqrt((basis * score_rms.asDiagonal()).squaredNorm() / static_cast<double>(basis.rows()));
+  return options.rounding * std::sqrt(12.0) * detail_rms * score_rms.cwiseInverse();
+}
+
+// The back-constraint X = K_b A as a regression stage: same kernel, same weights.
+absl::StatusOr<GpRegression> BackConstraintStage(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                                                 const SharedGplvm& model,
+                                                 const SharedGplvmOptions& options) {
+  KernelLogs logs{.inverse_width = model.back_log_inverse_width,
+                  .amplitude = 0,
+                  .noise = std::log(options.back_noise)};
+  // Normalising rescales the inputs; the kernel's width follows.
+  const Eigen::MatrixXd centred = features.rowwise() - features.colwise().mean();
+  logs.inverse_width += std::log(centred.squaredNorm() / double(centred.rows()));
+  PLEAT_ASSIGN_OR_RETURN(const GpRegression fitted,
+                         GpRegression::Condition(features, model.latents, logs,
+                                                 {.kernel = {.bias = false, .linear = false}}));
+  GpRegressionParameters p = fitted.parameters();
+  p.output_mean.setZero();
+  p.alpha = model.back_weights / p.output_scale;
+  return GpRegression::FromParameters(std::move(p));
+}
+
+}  // namespace
+
+class DetailModelTrainer {
+ public:
+  DetailModelTrainer(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                     const PrincipalComponents& details, const std::vector<int>& clip_starts,
+                     const DetailModelOptions& options, DetailModelSummary& summary,
+                     const Progress& progress)
+      : features_(features),
+        details_(details),
+        clip_starts_(clip_starts),
+        options_(options),
+        summary_(summary),
+        progress_(progress) {}
+
+  absl::StatusOr<DetailModel> Train() {
+    model_.learner_ = options_.learner;
+    const Eigen::MatrixXd basis = Mapped(details_.basis);
+    PLEAT_ASSIGN_OR_RETURN(model_.basis_,
+                           DetailBasis::Quantise(Mapped(details_.mean).cast<float>(), basis,
+                                                 LargestSteps(basis, details_.scores, options_)));
+    model_.fade_confidence_ = options_.fade_confidence;
+    summary_.num_components = static_cast<int>(details_.basis.cols());
+    summary_.kept_energy = details_.kept_energy;
+    PLEAT_RETURN_IF_ERROR(progress_.Stage("basis", 0, .1).Report(1));
+    if (options_.learner == Learner::kSgplvm) {
+      PLEAT_RETURN_IF_ERROR(TrainSgplvm());
+    } else if (options_.learner == Learner::kRidge) {
+      PLEAT_RETURN_IF_ERROR(TrainRidge());
+    } else {
+      PLEAT_RETURN_IF_ERROR(TrainGp());
+    }
+    if (options_.learner == Learner::kRegional) PLEAT_RETURN_IF_ERROR(TrainRegional());
+    PLEAT_RETURN_IF_ERROR(MeasureTraining());
+    PLEAT_RETURN_IF_ERROR(progress_.Stage("done", 0, 1).Report(1));
+    return std::move(model_);
+  }
+
+ private:
+  Eigen::MatrixXd Mapped(const Eigen::MatrixXd& columns) const {
+    return options_.output_map ? options_.output_map(columns) : columns;
+  }
+
+  absl::Status TrainRidge() {
+    PLEAT_ASSIGN_OR_RETURN(GpRegression stage,
+                           TrainRidgeGp(features_, details_.scores, options_.ridge));
+    model_.stages_.push_back(std::move(stage));
+    return absl::OkStatus();
+  }
+
+  absl::Status TrainGp() {
+    if (options_.trained_gp) {
+      if (options_.trained_gp->num_inputs() != features_.cols() ||
+          options_.trained_gp->num_outputs() != details_.scores.cols()) {
+        return absl::InvalidArgumentError("the trained GP has other inputs or outputs");
+      }
+      model_.stages_.push_back(*options_.trained_gp);
+      return absl::OkStatus();
+    }
+    const double end = options_.learner == Learner::kRegional ? .3 : .95;
+    PLEAT_ASSIGN_OR_RETURN(GpRegression stage,
+                           GpRegression::Train(features_, details_.scores, options_.gp,
+                                               &summary_.gp, progress_.Stage("gp", .1, end)));
+    model_.stages_.push_back(std::move(stage));
+    return absl::OkStatus();
+  }
+
+  // A region's outputs are its share of the details in the common basis, so that the regions add up
+  // to coefficients and a query expands them once.
+  absl::Status TrainRegional() {
+    std::vector<GpRegion> regions;
+    for (const DetailRegion& region : options_.regions) {
+      regions.push_back(
+          {region.feature_sets, details_.scores * ShareOfRegion(details_.basis, region.weights)});
+    }
+    // What the direct GP has learnt about the joints holds for their parts of the body too.
+    RegionalGpOptions options = options_.regional;
+    options.input_scales = model_.stages_.front().parameters().input_scales;
+    PLEAT_ASSIGN_OR_RETURN(
+        model_.regional_,
+        RegionalGp::Train(features_, regions, options, progress_.Stage("regions", .3, .95)));
+    model_.regional_share_ = options_.regional_share;
+    return absl::OkStatus();
+  }
+
+  absl::Status TrainSgplvm() {
+    const SharedGplvmOptions& options = options_.sgplvm;
+    // A latent point for every frame is too many where there are thousands.
+    const SpreadClips part = SpreadOverClips(features_.rows(), clip_starts_, options_.max_latents);
+    const Eigen::MatrixXd features = features_(part.rows, Eigen::all);
+    const Eigen::MatrixXd scores = details_.scores(part.rows, Eigen::all);
+    PLEAT_ASSIGN_OR_RETURN(
+        const SharedGplvm latent,
+        TrainSharedGplvm(features, MakeDetailView(details_, part.rows, options.scaling),
+                         part.clip_starts, options, &summary_.sgplvm,
+                         progress_.Stage("sgplvm", .1, .85)));
+    if (options.back_constraints) {
+      PLEAT_ASSIGN_OR_RETURN(GpRegression stage, BackConstraintStage(features, latent, options));
+      model_.stages_.push_back(std::move(stage));
+    } else {
+      PLEAT_ASSIGN_OR_RETURN(
+          GpRegression stage,
+          GpRegression::Train(features, latent.latents, options_.back_map, &summary_.gp,
+                              progress_.Stage("back-map", .85, .95)));
+      model_.stages_.push_back(std::move(stage));
+    }
+    PLEAT_ASSIGN_OR_RETURN(
+        GpRegression stage,
+        GpRegression::Condition(latent.latents, scores, latent.detail_kernel,
+                                {.kernel = latent.detail_options, .normalise_inputs = false}));
+    model_.stages_.push_back(std::move(stage));
+    return absl::OkStatus();
+  }
+
+  // RMS of the model on its own training frames; the dropped components count in full.
+  absl::Status MeasureTraining() {
+    DetailModel::Workspace workspace;
+    Eigen::VectorXd row(features_.cols());
+    Eigen::VectorXf coefficients(model_.num_components());
+    double squares = 0;
+    for (Eigen::Index i = 0; i < features_.rows(); ++i) {
+      if (i % 64 == 0)
+        PLEAT_RETURN_IF_ERROR(
+            progress_.Stage("check", .95, 1).Report(double(i) / double(features_.rows())));
+      row = features_.row(i).transpose();
+      model_.PredictCoefficients(row, &workspace, coefficients);
+      squares += (coefficients.cast<double>().transpose() - details_.scores.row(i)).squaredNorm();
+    }
+    const double kept = details_.scores.squaredNorm(), energy = details_.kept_energy;
+    if (energy > 0) squares += kept * (1 - energy) / energy;
+    summary_.training_rms =
+        std::sqrt(squares / (double(features_.rows()) * double(details_.mean.size())));
+    return absl::OkStatus();
+  }
+
+  const Eigen::Ref<const Eigen::MatrixXd>& features_;
+  const PrincipalComponents& details_;
+  const std::vector<int>& clip_starts_;
+  const DetailModelOptions& options_;
+  DetailModelSummary& summary_;
+  const Progress& progress_;
+  DetailModel model_;
+};
+
+absl::StatusOr<DetailModel> TrainDetailModel(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                                             const PrincipalComponents& details,
+                                             const std::vector<int>& clip_starts,
+                                             const DetailModelOptions& options,
+                                             DetailModelSummary* summary,
+                                             const Progress& progress) {
+  PLEAT_RETURN_IF_ERROR(CheckData(features, details, clip_starts, options));
+  if (details.scores.cols() == 0) {  // all details are the same: one component that stays zero
+    PrincipalComponents constant{details.mean, Eigen::VectorXd::Unit(details.mean.size(), 0),
+                                 Eigen::VectorXd::Zero(features.rows()), 1};
+    return TrainDetailModel(features, constant, clip_starts, options, summary, progress);
+  }
+  DetailModelSummary local;
+  return DetailModelTrainer(features, details, clip_starts, options, summary ? *summary : local,
+                            progress)
+      .Train();
+}
+
+absl::StatusOr<DetailModel> TrainDetailModel(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& details,
+                                             const std::vector<int>& clip_starts,
+                                             const DetailModelOptions& options,
+                                             DetailModelSummary* summary,
+                                             const Progress& progress) {
+  if (!details.allFinite()) {
+    return absl::InvalidArgumentError("features or details hold a value that is not finite");
+  }
+  if (options.max_components < 1 || !(options.pca_energy > 0) || !(options.pca_energy <= 1)) {
+    return absl::InvalidArgumentError(
+        "a detail model needs at least one component and an energy in (0, 1]");
+  }
+  return TrainDetailModel(features,
+                          ComputePca(details, {.max_components = options.max_components,
+                                               .min_energy = options.pca_energy}),
+                          clip_starts, options, summary, progress);
+}
+
+}  // namespace pleat

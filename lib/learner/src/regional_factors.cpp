@@ -1,0 +1,187 @@
+// The same code is compiled for three instruction sets: it is inlined into each function.
+#include "regional_factors.h"
+
+#include <algorithm>
+#include <map>
+
+#include "pleat/simd/cpu_target.h"
+#include "pleat/simd/dense.h"
+
+namespace pleat {
+namespace {
+
+// Sets of columns that differ, numbered in the order of their first scale.
+std::map<std::vector<int>, int> DifferentSets(const RegionalGpParameters& parameters) {
+  std::map<std::vector<int>, int> sets;
+  for (const RegionalGpParameters::Region& region : parameters.regions) {
+    for (const RegionalGpParameters::Scale& scale : region.scales) {
+      sets.try_emplace(scale.columns, static_cast<int>(sets.size()));
+    }
+  }
+  return sets;
+}
+
+}  // namespace
+
+RegionalFactors::RegionalFactors(const RegionalGpParameters& parameters)
+    : num_rows_(parameters.inputs.rows()) {
+  const std::map<std::vector<int>, int> sets = DifferentSets(parameters);
+  for (const RegionalGpParameters::Region& region : parameters.regions) {
+    for (const RegionalGpParameters::Scale& scale : region.scales) {
+      scales_.push_back({.set = sets.at(scale.columns),
+                         .exponent = -.5 * scale.inverse_width,
+                         .amplitude = scale.amplitude,
+                         .linear = scale.linear});
+    }
+    regions_.push_back({.bias = region.bias, .end_scale = scales_.size()});
+  }
+  std::vector<std::vector<int>> sets_of_column(parameters.inputs.cols());
+  for (const auto& [columns, set] : sets) {
+    for (const int column : columns) sets_of_column[column].push_back(set);
+  }
+  std::map<std::vector<int>, int> atom_of_sets;
+  std::vector<std::vector<int>> atoms, set_atoms(sets.size());
+  for (size_t column = 0; column < sets_of_column.size(); ++column) {
+    const std::vector<int>& its_sets = sets_of_column[column];
+    if (its_sets.empty()) continue;
+    const auto [entry, is_new] = atom_of_sets.try_emplace(its_sets, static_cast<int>(atoms.size()));
+    if (is_new) {
+      for (const int set : its_sets) set_atoms[set].push_back(entry->second);
+      atoms.emplace_back();
+    }
+    atoms[entry->second].push_back(static_cast<int>(column));
+  }
+  for (const std::vector<int>& atom : atoms) {
+    columns_.insert(columns_.end(), atom.begin(), atom.end());
+    atom_ends_.push_back(columns_.size());
+  }
+  for (const std::vector<int>& set : set_atoms) {
+    set_atoms_.insert(set_atoms_.end(), set.begin(), set.end());
+    set_ends_.push_back(set_atoms_.size());
+  }
+  const ptrdiff_t num_chunks = (num_rows_ + kLanes - 1) / kLanes;
+  inputs_.assign(num_chunks * kLanes * columns_.size(), 0);
+  for (ptrdiff_t n = 0; n < num_rows_; ++n) {
+    for (size_t c = 0; c < columns_.size(); ++c) {
+      inputs_[(n / kLanes * columns_.size() + c) * kLanes + n % kLanes] =
+          parameters.inputs(n, columns_[c]);
+    }
+  }
+}
+
+size_t RegionalFactors::scratch_size() const {
+  return kLanes * (2 * atom_ends_.size() + 2 * set_ends_.size() + scales_.size());
+}
+
+#define PLEAT_INLINE inline __attribute__((always_inline))
+
+struct RegionalFactorsKernels {
+  typedef double Lanes __attribute__((vector_size(64), aligned(8), may_alias));
+  static constexpr ptrdiff_t kLanes = RegionalFactors::kLanes;
+
+  static PLEAT_INLINE Lanes& At(double* values, size_t i) {
+    return *reinterpret_cast<Lanes*>(values + i * kLanes);
+  }
+
+  // Of the rows of one chunk: the exponents of all scales and the products of all sets.
+  static PLEAT_INLINE void Sums(const RegionalFactors& f, const double* inputs, const double* row,
+                                double* atoms, double* products, double* exponents) {
+    size_t c = 0;
+    for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
+      Lanes distance = {}, product = {};
+      for (; c < f.atom_ends_[a]; ++c) {
+        const Lanes x = *reinterpret_cast<const Lanes*>(inputs + c * kLanes);
+        const double value = row[f.columns_[c]];
+        distance += (x - value) * (x - value);
+        product += value * x;
+      }
+      At(atoms, 2 * a) = distance;
+      At(atoms, 2 * a + 1) = product;
+    }
+    double* distances = products + f.set_ends_.size() * kLanes;
+    size_t i = 0;
+    for (size_t set = 0; set < f.set_ends_.size(); ++set) {
+      Lanes distance = {}, product = {};
+      for (; i < f.set_ends_[set]; ++i) {
+        distance += At(atoms, 2 * f.set_atoms_[i]);
+        product += At(atoms, 2 * f.set_atoms_[i] + 1);
+      }
+      At(distances, set) = distance;
+      At(products, set) = product;
+    }
+    for (size_t s = 0; s < f.scales_.size(); ++s) {
+      At(exponents, s) = f.scales_[s].exponent * At(distances, f.scales_[s].set);
+    }
+  }
+
+  // factors[r * num_rows + n] of the `count` rows n of one chunk.
+  static PLEAT_INLINE void Kernels(const RegionalFactors& f, double* products, double* rbfs,
+                                   ptrdiff_t count, float* factors) {
+    size_t s = 0;
+    for (const RegionalFactors::Region& region : f.regions_) {
+      Lanes kernel = Lanes{} + region.bias;
+      for (; s < region.end_scale; ++s) {
+        const RegionalFactors::Scale& scale = f.scales_[s];
+        kernel += scale.amplitude * At(rbfs, s) + scale.linear * At(products, scale.set);
+      }
+      for (ptrdiff_t n = 0; n < count; ++n) factors[n] = static_cast<float>(kernel[n]);
+      factors += f.num_rows_;
+    }
+  }
+
+  static PLEAT_INLINE void Compute(const RegionalFactors& f, const double* row, double* scratch,
+                                   float* factors) {
+    double* atoms = scratch;
+    double* products = atoms + 2 * kLanes * f.atom_ends_.size();
+    double* exponents = products + 2 * kLanes * f.set_ends_.size();
+    const auto exp_in_place = ChosenDenseOps().exp_in_place;
+    const double* inputs = f.inputs_.data();
+    for (ptrdiff_t n = 0; n < f.num_rows_; n += kLanes) {
+      Sums(f, inputs, row, atoms, products, exponents);
+      exp_in_place(exponents, kLanes * static_cast<ptrdiff_t>(f.scales_.size()));
+      Kernels(f, products, exponents, std::min(kLanes, f.num_rows_ - n), factors + n);
+      inputs += kLanes * f.columns_.size();
+    }
+  }
+};
+
+namespace {
+
+void ComputeForAny(const RegionalFactors& f, const double* row, double* scratch, float* factors) {
+  RegionalFactorsKernels::Compute(f, row, scratch, factors);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void ComputeForAvx2(const RegionalFactors& f, const double* row,
+                                                    double* scratch, float* factors) {
+  RegionalFactorsKernels::Compute(f, row, scratch, factors);
+}
+PLEAT_TARGET_AVX512("avx512f")
+void ComputeForAvx512(const RegionalFactors& f, const double* row, double* scratch,
+                      float* factors) {
+  RegionalFactorsKernels::Compute(f, row, scratch, factors);
+}
+#endif
+
+std::vector<RegionalFactors::Function> FindUsable() {
+  std::vector<RegionalFactors::Function> usable;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) usable.push_back(ComputeForAvx512);
+  if (__builtin_cpu_supports("avx2")) usable.push_back(ComputeForAvx2);
+#endif
+  usable.push_back(ComputeForAny);
+  return usable;
+}
+
+}  // namespace
+
+std::span<const RegionalFactors::Function> RegionalFactors::Usable() {
+  static const std::vector<Function> usable = FindUsable();
+  return usable;
+}
+
+void RegionalFactors::Compute(const double* row, double* scratch, float* factors) const {
+  Usable().front()(*this, row, scratch, factors);
+}
+
+}  // namespace pleat

@@ -1,0 +1,58 @@
+// The kernel values of a regional GP between one row and all rows of the training.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "pleat/learner/regional_gp.h"
+
+namespace pleat {
+
+// The kernels of all regions in the order in which a query computes them. Columns that belong to
+// the same sets are one atom: distances are summed over them only once, and the sum over a set that
+// several scales share is formed only once.
+class RegionalFactors {
+ public:
+  RegionalFactors() = default;
+  explicit RegionalFactors(const RegionalGpParameters& parameters);  // alphas are not needed
+
+  size_t memory_bytes() const { return inputs_.size() * sizeof(double); }
+  // Doubles that Compute() needs for its own use.
+  size_t scratch_size() const;
+
+  // row: D, normalised. factors[r * N + n] = k_r(row, row n of the training).
+  void Compute(const double* row, double* scratch, float* factors) const;
+
+  // Kernels this processor can run, the fastest first; all give the same bits.
+  using Function = void (*)(const RegionalFactors& factors_of, const double* row, double* scratch,
+                            float* factors);
+  static std::span<const Function> Usable();
+
+  static constexpr ptrdiff_t kLanes = 8;  // rows of the training that are computed together
+  struct Scale {
+    ptrdiff_t set = 0;
+    double exponent = 0;  // -g / 2
+    double amplitude = 1, linear = 0;
+  };
+  struct Region {
+    double bias = 0;
+    size_t end_scale = 0;  // of its scales in `scales_`
+  };
+
+ private:
+  friend struct RegionalFactorsKernels;
+
+  ptrdiff_t num_rows_ = 0;
+  // By eight rows, in these by columns in the order of the atoms; zeros after the last row.
+  std::vector<double> inputs_;
+  std::vector<int> columns_;       // of all atoms, one after the other
+  std::vector<size_t> atom_ends_;  // in columns_
+  std::vector<int> set_atoms_;     // of all sets, one after the other
+  std::vector<size_t> set_ends_;   // in set_atoms_
+  std::vector<Scale> scales_;      // of all regions, one after the other
+  std::vector<Region> regions_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,137 @@
+#include "pleat/learner/regional_gp.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "feature_sets.h"
+#include "pleat/base/status.h"
+#include "pleat/simd/weighted_rows.h"
+#include "regional_factors.h"
+
+namespace pleat {
+namespace {
+
+absl::Status Refuse(const std::string& what) {
+  return absl::InvalidArgumentError("regional GP parameters: " + what);
+}
+
+using RowMajorMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false for not a number
+
+absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index num_inputs) {
+  if (!IsFeatureSet(scale.columns, num_inputs)) {
+    return Refuse(absl::StrCat("the columns of a scale do not ascend below ", num_inputs));
+  }
+  if (!IsPositive(scale.inverse_width) || !IsPositive(scale.amplitude) || !(scale.linear >= 0) ||
+      !(scale.linear < 1e30)) {
+    return Refuse("a width, amplitude or slope is out of range");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckParameters(const RegionalGpParameters& p) {
+  const Eigen::Index n = p.inputs.rows(), r = p.output_mean.size();
+  if (n < 1 || p.inputs.cols() < 1 || r < 1 || p.regions.empty()) {
+    return Refuse("no rows, inputs, outputs or regions");
+  }
+  if (p.input_mean.size() != p.inputs.cols() || p.input_scales.size() != p.inputs.cols() ||
+      !std::all_of(p.input_scales.begin(), p.input_scales.end(), IsPositive)) {
+    return Refuse("mean or scales of the inputs do not fit");
+  }
+  if (!p.input_mean.allFinite() || !p.inputs.allFinite() || !p.output_mean.allFinite()) {
+    return Refuse("an input or a mean is not finite");
+  }
+  for (const RegionalGpParameters::Region& region : p.regions) {
+    if (region.alpha.rows() != n || region.alpha.cols() != r || !region.alpha.allFinite()) {
+      return Refuse(absl::StrCat("alpha is ", region.alpha.rows(), " x ", region.alpha.cols(),
+                                 " or not finite, expected ", n, " x ", r));
+    }
+    if (region.scales.empty() || !(region.bias >= 0) || !(region.bias < 1e30)) {
+      return Refuse("a region without scales, or its bias is out of range");
+    }
+    for (const RegionalGpParameters::Scale& scale : region.scales) {
+      PLEAT_RETURN_IF_ERROR(CheckScale(scale, p.inputs.cols()));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<RegionalGp> RegionalGp::FromParameters(RegionalGpParameters parameters) {
+  PLEAT_RETURN_IF_ERROR(CheckParameters(parameters));
+  return RegionalGp(std::move(parameters));
+}
+
+RegionalGp::RegionalGp(RegionalGpParameters parameters)
+    : parameters_(std::move(parameters)),
+      factors_(std::make_shared<const RegionalFactors>(parameters_)) {
+  const Eigen::Index n = parameters_.inputs.rows();
+  alphas_.resize(static_cast<size_t>(n) * num_outputs() * parameters_.regions.size());
+  float* alpha = alphas_.data();
+  for (RegionalGpParameters::Region& region : parameters_.regions) {
+    Eigen::Map<RowMajorMatrix>(alpha, n, num_outputs()) = region.alpha;
+    alpha += n * num_outputs();
+    region.alpha.resize(0, 0);
+  }
+}
+
+RegionalGpParameters RegionalGp::parameters() const {
+  RegionalGpParameters p = parameters_;
+  const Eigen::Index n = p.inputs.rows();
+  const float* alpha = alphas_.data();
+  for (RegionalGpParameters::Region& region : p.regions) {
+    region.alpha = Eigen::Map<const RowMajorMatrix>(alpha, n, num_outputs());
+    alpha += n * num_outputs();
+  }
+  return p;
+}
+
+size_t RegionalGp::memory_bytes() const {
+  return static_cast<size_t>(parameters_.inputs.size()) * sizeof(double) +
+         factors_->memory_bytes() + alphas_.size() * sizeof(float);
+}
+
+void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
+                         Eigen::Ref<Eigen::VectorXd> mean) const {
+  assert(mean.size() == num_outputs());
+  double* const target = mean.data();
+  SetRow(row, workspace);
+  PredictRows({&workspace, 1}, {&target, 1});
+}
+
+void RegionalGp::SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace) const {
+  assert(row.size() == num_inputs());
+  workspace->row = (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales);
+  workspace->scratch.resize(static_cast<Eigen::Index>(factors_->scratch_size()));
+  workspace->factors.resize(num_factors());
+  factors_->Compute(workspace->row.data(), workspace->scratch.data(), workspace->factors.data());
+}
+
+void RegionalGp::PredictRows(std::span<Workspace* const> workspaces,
+                             std::span<double* const> means) const {
+  assert(workspaces.size() == means.size());
+  for (size_t begin = 0; begin < workspaces.size(); begin += kMaxWeightedTogether) {
+    const size_t count = std::min<size_t>(kMaxWeightedTogether, workspaces.size() - begin);
+    std::array<const float*, kMaxWeightedTogether> factors{};
+    std::array<float*, kMaxWeightedTogether> sums{};
+    for (size_t q = 0; q < count; ++q) {
+      Workspace& w = *workspaces[begin + q];
+      w.sum.setZero(num_outputs());
+      factors[q] = w.factors.data();
+      sums[q] = w.sum.data();
+    }
+    AddWeightedRows({factors.data(), count}, alphas_.data(), num_factors(), num_outputs(),
+                    {sums.data(), count});
+    for (size_t q = 0; q < count; ++q) {
+      Eigen::Map<Eigen::VectorXd>(means[begin + q], num_outputs()) =
+          parameters_.output_mean + workspaces[begin + q]->sum.cast<double>();
+    }
+  }
+}
+
+}  // namespace pleat

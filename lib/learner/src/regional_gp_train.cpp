@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "feature_sets.h"
+#include "pleat/base/parallel.h"
+#include "pleat/base/status.h"
+#include "pleat/gp/additive_likelihood.h"
+#include "pleat/gp/inducing.h"
+#include "pleat/gp/scaling.h"
+#include "pleat/learner/regional_gp.h"
+#include "pleat/optimize/lbfgs.h"
+
+namespace pleat {
+namespace {
+
+absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                       const std::vector<GpRegion>& regions) {
+  if (inputs.rows() < 2 || inputs.cols() < 1 || regions.empty() || !inputs.allFinite()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a regional GP needs regions and at least two finite rows of inputs, got ",
+                     inputs.rows(), " x ", inputs.cols(), " and ", regions.size(), " regions"));
+  }
+  for (size_t i = 0; i < regions.size(); ++i) {
+    const GpRegion& region = regions[i];
+    if (region.outputs.rows() != inputs.rows() || region.outputs.cols() < 1 ||
+        region.outputs.cols() != regions[0].outputs.cols() || !region.outputs.allFinite()) {
+      return absl::InvalidArgumentError(absl::StrCat("the outputs of region ", i,
+                                                     " are not finite or not ", inputs.rows(),
+                                                     " x ", regions[0].outputs.cols()));
+    }
+    if (region.feature_sets.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat("region ", i, " has no feature sets"));
+    }
+    for (const std::vector<int>& set : region.feature_sets) {
+      if (!IsFeatureSet(set, inputs.cols())) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("a feature set of region ", i, " does not ascend below ", inputs.cols()));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckScales(const Eigen::VectorXd& scales, Eigen::Index num_inputs) {
+  if (scales.size() == 0) return absl::OkStatus();
+  if (scales.size() != num_inputs || !scales.allFinite() || !(scales.minCoeff() > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a regional GP needs one positive scale for each of ", num_inputs,
+                     " inputs, or none; got ", scales.size()));
+  }
+  return absl::OkStatus();
+}
+
+// The columns of one set for some rows, and what divides them to rows of mean squared norm 1.
+struct ScaledSet {
+  Eigen::MatrixXd inputs;
+  double unit;
+};
+
+ScaledSet TakeSet(const Eigen::MatrixXd& inputs, const std::vector<Eigen::Index>& rows,
+                  const std::vector<int>& columns) {
+  ScaledSet set{inputs(rows, columns), 1};
+  set.unit = PositiveRoot(set.inputs.squaredNorm() / static_cast<double>(rows.size()));
+  set.inputs /= set.unit;
+  return set;
+}
+
+// alpha = K^-1 y, K over the rows of `sets`.
+bool SolveRegion(const std::vector<Eigen::MatrixXd>& sets, const Eigen::VectorXd& logs,
+                 const Eigen::MatrixXd& outputs, const Progress& progress, Eigen::MatrixXd* alpha) {
+  AdditiveLikelihood likelihood(sets, GramData{Eigen::MatrixXd::Zero(outputs.rows(), 1), false, 1},
+                                0, progress);
+  if (!std::isfinite(likelihood.Evaluate(logs, nullptr))) return false;
+  likelihood.Solve(outputs, *alpha);
+  return true;
+}
+
+// The same through the inducing rows `inducing` from all rows of inputs and outputs.
+// values: of the kernel, in the order of AdditiveLikelihood.
+bool SolveInducedRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
+                        const std::vector<double>& set_units,
+                        const std::vector<Eigen::MatrixXd>& inducing, const Eigen::VectorXd& values,
+                        const Eigen::MatrixXd& outputs, const Progress& progress,
+                        Eigen::MatrixXd* alpha) {
+  const auto scales = static_cast<int>(inducing.size());
+  std::vector<AdditiveTerm> terms;
+  for (int e = 0; e < scales; ++e) {
+    terms.push_back({values[e], values[scales + e], values[2 * scales + e]});
+  }
+  const double noise = AdditiveLikelihood::Noise(values), bias = values[3 * scales + 1];
+  const auto cross = [&](Eigen::Index begin, Eigen::Index count) {
+    std::vector<Eigen::MatrixXd> rows;
+    for (int e = 0; e < scales; ++e) {
+      rows.push_back(inputs(Eigen::seqN(begin, count), region.feature_sets[e]).eval() /
+                     set_units[e]);
+    }
+    return AdditiveCovariance(rows, inducing, terms, bias);
+  };
+  InducedWeights weights;
+  if (!SolveInduced(
+          AdditiveCovariance(inducing, inducing, terms, bias), noise, outputs, cross,
+          [&] { return progress.cancelled(); }, false, &weights)) {
+    return false;
+  }
+  *alpha = std::move(weights.alpha);
+  return true;
+}
+
+// Learns one region: hyperparameters on `learning_rows`, weights on all rows of `inputs`.
+absl::Status TrainRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
+                         const std::vector<Eigen::Index>& learning_rows,
+                         const std::vector<Eigen::Index>& rows, const RegionalGpOptions& options,
+                         const Progress& progress, RegionalGpParameters::Region* result) {
+  Eigen::MatrixXd outputs = region.outputs.rowwise() - region.outputs.colwise().mean();
+  const double unit = PositiveRoot(outputs.squaredNorm() / static_cast<double>(outputs.size()));
+  outputs /= unit;
+
+  const int scales = static_cast<int>(region.feature_sets.size());
+  std::vector<Eigen::MatrixXd> sets;
+  std::vector<double> set_units;
+  for (const std::vector<int>& columns : region.feature_sets) {
+    ScaledSet set = TakeSet(inputs, learning_rows, columns);
+    sets.push_back(std::move(set.inputs));
+    set_units.push_back(set.unit);
+  }
+  PLEAT_ASSIGN_OR_RETURN(GramData data, MakeGramData(outputs(learning_rows, Eigen::all)));
+  AdditiveLikelihood likelihood(sets, std::move(data), options.prior_precision, progress);
+  PLEAT_ASSIGN_OR_RETURN(
+      const Eigen::VectorXd logs,
+      MinimizeLbfgs(likelihood, likelihood.Start(),
+                    {.max_iterations = options.max_iterations, .objective_tolerance = 1e-9}));
+
+  const Eigen::VectorXd values =
+      logs.cwiseMax(-kMaxKernelLog).cwiseMin(kMaxKernelLog).array().exp();
+  for (int e = 0; e < scales; ++e) sets[e] = inputs(rows, region.feature_sets[e]) / set_units[e];
+  Eigen::MatrixXd alpha;
+  const bool solved =
+      static_cast<Eigen::Index>(rows.size()) < inputs.rows()
+          ? SolveInducedRegion(inputs, region, set_units, sets, values, outputs, progress, &alpha)
+          : SolveRegion(sets, logs, outputs, progress, &alpha);
+  if (!solved) {
+    PLEAT_RETURN_IF_ERROR(progress.Report(0));
+    return absl::InvalidArgumentError("the kernel matrix cannot be factored");
+  }
+  result->alpha = (unit * alpha).cast<float>();
+  result->bias = values[3 * scales + 1];
+  for (int e = 0; e < scales; ++e) {
+    const double square = set_units[e] * set_units[e];
+    result->scales.push_back({region.feature_sets[e], values[e] / square, values[scales + e],
+                              values[2 * scales + e] / square});
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                             const std::vector<GpRegion>& regions,
+                                             const RegionalGpOptions& options,
+                                             const Progress& progress) {
+  PLEAT_RETURN_IF_ERROR(CheckData(inputs, regions));
+  PLEAT_RETURN_IF_ERROR(CheckScales(options.input_scales, inputs.cols()));
+  RegionalGpParameters p;
+  p.input_mean = inputs.colwise().mean().transpose();
+  Eigen::MatrixXd normalised = inputs.rowwise() - p.input_mean.transpose();
+  p.input_scales = options.input_scales;
+  if (p.input_scales.size() == 0) p.input_scales.setOnes(inputs.cols());
+  normalised *= p.input_scales.cwiseInverse().asDiagonal();
+  const double unit = PositiveRoot(normalised.squaredNorm() / static_cast<double>(inputs.rows()));
+  p.input_scales *= unit;
+  normalised /= unit;
+  const auto learning_rows = SpreadRows(inputs.rows(), options.max_hyperparameter_rows);
+  const auto rows = SpreadRows(inputs.rows(), options.max_rows);
+
+  p.output_mean = Eigen::VectorXd::Zero(regions[0].outputs.cols());
+  for (const GpRegion& region : regions) {
+    p.output_mean += region.outputs.colwise().mean().transpose();
+  }
+  // The sink of `progress` is not for several threads: reports come between batches.
+  const int num_regions = static_cast<int>(regions.size());
+  const Progress cancellation(nullptr, [&progress] { return progress.cancelled(); });
+  p.regions.resize(num_regions);
+  std::vector<absl::Status> statuses(num_regions);
+  constexpr int kBatch = 4;
+  for (int begin = 0; begin < num_regions; begin += kBatch) {
+    const int size = std::min(kBatch, num_regions - begin);
+    ParallelFor(size, options.num_threads, [&](int item) {
+      const int i = begin + item;
+      statuses[i] = TrainRegion(normalised, regions[i], learning_rows, rows, options, cancellation,
+                                &p.regions[i]);
+    });
+    PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(begin + size) / num_regions));
+  }
+  for (int i = 0; i < num_regions; ++i) {
+    if (statuses[i].ok()) continue;
+    return absl::Status(statuses[i].code(),
+                        absl::StrCat("region ", i, ": ", statuses[i].message()));
+  }
+  p.inputs = normalised(rows, Eigen::all);
+  return RegionalGp(std::move(p));
+}
+
+}  // namespace pleat

@@ -1,0 +1,121 @@
+#include "pleat/local/pose_session.h"
+
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double MicrosecondsBetween(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::micro>(end - start).count();
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseSessionOptions options) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
+                         EncoderPool::Make(*model, options.encoder));
+  return Open(std::move(model), std::move(options), std::move(encoder));
+}
+
+absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
+    std::unique_ptr<EncoderPool::Lease> encoder) {
+  // Fails early, before the first pose, when the scales do not fit.
+  PoseEvaluator evaluator(model);
+  EvaluatedFrame frame;
+  PLEAT_RETURN_IF_ERROR(
+      evaluator.EvaluateSkinned(Pose::Rest(model->skeleton()), options.bone_scales, &frame));
+  return std::unique_ptr<PoseSession>(
+      new PoseSession(std::move(evaluator), std::move(options), std::move(encoder)));
+}
+
+PoseSession::PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
+                         std::unique_ptr<EncoderPool::Lease> encoder)
+    : options_(std::move(options)), evaluator_(std::move(evaluator)), encoder_(std::move(encoder)) {
+  parameters_header_.content = StreamContent::kParameters;
+  parameters_header_.num_vertices = evaluator_.model().num_vertices();
+}
+
+absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& poses) {
+  const Clock::time_point start = Clock::now();
+  PoseQuery query = QueryOf(&poses);
+  evaluator_.EvaluateBatch({&query, 1});
+  return Encode(query, MicrosecondsBetween(start, Clock::now()));
+}
+
+PoseQuery PoseSession::QueryOf(const std::vector<const Pose*>* poses) {
+  return {.poses = poses,
+          .bone_scales = &options_.bone_scales,
+          .skinned_only = options_.skinned_only,
+          .frame = &frame_,
+          .parameters = encoder_ == nullptr ? &parameters_ : nullptr};
+}
+
+absl::StatusOr<EncodedFrame> PoseSession::Encode(const PoseQuery& query, double evaluate_us) {
+  PLEAT_RETURN_IF_ERROR(query.status);
+  if (encoder_ == nullptr) {
+    return EncodedFrame{.parameters = parameters_,
+                        .confidence = parameters_.confidence,
+                        .evaluate_us = evaluate_us};
+  }
+  const Clock::time_point start = Clock::now();
+  const std::vector<int32_t>& vertices = header().control_vertices;
+  if (!vertices.empty()) control_ = frame_.positions(Eigen::all, vertices);
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes,
+                         (*encoder_)->Encode(vertices.empty() ? frame_.positions : control_));
+  return EncodedFrame{.draco = std::move(bytes),
+                      .confidence = frame_.confidence,
+                      .mark = (*encoder_)->mark(),
+                      .evaluate_us = evaluate_us,
+                      .encode_us = MicrosecondsBetween(start, Clock::now())};
+}
+
+absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
+                         EncoderPool::Make(*model, options.encoder));
+  return Open(std::move(model), std::move(track), std::move(options), std::move(encoder));
+}
+
+absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
+    std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options,
+    std::unique_ptr<EncoderPool::Lease> encoder) {
+  // The history interpolates between poses, so all of them must fit before the first is shown.
+  const size_t num_joints = model->skeleton().joints().size();
+  for (int t = 0; t < track.num_frames(); ++t) {
+    if (track.poses[t].rotations.size() != num_joints) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("frame ", t, ": the pose has ", track.poses[t].rotations.size(),
+                       " rotations, the skeleton has ", num_joints, " joints"));
+    }
+  }
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<PoseSession> session,
+                         PoseSession::Open(model, std::move(options), std::move(encoder)));
+  return std::unique_ptr<ClipSession>(
+      new ClipSession(std::move(session), std::move(track), *model));
+}
+
+ClipSession::ClipSession(std::unique_ptr<PoseSession> session, PoseTrack track,
+                         const CharacterModel& model)
+    : session_(std::move(session)),
+      track_(std::move(track)),
+      history_(track_, model.frame_rate().fps(), model.options().history) {}
+
+absl::StatusOr<EncodedFrame> ClipSession::Next() {
+  const int t = next_++;
+  history_.At(t, &poses_);
+  absl::StatusOr<EncodedFrame> frame = session_->Show(poses_);
+  if (frame.ok()) return frame;
+  return absl::Status(frame.status().code(),
+                      absl::StrCat("frame ", t, ": ", absl::string_view(frame.status().message())));
+}
+
+}  // namespace pleat

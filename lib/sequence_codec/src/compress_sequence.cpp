@@ -1,0 +1,235 @@
+#include "pleat/sequence_codec/compress_sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "compressed_format.h"
+#include "pleat/base/status.h"
+#include "pleat/sequence_codec/sequence_decoder.h"
+#include "sequence_encoder.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kMaxTrials = 12;
+
+absl::Status CheckRange(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(name, " is ", value, ", allowed are ", low, " to ", high));
+}
+
+// The extent of all frames.
+struct Extent {
+  Eigen::Vector3d low, high;
+  double squared_spread = 0;  // sum of squared distances to the centroid of each frame
+
+  explicit Extent(const MeshSequence& sequence) {
+    low.setConstant(std::numeric_limits<double>::infinity());
+    high = -low;
+    for (int t = 0; t < sequence.num_frames(); ++t) {
+      const Eigen::Matrix3Xd frame = sequence.FrameAsDouble(t);
+      low = low.cwiseMin(frame.rowwise().minCoeff());
+      high = high.cwiseMax(frame.rowwise().maxCoeff());
+      const Eigen::Vector3d center = frame.rowwise().mean();
+      squared_spread += (frame.colwise() - center).squaredNorm();
+    }
+  }
+  double Largest() const { return std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()); }
+};
+
+struct Measured {
+  double kg_percent = 0, max_error_m = 0;
+};
+
+absl::StatusOr<Measured> Measure(const MeshSequence& sequence, const std::string& bytes,
+                                 const Extent& extent, const Progress& progress) {
+  PLEAT_ASSIGN_OR_RETURN(SequenceDecoder decoder, SequenceDecoder::Open(bytes));
+  double sum = 0, largest = 0;
+  PLEAT_RETURN_IF_ERROR(decoder.Decode(
+      0, sequence.num_frames(),
+      [&](int t, const Eigen::Matrix3Xf& positions) {
+        const Eigen::RowVectorXd squares =
+            (positions.cast<double>() - sequence.FrameAsDouble(t)).colwise().squaredNorm();
+        sum += squares.sum();
+        largest = std::max(largest, squares.maxCoeff());
+        return absl::OkStatus();
+      },
+      progress));
+  const double spread = std::max(extent.squared_spread, 1e-300);
+  return Measured{100 * std::sqrt(sum / spread), std::sqrt(largest)};
+}
+
+// The largest step whose error is at most the goal's, to some percent: regula falsi on logarithms.
+absl::StatusOr<std::string> EncodeForKg(const SequenceEncoder& encoder,
+                                        const MeshSequence& sequence, const Extent& extent,
+                                        double kg_percent, const Progress& progress) {
+  if (!(extent.squared_spread > 0)) {
+    return absl::InvalidArgumentError(
+        "the sequence has no extent: a KG error is not defined for it");
+  }
+  const double num_values = static_cast<double>(sequence.num_vertices()) * sequence.num_frames();
+  double step_m = 15 * kg_percent / 100 * std::sqrt(extent.squared_spread / num_values);
+  double below = 0, above = 0, kg_below = 0, kg_above = 0;  // steps with too small, too large error
+  std::string best;
+  for (int trial = 0; trial < kMaxTrials; ++trial) {
+    const Progress part =
+        progress.Stage("encode", 1.0 * trial / kMaxTrials, (trial + 1.0) / kMaxTrials);
+    PLEAT_ASSIGN_OR_RETURN(std::string bytes, encoder.Encode(step_m, {}, part));
+    PLEAT_ASSIGN_OR_RETURN(const Measured measured, Measure(sequence, bytes, extent, part));
+    if (measured.kg_percent <= kg_percent) {
+      below = step_m;
+      kg_below = measured.kg_percent;
+      best = std::move(bytes);
+      if (kg_below > 0.99 * kg_percent) break;
+    } else {
+      above = step_m;
+      kg_above = measured.kg_percent;
+    }
+    const double aim = std::log(0.995 * kg_percent);
+    if (below > 0 && above > 0) {
+      if (above < 1.002 * below) break;
+      const double share = (aim - std::log(std::max(kg_below, 1e-9))) /
+                           (std::log(kg_above) - std::log(std::max(kg_below, 1e-9)));
+      step_m = below * std::pow(above / below, std::clamp(share, 0.1, 0.9));
+    } else {  // the error grows with about the power .8 of the step
+      const double ratio = std::exp(aim) / std::max(measured.kg_percent, 1e-9);
+      step_m *= std::pow(std::clamp(ratio, 0.1, 10.0), 1.2);
+    }
+  }
+  if (best.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "a KG error of ", kg_percent, " % cannot be reached in float32; ask for a larger one"));
+  }
+  return best;
+}
+
+// The step of the motion model that makes model and residuals together smallest.
+absl::StatusOr<std::string> EncodeSmallest(const SequenceEncoder& encoder, const ResidualGrid& grid,
+                                           double step_m, const Progress& progress) {
+  int num_trials = 0;
+  const auto encode = [&](double step) {
+    const double begin = 1.0 * num_trials / kMaxTrials;
+    ++num_trials;
+    return encoder.Encode(step, grid,
+                          progress.Stage("encode", begin, 1.0 * num_trials / kMaxTrials));
+  };
+  PLEAT_ASSIGN_OR_RETURN(std::string best, encode(step_m));
+  for (double factor = 2; factor > 1.3 && num_trials < kMaxTrials; factor = std::sqrt(factor)) {
+    for (const double direction : {factor, 1 / factor}) {
+      bool better = true;
+      while (better && num_trials < kMaxTrials) {
+        absl::StatusOr<std::string> trial = encode(step_m * direction);
+        if (absl::IsCancelled(trial.status())) return trial.status();
+        better = trial.ok() && trial->size() < best.size();
+        if (!better) break;
+        best = *std::move(trial);
+        step_m *= direction;
+      }
+    }
+  }
+  return best;
+}
+
+// Distance of neighbouring float32 numbers of that size.
+double Ulp(double value) { return std::ldexp(1, std::ilogb(std::max(value, 1e-30)) - 23); }
+
+absl::StatusOr<std::string> EncodeForMaxError(const SequenceEncoder& encoder, const Extent& extent,
+                                              double bound_m, const Progress& progress) {
+  // Decoded coordinates are rounded to float32, each by at most half an ulp.
+  const double margin = 1.1 * Ulp(extent.Largest());
+  if (bound_m < 8 * margin) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("an error of ", bound_m * 1e3, " mm is below what float32 positions of ",
+                     extent.Largest(), " m can keep; ask for ", 8e3 * margin, " mm or more"));
+  }
+  ResidualGrid grid;
+  grid.kind = ResidualKind::kCorrection;
+  grid.bound_m = bound_m - margin;
+  grid.step_m = 2 * grid.bound_m / std::sqrt(3.0) * (1 - 1e-9);
+  return EncodeSmallest(encoder, grid, 8 * bound_m, progress);
+}
+
+ResidualGrid GridOf(const Extent& extent, int bits) {
+  ResidualGrid grid;
+  grid.kind = ResidualKind::kGrid;
+  grid.origin_m = extent.low;
+  grid.step_m = std::max((extent.high - extent.low).maxCoeff(), 1e-6) / ((1 << bits) - 1);
+  return grid;
+}
+
+absl::StatusOr<std::string> EncodeForGoal(const SequenceEncoder& encoder,
+                                          const MeshSequence& sequence, const Extent& extent,
+                                          const CompressOptions& options,
+                                          const Progress& progress) {
+  if (options.goal == CompressionGoal::kKg) {
+    return EncodeForKg(encoder, sequence, extent, options.kg_percent, progress);
+  }
+  if (options.goal == CompressionGoal::kMaxError) {
+    return EncodeForMaxError(encoder, extent, options.max_error_mm * 1e-3, progress);
+  }
+  const ResidualGrid grid = GridOf(extent, options.grid_bits);
+  return EncodeSmallest(encoder, grid, 4 * grid.step_m, progress);
+}
+
+// The promise, on what a decoder gives.
+absl::Status CheckPromise(const CompressOptions& options, const Measured& measured,
+                          const Extent& extent) {
+  double bound_m = std::numeric_limits<double>::infinity();
+  if (options.goal == CompressionGoal::kMaxError) bound_m = options.max_error_mm * 1e-3;
+  if (options.goal == CompressionGoal::kGrid) {
+    bound_m =
+        std::sqrt(0.75) * GridOf(extent, options.grid_bits).step_m + 2 * Ulp(extent.Largest());
+  }
+  if (measured.max_error_m <= bound_m) return absl::OkStatus();
+  return absl::InternalError(absl::StrCat("the decoded sequence is wrong by ",
+                                          measured.max_error_m * 1e3, " mm, promised were ",
+                                          bound_m * 1e3, " mm; nothing was written"));
+}
+
+}  // namespace
+
+absl::Status ValidateCompressOptions(const CompressOptions& options) {
+  switch (options.goal) {
+    case CompressionGoal::kMaxError:
+      return CheckRange("max_error_mm", options.max_error_mm, 1e-3, 1e6);
+    case CompressionGoal::kKg:
+      return CheckRange("kg_percent", options.kg_percent, 1e-4, 50);
+    case CompressionGoal::kGrid:
+      return CheckRange("grid_bits", options.grid_bits, 8, 20);
+  }
+  return absl::InvalidArgumentError("unknown goal of compression");
+}
+
+absl::StatusOr<std::string> CompressSequence(const MeshSequence& sequence,
+                                             const CompressOptions& options,
+                                             CompressSummary* summary, const Progress& progress) {
+  PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
+  const Extent extent(sequence);
+  PLEAT_ASSIGN_OR_RETURN(
+      SequenceAnalysis analysis,
+      AnalyzeSequence(sequence, options.num_threads, progress.Stage("analyse", 0, 0.2)));
+  const SequenceEncoder encoder(sequence, std::move(analysis), options.keep_face_order,
+                                options.num_threads);
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes, EncodeForGoal(encoder, sequence, extent, options,
+                                                          progress.Stage("encode", 0.2, 0.95)));
+  PLEAT_ASSIGN_OR_RETURN(const Measured measured,
+                         Measure(sequence, bytes, extent, progress.Stage("check", 0.95, 1)));
+  PLEAT_RETURN_IF_ERROR(CheckPromise(options, measured, extent));
+  if (summary != nullptr) {
+    const double num_values = static_cast<double>(sequence.num_vertices()) * sequence.num_frames();
+    summary->num_bytes = bytes.size();
+    summary->num_topology_bytes = encoder.topology_bytes();
+    summary->bpvf = 8.0 * static_cast<double>(bytes.size()) / num_values;
+    summary->bpvf_without_topology =
+        8.0 * static_cast<double>(bytes.size() - encoder.topology_bytes()) / num_values;
+    summary->kg_percent = measured.kg_percent;
+    summary->max_error_mm = measured.max_error_m * 1e3;
+  }
+  return bytes;
+}
+
+}  // namespace pleat

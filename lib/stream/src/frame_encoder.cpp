@@ -1,0 +1,263 @@
+#include "pleat/stream/frame_encoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "delta_predictor.h"
+#include "draco/compression/decode.h"
+#include "draco_encode.h"
+#include "pleat/base/status.h"
+#include "pleat/stream/frame_decoder.h"
+#include "residual_writer.h"
+
+namespace pleat {
+namespace {
+
+QuantizationBox MakeBox(const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
+                        const FrameEncoderOptions& options) {
+  QuantizationBox box;
+  box.bits = options.position_bits;
+  const Eigen::Vector3f low = reference.rowwise().minCoeff();
+  const Eigen::Vector3f high = reference.rowwise().maxCoeff();
+  const float edge = static_cast<float>((high - low).maxCoeff() * options.box_margin);
+  box.range_m = std::max(edge, 1e-6f);
+  if (options.max_error_mm > 0) {  // the cube's half diagonal is the bound
+    const double step_m = options.max_error_mm * 1e-3 * 2 / std::sqrt(3.0) * (1 - 1e-4);
+    box.bits = QuantizationBox::kMinBits;
+    while (box.bits <= QuantizationBox::kMaxBits && step_m * ((1 << box.bits) - 1) < box.range_m) {
+      ++box.bits;  // one too many is refused by Validate
+    }
+    box.range_m = static_cast<float>(step_m * ((1 << box.bits) - 1));
+  }
+  box.origin_m = (low + high) / 2 - Eigen::Vector3f::Constant(box.range_m / 2);
+  return box;
+}
+
+absl::Status CheckPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
+                            const QuantizationBox& box) {
+  const Eigen::Array3f center = box.origin_m.array() + box.range_m / 2;
+  const float limit = box.range_m * (0.5f + QuantizationBox::kMaxEdgesOutside);
+  int num_inside = 0;  // without branches; coordinates that are not finite are not inside
+  for (Eigen::Index v = 0; v < positions.cols(); ++v) {
+    const float* position = &positions.coeffRef(0, v);
+    for (int c = 0; c < 3; ++c) num_inside += std::fabs(position[c] - center[c]) <= limit;
+  }
+  if (num_inside == positions.size()) return absl::OkStatus();
+  for (int v = 0; v < positions.cols(); ++v) {
+    if (!positions.col(v).allFinite()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("cannot encode the frame: vertex ", v, " is not finite"));
+    }
+    if (((positions.col(v).array() - center).abs() > limit).any()) {
+      return absl::OutOfRangeError(absl::StrCat(
+          "cannot encode the frame: vertex ", v, " is more than ", limit,
+          " m from the centre of the session's box; start a session nearer to the character"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Point -> vertex of an encoded topology mesh, and its triangle count. Trusted bytes: our own.
+struct DecodedOrder {
+  std::vector<int32_t> point_vertices;
+  int num_triangles = 0;
+};
+
+absl::StatusOr<DecodedOrder> ReadBack(const std::string& bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  draco::Decoder decoder;
+  auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
+  if (!mesh.ok()) {
+    return absl::InternalError(
+        absl::StrCat("Draco cannot read its own mesh: ", mesh.status().error_msg_string()));
+  }
+  const draco::PointAttribute* ids =
+      mesh.value()->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  DecodedOrder order;
+  order.num_triangles = static_cast<int>(mesh.value()->num_faces());
+  order.point_vertices.resize(mesh.value()->num_points());
+  for (uint32_t p = 0; p < mesh.value()->num_points(); ++p) {
+    ids->GetValue(ids->mapped_index(draco::PointIndex(p)), &order.point_vertices[p]);
+  }
+  return order;
+}
+
+// Vertices in the order of their first point; vertices without a point follow.
+std::vector<int32_t> FirstAppearance(const std::vector<int32_t>& point_vertices, int num_vertices,
+                                     int* num_shown) {
+  std::vector<int32_t> order;
+  std::vector<bool> seen(num_vertices, false);
+  for (const int32_t v : point_vertices) {
+    if (!seen[v]) order.push_back(v);
+    seen[v] = true;
+  }
+  *num_shown = static_cast<int>(order.size());
+  for (int32_t v = 0; v < num_vertices; ++v) {
+    if (!seen[v]) order.push_back(v);
+  }
+  return order;
+}
+
+absl::Status CheckOptions(const FrameEncoderOptions& options) {
+  if (options.speed < 0 || options.speed > 10) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("speed is ", options.speed, ", allowed are 0 to 10"));
+  }
+  if (!(options.box_margin >= 1 && options.box_margin <= 100)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("box_margin is ", options.box_margin, ", allowed are 1 to 100"));
+  }
+  if (options.max_error_mm != 0 && !(options.max_error_mm >= 1e-3 && options.max_error_mm <= 1e6)) {
+    return absl::InvalidArgumentError(absl::StrCat("max_error_mm is ", options.max_error_mm,
+                                                   ", allowed are 0 (not used) and 1e-3 to 1e6"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+struct FrameEncoder::State {
+  StreamHeader header;
+  MeshMethod method = MeshMethod::kEdgebreaker;
+  int speed = 5;
+  std::unique_ptr<draco::Mesh> mesh;         // for kDracoMesh
+  std::unique_ptr<draco::PointCloud> cloud;  // for clouds and key frames
+  FrameMark mark;
+
+  // For kDracoDelta:
+  std::optional<DeltaPredictor> predictor;
+  ResidualWriter writer;
+  std::unique_ptr<draco::PointCloud> residual_cloud;  // for residuals too large for `writer`
+  Eigen::Matrix3Xi last, now, residuals;  // 3 x V, on the grid; `last` is empty before a key frame
+  Eigen::Matrix3Xf placed;
+  size_t key_bytes = 0;  // of the last key frame
+
+  // Encodes the mesh with `method` and fills the header; false when a vertex was lost.
+  absl::StatusOr<bool> TryTopology() {
+    PLEAT_ASSIGN_OR_RETURN(header.topology, EncodeDracoMesh(*mesh, header.box, method, speed));
+    PLEAT_ASSIGN_OR_RETURN(const DecodedOrder decoded, ReadBack(header.topology));
+    header.num_points = static_cast<int>(decoded.point_vertices.size());
+    header.num_triangles = decoded.num_triangles;
+    int num_shown = 0;
+    header.vertex_order = FirstAppearance(decoded.point_vertices, header.num_vertices, &num_shown);
+    return num_shown == header.num_vertices;
+  }
+
+  absl::StatusOr<std::string> EncodeKeyframe() {
+    // Of points of the grid Draco makes the same integers again.
+    PlaceOnGrid(now, header.box, &placed);
+    SetDracoPositions(placed, header.vertex_order, cloud.get());
+    PLEAT_ASSIGN_OR_RETURN(std::string bytes, EncodeDracoPointCloud(*cloud, header.box, speed));
+    key_bytes = bytes.size();
+    return bytes;
+  }
+
+  absl::StatusOr<std::string> EncodeDelta(const Eigen::Ref<const Eigen::Matrix3Xf>& positions) {
+    now = SnapToGrid(positions, header.box);
+    mark.checksum = GridChecksum(now);
+    mark.keyframe = last.cols() == 0;
+    std::string bytes;
+    if (!mark.keyframe) {
+      predictor->Residuals(last, now, &residuals);
+      if (!writer.Write(residuals, &bytes)) {
+        SetDracoResiduals(residuals, residual_cloud.get());
+        PLEAT_ASSIGN_OR_RETURN(bytes, EncodeDracoResiduals(*residual_cloud, speed));
+      }
+    }
+    // After a cut a key frame may be smaller.
+    if (mark.keyframe || bytes.size() > key_bytes - key_bytes / 8) {
+      PLEAT_ASSIGN_OR_RETURN(std::string key, EncodeKeyframe());
+      if (mark.keyframe || key.size() <= bytes.size()) {
+        mark.keyframe = true;
+        bytes = std::move(key);
+      }
+    }
+    last.swap(now);
+    return bytes;
+  }
+
+  // Encodes the reference frame; edgebreaker where it keeps every vertex, else sequential (it drops
+  // vertices that belong to no triangle).
+  absl::Status MakeTopology(const Eigen::Ref<const Eigen::Matrix3Xf>& reference) {
+    SetDracoPositions(reference, {}, mesh.get());
+    method = MeshMethod::kEdgebreaker;
+    if (TryTopology().value_or(false)) return absl::OkStatus();
+    method = MeshMethod::kSequential;
+    return TryTopology().status();
+  }
+};
+
+FrameEncoder::FrameEncoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FrameEncoder::~FrameEncoder() = default;
+FrameEncoder::FrameEncoder(FrameEncoder&&) noexcept = default;
+FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
+
+const StreamHeader& FrameEncoder::header() const { return state_->header; }
+const FrameMark& FrameEncoder::mark() const { return state_->mark; }
+void FrameEncoder::RequestKeyframe() { state_->last.resize(3, 0); }
+
+absl::StatusOr<FrameEncoder> FrameEncoder::Create(
+    const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
+    const FrameEncoderOptions& options, std::vector<int32_t> control_vertices) {
+  PLEAT_RETURN_IF_ERROR(CheckOptions(options));
+  if (options.content == StreamContent::kParameters) {
+    return absl::InvalidArgumentError("a stream of parameters holds no frames to encode");
+  }
+  if (reference.cols() != topology.num_vertices() || reference.cols() == 0) {
+    return absl::InvalidArgumentError(absl::StrCat("the reference frame has ", reference.cols(),
+                                                   " vertices, the topology ",
+                                                   topology.num_vertices()));
+  }
+  if (topology.num_triangles() == 0) {
+    return absl::InvalidArgumentError("a character without triangles cannot be streamed");
+  }
+  auto state = std::make_unique<State>();
+  state->speed = options.speed;
+  StreamHeader& header = state->header;
+  header.encoding = options.encoding;
+  header.content = options.content;
+  header.control_vertices = std::move(control_vertices);
+  header.num_vertices = topology.num_vertices();
+  header.box = MakeBox(reference, options);
+  PLEAT_RETURN_IF_ERROR(CheckPositions(reference, header.box));
+  PLEAT_RETURN_IF_ERROR(header.box.Validate());
+
+  state->mesh = MakeDracoMesh(topology.num_vertices(), topology.triangles());
+  PLEAT_RETURN_IF_ERROR(state->MakeTopology(reference));
+  if (options.encoding != FrameEncoding::kDracoMesh) {
+    state->mesh.reset();
+    state->cloud = MakeDracoPointCloud(header.num_vertices);
+  }
+  if (options.encoding == FrameEncoding::kDracoDelta) {
+    // From the decoder's view of the header, which may lack degenerate triangles.
+    PLEAT_ASSIGN_OR_RETURN(const FrameDecoder view, FrameDecoder::Create(header));
+    state->predictor.emplace(view.topology(), view.reference(), header.box);
+    state->residual_cloud = MakeDracoResidualCloud(header.num_vertices);
+  }
+  return FrameEncoder(std::move(state));
+}
+
+absl::StatusOr<std::string> FrameEncoder::Encode(
+    const Eigen::Ref<const Eigen::Matrix3Xf>& positions) {
+  const StreamHeader& header = state_->header;
+  if (positions.cols() != header.num_vertices) {
+    return absl::InvalidArgumentError(absl::StrCat("the frame has ", positions.cols(),
+                                                   " vertices, the session ", header.num_vertices));
+  }
+  PLEAT_RETURN_IF_ERROR(CheckPositions(positions, header.box));
+  if (header.encoding == FrameEncoding::kDracoDelta) return state_->EncodeDelta(positions);
+  if (header.encoding == FrameEncoding::kDracoPointCloud) {
+    SetDracoPositions(positions, header.vertex_order, state_->cloud.get());
+    return EncodeDracoPointCloud(*state_->cloud, header.box, state_->speed);
+  }
+  SetDracoPositions(positions, {}, state_->mesh.get());
+  return EncodeDracoMesh(*state_->mesh, header.box, state_->method, state_->speed);
+}
+
+}  // namespace pleat

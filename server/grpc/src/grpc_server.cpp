@@ -1,0 +1,154 @@
+#include "pleat/grpc/grpc_server.h"
+
+#include <grpc/support/log.h>
+#include <grpcpp/channel.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <mutex>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+#include "services.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kKeepaliveMs = 60'000;  // how often an idle connection is asked
+constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
+constexpr auto kDrainPoll = std::chrono::milliseconds(10);
+constexpr auto kSlowReaderTime = std::chrono::seconds(1);  // to take the frame that is written
+constexpr auto kCloseTime = std::chrono::milliseconds(100);
+constexpr int kKeepaliveTimeoutMs = 20'000;  // how long it may take to answer
+
+absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
+    const GrpcServerOptions& options) {
+  if (options.tls_certificate.empty() != options.tls_key.empty()) {
+    return absl::InvalidArgumentError("TLS needs both a certificate and its key");
+  }
+  if (options.tls_certificate.empty()) {
+    if (!options.tls_client_ca.empty()) {
+      return absl::InvalidArgumentError("client certificates need TLS: give certificate and key");
+    }
+    return grpc::InsecureServerCredentials();
+  }
+  grpc::SslServerCredentialsOptions tls(
+      options.tls_client_ca.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
+                                    : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  tls.pem_key_cert_pairs.push_back({options.tls_key, options.tls_certificate});
+  tls.pem_root_certs = options.tls_client_ca;
+  return grpc::SslServerCredentials(tls);
+}
+
+void LogForGrpc(gpr_log_func_args* args) {
+  const auto level = args->severity == GPR_LOG_SEVERITY_ERROR  ? spdlog::level::warn
+                     : args->severity == GPR_LOG_SEVERITY_INFO ? spdlog::level::debug
+                                                               : spdlog::level::trace;
+  spdlog::log(level, "grpc: {}", args->message);
+}
+
+class GrpcServerImpl final : public GrpcServer {
+ public:
+  GrpcServerImpl(LocalCharacterService* service, const GrpcServerOptions& options)
+      : batcher_(&pose_executor_, options.max_batch),
+        pose_executor_(options.num_pose_threads),
+        storage_executor_(options.num_storage_threads) {
+    context_.service = service;
+    context_.pose_executor = &pose_executor_;
+    context_.batcher = &batcher_;
+    context_.storage_executor = &storage_executor_;
+    context_.max_open_streams = options.max_open_streams;
+    services_.push_back(MakeSequenceService(&context_));
+    services_.push_back(MakeJobService(&context_));
+    services_.push_back(MakeModelService(&context_));
+    services_.push_back(MakeCompressedSequenceService(&context_));
+    services_.push_back(MakePoseService(&context_));
+  }
+  ~GrpcServerImpl() override { Shutdown(0); }
+
+  absl::Status Bind(const GrpcServerOptions& options) {
+    gpr_set_log_function(&LogForGrpc);
+    grpc::EnableDefaultHealthCheckService(true);
+    grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+    PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<grpc::ServerCredentials> credentials,
+                           MakeCredentials(options));
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort(options.listen, credentials, &port_);
+    grpc::ResourceQuota quota("pleatd");
+    builder.SetResourceQuota(quota.Resize(kMessageMemoryBytes));
+    builder.SetMaxReceiveMessageSize(options.max_receive_bytes);
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT,
+                               0);  // a second server must fail, not share
+    for (const auto& service : services_) builder.RegisterService(service.get());
+    server_ = builder.BuildAndStart();
+    if (server_ == nullptr) {
+      return absl::UnavailableError(absl::StrCat("cannot listen on '", options.listen,
+                                                 "': the address is wrong or in use, or the "
+                                                 "certificate and key do not fit"));
+    }
+    return absl::OkStatus();
+  }
+
+  int port() const override { return port_; }
+
+  std::shared_ptr<grpc::Channel> InProcessChannel() override {
+    return server_->InProcessChannel(grpc::ChannelArguments());
+  }
+
+  void Shutdown(double drain_seconds) override {
+    std::lock_guard lock(shutdown_mutex_);
+    if (server_ == nullptr) return;
+    context_.draining = true;
+    if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
+    context_.live_sessions.DrainAll();
+    const auto start = std::chrono::steady_clock::now();
+    const auto deadline =
+        start + std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
+    bool abandoned = false;
+    while (context_.num_calls > 0 && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(kDrainPoll);
+      if (!abandoned && std::chrono::steady_clock::now() > start + kSlowReaderTime) {
+        context_.live_sessions.AbandonAll();
+        abandoned = true;
+      }
+    }
+    // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
+    server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);
+    server_->Wait();
+    server_.reset();
+  }
+
+ private:
+  // Reactors post to the executors until the server is gone, so the server goes first; the last
+  // tasks of the executors use the batcher, so it goes last.
+  HandlerContext context_;
+  PoseBatcher batcher_;
+  Executor pose_executor_, storage_executor_;
+  std::vector<std::unique_ptr<grpc::Service>> services_;
+  std::mutex shutdown_mutex_;
+  std::unique_ptr<grpc::Server> server_;
+  int port_ = 0;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::Start(LocalCharacterService* service,
+                                                              const GrpcServerOptions& options) {
+  auto server = std::make_unique<GrpcServerImpl>(service, options);
+  PLEAT_RETURN_IF_ERROR(server->Bind(options));
+  return server;
+}
+
+}  // namespace pleat

@@ -1,0 +1,131 @@
+#include "services.h"
+
+#include "pleat/handlers/stream_handlers.h"
+#include "pleat/handlers/unary_handlers.h"
+#include "pleat/reactors/run_unary.h"
+#include "pleat/v1/compressed_sequence_service.grpc.pb.h"
+#include "pleat/v1/job_service.grpc.pb.h"
+#include "pleat/v1/model_service.grpc.pb.h"
+#include "pleat/v1/pose_service.grpc.pb.h"
+#include "pleat/v1/sequence_service.grpc.pb.h"
+
+// A unary method `rpc` that runs pleat::rpc on the context's `executor`.
+#define PLEAT_UNARY(rpc, executor)                                                         \
+  grpc::ServerUnaryReactor* rpc(grpc::CallbackServerContext* call,                         \
+                                const v1::rpc##Request* request, v1::rpc##Response* reply) \
+      override {                                                                           \
+    return RunUnary(context_, call, context_->executor, #rpc,                              \
+                    [=, this] { return pleat::rpc(*context_, *request, reply); });         \
+  }
+
+namespace pleat {
+namespace {
+
+class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
+ public:
+  explicit SequenceServiceImpl(HandlerContext* context) : context_(context) {}
+  PLEAT_UNARY(QueryUpload, storage_executor)
+  PLEAT_UNARY(GetSequence, storage_executor)
+  PLEAT_UNARY(ListSequences, storage_executor)
+  PLEAT_UNARY(DeleteSequence, storage_executor)
+  grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
+      grpc::CallbackServerContext*, v1::UploadSequenceResponse* response) override {
+    return pleat::UploadSequence(context_, response);
+  }
+
+ private:
+  HandlerContext* context_;
+};
+
+class JobServiceImpl final : public v1::JobService::CallbackService {
+ public:
+  explicit JobServiceImpl(HandlerContext* context) : context_(context) {}
+  PLEAT_UNARY(CreateTrainingJob, storage_executor)
+  PLEAT_UNARY(CreateCompressionJob, storage_executor)
+  PLEAT_UNARY(GetJob, storage_executor)
+  PLEAT_UNARY(ListJobs, storage_executor)
+  PLEAT_UNARY(CancelJob, storage_executor)
+  grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
+      grpc::CallbackServerContext*, const v1::WatchJobRequest* request) override {
+    return pleat::WatchJob(context_, *request);
+  }
+
+ private:
+  HandlerContext* context_;
+};
+
+class ModelServiceImpl final : public v1::ModelService::CallbackService {
+ public:
+  explicit ModelServiceImpl(HandlerContext* context) : context_(context) {}
+  PLEAT_UNARY(GetModel, storage_executor)
+  PLEAT_UNARY(ListModels, storage_executor)
+  PLEAT_UNARY(DeleteModel, storage_executor)
+  grpc::ServerWriteReactor<v1::DownloadModelResponse>* DownloadModel(
+      grpc::CallbackServerContext*, const v1::DownloadModelRequest* request) override {
+    return pleat::DownloadModel(context_, *request);
+  }
+
+ private:
+  HandlerContext* context_;
+};
+
+class CompressedSequenceServiceImpl final : public v1::CompressedSequenceService::CallbackService {
+ public:
+  explicit CompressedSequenceServiceImpl(HandlerContext* context) : context_(context) {}
+  PLEAT_UNARY(GetCompressedSequence, storage_executor)
+  PLEAT_UNARY(ListCompressedSequences, storage_executor)
+  PLEAT_UNARY(DeleteCompressedSequence, storage_executor)
+  grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadCompressedSequence(
+      grpc::CallbackServerContext*, v1::UploadCompressedSequenceResponse* response) override {
+    return pleat::UploadCompressedSequence(context_, response);
+  }
+  grpc::ServerWriteReactor<v1::DownloadCompressedSequenceResponse>* DownloadCompressedSequence(
+      grpc::CallbackServerContext*, const v1::DownloadCompressedSequenceRequest* request) override {
+    return pleat::DownloadCompressedSequence(context_, *request);
+  }
+  grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
+      grpc::CallbackServerContext*, const v1::DecodeFramesRequest* request) override {
+    return pleat::DecodeFrames(context_, *request);
+  }
+
+ private:
+  HandlerContext* context_;
+};
+
+class PoseServiceImpl final : public v1::PoseService::CallbackService {
+ public:
+  explicit PoseServiceImpl(HandlerContext* context) : context_(context) {}
+  PLEAT_UNARY(GetStreamHeader, pose_executor)
+  PLEAT_UNARY(EvaluatePose, pose_executor)
+  grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
+      grpc::CallbackServerContext*, const v1::EvaluateClipRequest* request) override {
+    return pleat::EvaluateClip(context_, *request);
+  }
+  grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
+      grpc::CallbackServerContext* call) override {
+    return pleat::LiveSession(context_, call);
+  }
+
+ private:
+  HandlerContext* context_;
+};
+
+}  // namespace
+
+std::unique_ptr<grpc::Service> MakeSequenceService(HandlerContext* context) {
+  return std::make_unique<SequenceServiceImpl>(context);
+}
+std::unique_ptr<grpc::Service> MakeJobService(HandlerContext* context) {
+  return std::make_unique<JobServiceImpl>(context);
+}
+std::unique_ptr<grpc::Service> MakeModelService(HandlerContext* context) {
+  return std::make_unique<ModelServiceImpl>(context);
+}
+std::unique_ptr<grpc::Service> MakeCompressedSequenceService(HandlerContext* context) {
+  return std::make_unique<CompressedSequenceServiceImpl>(context);
+}
+std::unique_ptr<grpc::Service> MakePoseService(HandlerContext* context) {
+  return std::make_unique<PoseServiceImpl>(context);
+}
+
+}  // namespace pleat

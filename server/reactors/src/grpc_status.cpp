@@ -1,0 +1,21 @@
+#include "pleat/reactors/grpc_status.h"
+
+#include <string>
+
+#include "pleat/wire/utf8.h"
+
+namespace pleat {
+namespace {
+
+constexpr size_t kMaxMessageBytes = 2000;  // metadata is limited to 8 KiB, percent-encoded
+
+}  // namespace
+
+grpc::Status ToGrpcStatus(const absl::Status& status) {
+  if (status.ok()) return grpc::Status::OK;
+  std::string message(status.message());
+  if (message.size() > kMaxMessageBytes) message = message.substr(0, kMaxMessageBytes) + "...";
+  return grpc::Status(static_cast<grpc::StatusCode>(status.code()), ToValidUtf8(message));
+}
+
+}  // namespace pleat

@@ -1,0 +1,104 @@
+#include "cli/show/progress_display.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "cli/session.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ProgressDisplay, FormatsDurations) {
+  EXPECT_EQ(FormatDuration(-1), "0 s");
+  EXPECT_EQ(FormatDuration(59.4), "59 s");
+  EXPECT_EQ(FormatDuration(59.6), "1 min 0 s");
+  EXPECT_EQ(FormatDuration(3725), "1 h 2 min");
+}
+
+TEST(ProgressDisplay, BarShowsStageFractionAndTimeLeft) {
+  const std::string bar = FormatProgressBar({"fit", 0.5, std::nullopt}, 12, std::nullopt, 79);
+  EXPECT_EQ(bar, "fit        [############------------]  50 %  12 s, 12 s left");
+  EXPECT_THAT(FormatProgressBar({"fit", 0.5, -12.5}, 12, 3.0, 100), HasSubstr("objective -12.5"));
+  EXPECT_THAT(FormatProgressBar({"fit", 0.5, -12.5}, 12, 3.0, 100), HasSubstr("3 s left"));
+}
+
+TEST(ProgressDisplay, BarFitsTheTerminal) {
+  EXPECT_EQ(FormatProgressBar({"a very long name of a stage", 0.5, 1.0}, 1e5, 1e5, 40).size(), 40u);
+}
+
+TEST(ProgressDisplay, ReachesAHundredPercentOnlyAtTheEnd) {
+  EXPECT_THAT(FormatProgressLine({"fit", 0.9999, std::nullopt}, 1, std::nullopt),
+              HasSubstr("99 %"));
+  EXPECT_EQ(FormatProgressLine({"fit", 1, std::nullopt}, 1, std::nullopt), "fit: 100 %, 1 s");
+}
+
+TEST(ProgressDisplay, LinesAreFewAndNameEveryStage) {
+  std::ostringstream out;
+  double now = 0;
+  ProgressDisplay display(out, ProgressStyle::kLines, [&now] { return now; });
+  for (int i = 0; i < 1000; ++i) {
+    now += 0.01;
+    display.Update({i < 500 ? "rig" : "fit", i / 1000.0, std::nullopt});
+  }
+  for (int i = 0; i < 50; ++i) display.Update({i % 2 == 0 ? "a" : "b", 1, std::nullopt});
+  display.Finish();
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << text;  // rig, fit, a
+  EXPECT_THAT(text, HasSubstr("rig: "));
+  EXPECT_THAT(text, HasSubstr("fit: "));
+  EXPECT_THAT(text, Not(HasSubstr("\r")));
+}
+
+TEST(ProgressDisplay, BarIsRedrawnInPlaceAndEndsItsLine) {
+  std::ostringstream out;
+  double now = 0;
+  ProgressDisplay display(out, ProgressStyle::kBar, [&now] { return now; });
+  display.Update({"rig", 0.1, std::nullopt});  // too short a wait to speak of
+  now = 1;
+  display.Update({"rig", 0.2, std::nullopt});
+  now = 1.01;
+  display.Update({"rig", 0.25, std::nullopt});  // too soon to be drawn
+  now = 2;
+  display.Update({"rig", 0.3, std::nullopt});
+  display.Finish();
+  display.Finish();
+  const std::string text = out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 2);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+}
+
+TEST(ProgressDisplay, AddsUpTheSecondsOfStages) {
+  std::ostringstream out;
+  double now = 0;
+  ProgressDisplay display(out, ProgressStyle::kSilent, [&now] { return now; });
+  display.Update({"rig", 0.1, std::nullopt});
+  now = 2;
+  display.Update({"fit", 0.5, std::nullopt});
+  now = 5;
+  display.Update({"rig", 0.6, std::nullopt});
+  now = 6;
+  display.Finish();
+  EXPECT_THAT(display.stage_seconds(),
+              ::testing::ElementsAre(::testing::Pair("fit", 3), ::testing::Pair("rig", 3)));
+  EXPECT_EQ(out.str(), "");
+}
+
+TEST(ProgressDisplay, StyleFollowsFlagsAndTerminal) {
+  Session session;
+  EXPECT_EQ(ChooseProgressStyle(session), ProgressStyle::kLines);
+  session.err_is_terminal = true;
+  EXPECT_EQ(ChooseProgressStyle(session), ProgressStyle::kBar);
+  session.json = true;
+  EXPECT_EQ(ChooseProgressStyle(session), ProgressStyle::kSilent);
+  session.json = false;
+  session.quiet = true;
+  EXPECT_EQ(ChooseProgressStyle(session), ProgressStyle::kSilent);
+}
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,72 @@
+#include "pleat/learner/ridge.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random_data.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(RidgeTest, FindsALinearMapWithItsOffset) {
+  const Eigen::MatrixXd x = RandomMatrix(50, 4, 1), map = RandomMatrix(4, 3, 2);
+  Eigen::MatrixXd y = x * map;
+  y.rowwise() += Eigen::RowVector3d(5, -2, .5);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge ridge, TrainRidge(x, y, {.penalty = 1e-10}));
+  EXPECT_LT((ridge.Predict(x) - y).norm(), 1e-6);
+  EXPECT_LT((ridge.weights - map).norm(), 1e-6);
+}
+
+TEST(RidgeTest, WideAndTallDataAgree) {
+  // The same regression with as many columns as rows, once through each normal equation.
+  const Eigen::MatrixXd x = RandomMatrix(20, 20, 1), y = RandomMatrix(20, 2, 2);
+  Eigen::MatrixXd padded(20, 21);
+  padded << x, Eigen::VectorXd::Zero(20);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge tall, TrainRidge(x, y));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge wide, TrainRidge(padded, y));
+  EXPECT_LT((tall.weights - wide.weights.topRows(20)).norm(), 1e-8);
+}
+
+TEST(RidgeTest, HeavierPenaltyShrinksTheWeights) {
+  const Eigen::MatrixXd x = RandomMatrix(30, 5, 1), y = RandomMatrix(30, 2, 2);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge light, TrainRidge(x, y, {.penalty = 1e-6}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge heavy, TrainRidge(x, y, {.penalty = 10}));
+  EXPECT_LT(heavy.weights.norm(), .1 * light.weights.norm());
+}
+
+TEST(RidgeTest, AsAGaussianProcessItPredictsTheSameAndKnowsItsVariance) {
+  for (const int num_inputs : {4, 30}) {  // fewer and more than rows
+    const Eigen::MatrixXd x = RandomMatrix(20, num_inputs, 1), y = RandomMatrix(20, 3, 2);
+    const Eigen::MatrixXd queries = 2 * RandomMatrix(5, num_inputs, 3);
+    for (const double penalty : {1e-3, 1e-1}) {
+      PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge ridge, TrainRidge(x, y, {.penalty = penalty}));
+      PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, TrainRidgeGp(x, y, {.penalty = penalty}));
+      Eigen::MatrixXd means;
+      Eigen::VectorXd variances;
+      gp.PredictBatch(queries, &means, &variances);
+      EXPECT_LT((means - ridge.Predict(queries)).norm(), 1e-4 * means.norm());
+      // The variance of a linear map grows with the square of the distance from the mean.
+      Eigen::MatrixXd ray(2, num_inputs);
+      ray.row(0) = x.colwise().mean() + queries.row(0);
+      ray.row(1) = x.colwise().mean() + 2 * queries.row(0);
+      gp.PredictBatch(ray, &means, &variances);
+      EXPECT_GT(variances[0], 0);
+      EXPECT_NEAR(variances[1], 4 * variances[0], 1e-2 * variances[1]);
+    }
+  }
+}
+
+TEST(RidgeTest, RefusesWrongDataWithWords) {
+  const Eigen::MatrixXd x = RandomMatrix(10, 2, 1);
+  EXPECT_THAT(TrainRidgeGp(RandomMatrix(5, 2, 1), RandomMatrix(4, 2, 2)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("as many rows")));
+  EXPECT_THAT(TrainRidge(x, x.topRows(3)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("as many rows")));
+  EXPECT_THAT(TrainRidge(x, x, {.penalty = 0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("positive penalty")));
+}
+
+}  // namespace
+}  // namespace pleat
