@@ -55,6 +55,10 @@ PLANTED = {
                                 {"server/handlers/src/a.cpp": include("pleat/wire/messages.h")}),
     "contract": ({"client/cli/verbs/verb_train.cpp": include("pleat/local/local_character_service.h")},
                  {"client/cli/service.cpp": include("pleat/local/local_character_service.h")}),
+    "client-sees-no-server": ({"client/cli/a.cpp": include("pleat/grpc/grpc_server.h")},
+                              {"server/main.cpp": include("pleat/grpc/grpc_server.h")}),
+    "server-sees-no-client": ({"server/main.cpp": include("pleat/remote/remote_character_service.h")},
+                              {"client/cli/a.cpp": include("pleat/remote/remote_character_service.h")}),
     "server-decodes-no-draco": ({"server/handlers/src/a.cpp": include("pleat/stream/draco_file.h")},
                                 {"client/draco_child/main.cpp": include("pleat/stream/draco_file.h")}),
     "prints": ({"lib/gp/src/a.cpp": "std::cerr << 1;\n"}, {"client/cli/main.cpp": "std::cerr << 1;\n"}),
@@ -121,6 +125,11 @@ class RuleTest(unittest.TestCase):
     def test_a_program_other_than_the_named_files_may_not_make_the_local_service(self):
         for path in ("server/grpc/src/server.cpp", "server/handlers/src/a.cpp", "client/cli/io/a.cpp"):
             self.assertIn("contract", rules_broken({path: include("pleat/jobs/job_manager.h")}))
+
+    def test_jobs_and_the_local_service_know_no_rpc(self):
+        for room in ("jobs", "local", "service", "character"):
+            broken = rules_broken({f"lib/{room}/src/a.cpp": include("pleat/v1/job_service.grpc.pb.h")})
+            self.assertLessEqual({"grpc", "protobuf"}, broken)
 
     def test_each_excused_file_is_excused_only_while_it_needs_it(self):
         for rule in rules.RULES:

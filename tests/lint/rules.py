@@ -71,6 +71,10 @@ RULES = (
     Rule("contract", "server/ and client/ know pleat/service; only main and --local make the service of this process",
          "include", r"^pleat/(?:local|store|jobs|cache)/", where=("server/", "client/"),
          rooms=("server/main.cpp", "server/options.", "client/cli/service.cpp")),
+    Rule("client-sees-no-server", "the client knows pleat/service and the wire, never the server's rooms", "include",
+         r"^pleat/(?:reactors|handlers|grpc|observe)/", where=("client/",)),
+    Rule("server-sees-no-client", "the server never knows the client's rooms", "include", r"^pleat/(?:remote|client)/",
+         where=("server/",)),
     Rule("server-decodes-no-draco", "the server decodes no Draco; client/draco_child does, with limits", "include",
          r"^pleat/stream/draco_file\.h$", where=("server/", "lib/local/", "lib/jobs/", "lib/store/")),
     # What library code does not do.
