@@ -39,7 +39,8 @@ PROGRAMS = ("lib/", "server/", "client/")
 # British spellings, also inside identifiers. `cancelled` is left out because Abseil and gRPC spell it so.
 BRITISH = (
     r"colour|centre|neighbour|behaviour|favour|honour|licence|defence|artefact|grey|metre|fibre|learnt"
-    r"|analys(?:e[dr]?(?-i:(?![a-z]))|ing)|catalys(?:ed?(?-i:(?![a-z]))|ing)|(?:label|model|travel|signal|channel)l(?:ed|ing)"
+    r"|analys(?:e[dr]?(?-i:(?![a-z]))|ing)|catalys(?:ed?(?-i:(?![a-z]))|ing)"
+    r"|(?:label|model|travel|signal|channel)l(?:ed|ing)"
     r"|(?:custom|discret|factor|general|initial|linear|maxim|minim|normal|optim|organ|parallel|parametr|quant|real"
     r"|recogn|regular|serial|special|stabil|standard|summar|symmetr|synchron|token|util|vector|visual)"
     r"is(?:e[drs]?(?-i:(?![a-z]))|ing|ation|able)"
@@ -89,17 +90,18 @@ RULES = (
          files=(("lib/base/src/clock.cpp", "the one clock of the library"),
                 ("lib/store/src/upload_area.cpp", "what is left of old uploads is known by the age of its file"),
                 ("lib/jobs/src/job_state_machine.cpp", "the default of the clock that jobs take as an argument"),
-                ("lib/local/src/pose_batcher.cpp", "it reports how long a batch took, and results never depend on it"),
-                ("lib/local/src/pose_session.cpp", "it reports how long a frame took, and results never depend on it"))),
+                ("lib/local/src/pose_batcher.cpp", "it reports how long a batch took; results never depend on it"),
+                ("lib/local/src/pose_session.cpp", "it reports how long a frame took; results never depend on it"))),
     Rule("randomness", "the same seed gives the same model everywhere: library code draws its own random numbers",
-         "code", r"\bstd::(?:random_device|mt19937\w*|default_random_engine|\w+_distribution|shuffle|rand)\b|\brand\s*\(",
+         "code",
+         r"\bstd::(?:random_device|mt19937\w*|default_random_engine|\w+_distribution|shuffle|rand)\b|\brand\s*\(",
          where=("lib/",),
-         files=(("lib/jobs/src/job_manager.cpp", "ids of jobs must differ between processes; no result depends on them"),)),
+         files=(("lib/jobs/src/job_manager.cpp", "ids of jobs differ between processes; results never depend on them"),)),
     Rule("fast-math", "the same bytes give the same model: no fast-math, no contraction", "text",
          r"^[^#]*-(?:ffast-math|Ofast|funsafe-math|fassociative-math|ffp-contract=(?:fast|on))",
          suffixes=("CMakeLists.txt", ".cmake", "CMakePresets.json")),
-    Rule("dynamic-cast", "a cast to the concrete type breaks the contract of the interface", "code", r"\bdynamic_cast\b",
-         where=PROGRAMS),
+    Rule("dynamic-cast", "a cast to the concrete type breaks the contract of the interface", "code",
+         r"\bdynamic_cast\b", where=PROGRAMS),
     # Tests and words.
     Rule("sleep", "a test waits for what happens, never for time", "code",
          r"\b(?:sleep_for|sleep_until|usleep|nanosleep)\b|\babsl::SleepFor\b", where=("tests/",)),
