@@ -96,7 +96,7 @@ RULES = (
          "code",
          r"\bstd::(?:random_device|mt19937\w*|default_random_engine|\w+_distribution|shuffle|rand)\b|\brand\s*\(",
          where=("lib/",),
-         files=(("lib/jobs/src/job_manager.cpp", "ids of jobs differ between processes; results never depend on them"),)),
+         files=(("lib/jobs/src/job_manager.cpp", "ids of jobs differ between processes; no result depends on them"),)),
     Rule("fast-math", "the same bytes give the same model: no fast-math, no contraction", "text",
          r"^[^#]*-(?:ffast-math|Ofast|funsafe-math|fassociative-math|ffp-contract=(?:fast|on))",
          suffixes=("CMakeLists.txt", ".cmake", "CMakePresets.json")),
