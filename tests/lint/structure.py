@@ -1,72 +1,135 @@
-"""Checks the invariants of ARCHITECTURE.md that text can show; prints each breach and fails."""
+"""Checks the invariants of ARCHITECTURE.md that text can show. Prints each breach and fails.
 
+usage: structure.py [ROOT] [--update] [--report]
+  --update  writes the counts of tests/lint/known_breaches.txt down, never up
+  --report  prints the share of sources with a test of the same name, and checks nothing
+"""
+
+import argparse
 import pathlib
 import re
-import subprocess
 import sys
 
+import functions
+import known
+from rules import RULES, Breach, check_lines
+from tree import CODE, CPP, Tree
+
 MAX_FILE_LINES = 400
-
-# (who alone may include it, pattern, why)
-INCLUDE_RULES = [
-    (("lib/wire/", "server/handlers/", "client/", "tests/", "server/observe/", "server/src/", "server/main.cpp"),
-     r'#include [<"].*\.pb\.h', "protobuf types stay in lib/wire and the RPC layers"),
-    (("lib/codec/", "tests/"), r'#include [<"]draco/', "Draco lives in lib/codec"),
-    (("server/", "client/", "tests/"), r"#include [<\"]grpc", "gRPC lives in server/ and client/"),
-    (("server/", "client/", "tests/"), r"#include [<\"]spdlog", "logging lives in the programs"),
-]
-LIBRARY_RULES = [
-    (r"\bstd::(cout|cerr|clog)\b|\b(printf|puts|fprintf)\s*\(", "library code never prints"),
-    (r"\b(std::)?(exit|abort|quick_exit)\s*\(", "library code never exits"),
-    (r"\bgetenv\s*\(|\bstd::chrono::\w+_clock|\btime\s*\(nullptr\)",
-     "library code never reads the clock or the environment"),
-]
+MAX_FUNCTION_LINES = 60
+MAX_MARKDOWN_COLUMNS = 120
+PROGRAM_FOLDERS = ("lib", "server", "client")
+# The least share of sources that have a test of the same name.
+MIN_SHARE = {"lib": 0.63, "server": 0.03, "client": 0.36}
 
 
-def tracked(*patterns):
-    listing = subprocess.run(["git", "ls-files", *patterns], capture_output=True, text=True, check=True)
-    return [pathlib.Path(line) for line in listing.stdout.splitlines()]
+def check_length(tree):
+    for path in tree.select(CODE):
+        count = len(tree.lines(path))
+        if count > MAX_FILE_LINES:
+            yield Breach("file-length", path, 1, f"{count} lines; {MAX_FILE_LINES} are the most: is it one thing?")
 
 
-def breaches(path):
-    text = path.read_text()
-    lines = text.splitlines()
-    name = path.as_posix()
-    if len(lines) > MAX_FILE_LINES:
-        yield 1, f"{len(lines)} lines; a file has at most {MAX_FILE_LINES}: does it hold one thing?"
-    if path.suffix == ".h" and "#pragma once" not in text:
-        yield 1, "a header needs #pragma once"
-    for number, line in enumerate(lines, 1):
-        code = line.split("//")[0]
-        for owners, pattern, why in INCLUDE_RULES:
-            if re.search(pattern, code) and not name.startswith(owners):
-                yield number, why
-        if name.startswith("lib/"):
-            for pattern, why in LIBRARY_RULES:
-                if re.search(pattern, code):
-                    yield number, why
-        if re.search(r"\b(TODO|FIXME|XXX)\b", line):
-            yield number, "unfinished work belongs in an issue"
+def check_functions(tree):
+    for path in tree.select(CPP, [f"{folder}/" for folder in PROGRAM_FOLDERS]):
+        for function in functions.functions_of(tree.text(path)):
+            if function.num_lines > MAX_FUNCTION_LINES:
+                yield Breach("function-length", path, function.line,
+                             f"{function.name} has {function.num_lines} lines; {MAX_FUNCTION_LINES} are the most")
 
 
-def missing_tests():
-    """Every module has tests; a folder with a README says what it is."""
-    for module in sorted(pathlib.Path("lib").iterdir()):
-        if not module.is_dir():
+def check_guards(tree):
+    for path in tree.select([".h"]):
+        if not re.search(r"^#pragma once$", tree.text(path), re.MULTILINE):
+            yield Breach("pragma-once", path, 1, "a header needs #pragma once")
+
+
+def check_markdown(tree):
+    """Lines of Markdown fit into the columns, tables too; a fence and a line that cannot be broken may not."""
+    for path in tree.select([".md"]):
+        in_fence = False
+        for number, line in enumerate(tree.lines(path), 1):
+            if line.lstrip().startswith("```"):
+                in_fence = not in_fence
+            elif len(line) > MAX_MARKDOWN_COLUMNS and not in_fence and not _is_unbreakable(line):
+                yield Breach("markdown-width", path, number,
+                             f"{len(line)} columns; {MAX_MARKDOWN_COLUMNS} are the most")
+
+
+def _is_unbreakable(line):
+    """True for one link or address, perhaps behind the mark of a list item."""
+    body = re.sub(r"^\s*(?:[-*+>]|\d+\.)?\s*", "", line)
+    return bool(re.fullmatch(r"!?\[[^\]]*\]\([^)]*\)[.,;]?|\[[^\]]*\]:\s*\S+|\S+", body))
+
+
+def check_modules(tree):
+    """Each module of lib/ says in a README what it is, and has tests."""
+    for build in tree.select(["/CMakeLists.txt"], ["lib/"]):
+        module = pathlib.PurePosixPath(build).parent
+        if len(module.parts) != 2:
             continue
-        if not list(pathlib.Path("tests", module.name).glob("*_test.cpp")):
-            yield f"{module}: no tests/{module.name}/*_test.cpp"
-        if not (module / "README.md").exists():
-            yield f"{module}: no README.md"
+        if not tree.exists(f"{module}/README.md"):
+            yield Breach("module-readme", str(module), 1, "a module needs a README.md")
+        if not tree.select(["_test.cpp"], [f"tests/{module.name}/"]):
+            yield Breach("module-tests", str(module), 1, f"a module needs tests/{module.name}/*_test.cpp")
 
 
-def main():
-    found = []
-    for path in tracked("*.h", "*.cpp"):
-        found += [f"{path}:{number}: {why}" for number, why in breaches(path)]
-    found += list(missing_tests())
-    print("\n".join(found))
-    return 1 if found else 0
+def test_shares(tree):
+    """{folder: (sources with a test of the same name, sources)}; main.cpp is tested as a program."""
+    tests = {pathlib.PurePosixPath(path).name for path in tree.select(["_test.cpp"], ["tests/"])}
+    shares = {}
+    for folder in PROGRAM_FOLDERS:
+        stems = {pathlib.PurePosixPath(path).stem for path in tree.select([".cpp"], [f"{folder}/"])} - {"main"}
+        shares[folder] = (sum(f"{stem}_test.cpp" in tests for stem in stems), len(stems))
+    return shares
+
+
+def check_shares(tree):
+    for folder, (tested, sources) in test_shares(tree).items():
+        if sources and tested / sources < MIN_SHARE[folder]:
+            yield Breach("test-share", folder, 1, f"{tested} of {sources} sources have a test of the same name; "
+                                                  f"{MIN_SHARE[folder]:.0%} is the least")
+
+
+# Every check beyond the table of lines, by the rules that it can report.
+CHECKS = {
+    ("file-length",): check_length,
+    ("function-length",): check_functions,
+    ("pragma-once",): check_guards,
+    ("markdown-width",): check_markdown,
+    ("module-readme", "module-tests"): check_modules,
+    ("test-share",): check_shares,
+}
+
+
+def rule_names():
+    return {rule.name for rule in RULES} | {name for names in CHECKS for name in names}
+
+
+def check(tree):
+    found = list(check_lines(tree))
+    for run in CHECKS.values():
+        found += run(tree)
+    return found
+
+
+def report(tree):
+    for folder, (tested, sources) in test_shares(tree).items():
+        share = tested / sources if sources else 0
+        print(f"{folder}: {tested} of {sources} sources have a test of the same name, {share:.0%}")
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("root", nargs="?", default=pathlib.Path(__file__).parents[2])
+    parser.add_argument("--update", action="store_true")
+    parser.add_argument("--report", action="store_true")
+    options = parser.parse_args(arguments)
+    tree = Tree(options.root)
+    if options.report:
+        report(tree)
+        return 0
+    return known.settle(tree.root, check(tree), rule_names(), options.update)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,3 @@
+struct NotDeclaredHere {};
+
+#include "pleat/needy/needy.h"
