@@ -16,7 +16,7 @@ add_compile_options(-Wall -Wextra -Werror -Wno-psabi -ffp-contract=off)
 string(REPLACE "-O2" "-O3" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 
-# Tests spend their time in the library: optimising their own code costs more than it gives.
+# Tests spend their time in the library: optimizing their own code costs more than it gives.
 set(PLEAT_TEST_OPTIONS -O1)
 
 if(PLEAT_SANITIZE)

@@ -1,5 +1,5 @@
 // Training and query times of the learner on generated data of a captured clip's shape:
-// D_S = 102 features, D_M = 1050 details (method.md, section 7).
+// D_S = 102 features, D_M = 1050 details (docs/method/learner.md#check-values).
 #include <benchmark/benchmark.h>
 
 #include <cmath>

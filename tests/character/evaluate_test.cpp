@@ -47,8 +47,8 @@ TEST(EvaluateTest, ReconstructionIsNearZeroForEveryLearner) {
   EXPECT_LT(report.baselines.at("nearest").mean_percent, 1e-3);
 }
 
-TEST(EvaluateTest, NothingThatIsLearntSeesTheTestFrames) {
-  // Shifting the test meshes as a whole moves their poses, not the details: were anything learnt
+TEST(EvaluateTest, NothingThatIsLearnedSeesTheTestFrames) {
+  // Shifting the test meshes as a whole moves their poses, not the details: were anything learned
   // from test frames, rig or mean detail or learner would change with them.
   const MeshSequence& sequence = SmallPerformer().sequence;
   PLEAT_ASSERT_OK_AND_ASSIGN(const FrameSplit split,

@@ -14,7 +14,7 @@ namespace pleat {
 namespace {
 
 // Every 7th frame of a dance, each thrown somewhere else: turned about the vertical by any angle,
-// tilted, and moved by metres.
+// tilted, and moved by meters.
 MeshSequence ThrownAbout(const MeshSequence& sequence, const PoseTrack& truth,
                          std::vector<Eigen::Matrix3Xd>* joints, const Skeleton& skeleton) {
   Random random(21);

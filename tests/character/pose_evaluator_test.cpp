@@ -105,7 +105,7 @@ Eigen::Matrix3Xf DetailAt(PoseEvaluator& evaluator, const Pose& pose, double* co
   return hybrid.positions - skinned.positions;
 }
 
-// Largest change of a vertex's detail in one of `num_steps` from pose to pose, metres.
+// Largest change of a vertex's detail in one of `num_steps` from pose to pose, meters.
 double LargestDetailStep(PoseEvaluator& evaluator, const Pose& from, const Pose& to,
                          int num_steps) {
   double confidence = 0, largest = 0;
@@ -129,7 +129,7 @@ TEST(PoseEvaluatorTest, APoseThatLeavesTrainingNeverPops) {
   // A jump would not get smaller with the steps; what moves steadily does, in proportion.
   const double coarse = LargestDetailStep(evaluator, seen, strange, 100);
   const double fine = LargestDetailStep(evaluator, seen, strange, 400);
-  EXPECT_LT(coarse, .02);  // metres, while every joint turns by almost a degree
+  EXPECT_LT(coarse, .02);  // meters, while every joint turns by almost a degree
   EXPECT_LT(fine, .4 * coarse);
 
   // The way ends at the mean detail, with no confidence left.
@@ -251,7 +251,7 @@ Eigen::Matrix3Xd EvaluateInDoublePrecision(const CharacterModel& model,
   return positions;
 }
 
-TEST(PoseEvaluatorTest, SinglePrecisionIsWithinAHundredthOfAMillimetre) {
+TEST(PoseEvaluatorTest, SinglePrecisionIsWithinAHundredthOfAMillimeter) {
   PoseEvaluator evaluator(SmallCharacter());
   EvaluatedFrame frame;
   for (const int t : {1, 9, 20}) {

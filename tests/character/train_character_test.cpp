@@ -139,7 +139,7 @@ TEST(TrainCharacterTest, DifferentialDetailsComeBackAsOffsets) {
   }
 }
 
-TEST(TrainCharacterTest, TheFullDeformationIsLearntTooAndLessWell) {
+TEST(TrainCharacterTest, TheFullDeformationIsLearnedTooAndLessWell) {
   TrainOptions options = FastTrainOptions();
   options.deformation = "full";
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,

@@ -9,7 +9,7 @@
 
 namespace pleat {
 
-// Largest coordinate difference, metres.
+// Largest coordinate difference, meters.
 inline double LargestDifference(const MeshSequence& a, const MeshSequence& b) {
   double largest = 0;
   for (int t = 0; t < a.num_frames(); ++t) {

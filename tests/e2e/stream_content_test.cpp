@@ -46,7 +46,7 @@ TEST(StreamContent, StreamsHoldLessThanAMeshWhereAskedTo) {
   ASSERT_EQ(result.exit_code, 0) << result.err << server.log();
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence exact, ReadSequence(pleat.File("exact.pseq")));
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence shown, ReadSequence(pleat.File("shown.pseq")));
-  EXPECT_LT(LargestDifference(exact, shown), 2e-6);  // metres: the rounding of rotations
+  EXPECT_LT(LargestDifference(exact, shown), 2e-6);  // meters: the rounding of rotations
 
   result = pose(id, "control", "control");
   ASSERT_EQ(result.exit_code, 0) << result.err << server.log();

@@ -8,7 +8,7 @@
 namespace pleat {
 namespace {
 
-// g_ia of every vertex by its definition (3J x V), with weights normalised in double precision.
+// g_ia of every vertex by its definition (3J x V), with weights normalized in double precision.
 Eigen::MatrixXd ChainCoefficients(const Rig& rig) {
   const Skeleton& skeleton = rig.skeleton;
   const int num_joints = skeleton.num_joints();
@@ -41,7 +41,7 @@ TEST(MomentsTest, ChainMomentsAreSumsOverVertices) {
   const PoseTrack track = MakeSmoothPoses(figure.rig.skeleton, 3, 1);
   const MeshSequence sequence = MakeSkinnedSequence(figure, track);
   const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(2));
-  const Eigen::Matrix3Xd y = sequence.FrameAsDouble(2).colwise() - frame.centre;
+  const Eigen::Matrix3Xd y = sequence.FrameAsDouble(2).colwise() - frame.center;
   EXPECT_NEAR(frame.sum_squares, y.squaredNorm(), 1e-9);
   EXPECT_LT((ComputeChainCross(moments, frame, figure.rig.skeleton) - g * y.transpose())
                 .cwiseAbs()
@@ -60,9 +60,9 @@ TEST(MomentsTest, EnergyIsTheSquaredDistanceOfSkinnedVertices) {
   const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(8));
   energy.SetFrame(ComputeChainCross(moments, frame, skeleton), frame.sum_squares);
   const double measured = (sequence.FrameAsDouble(0) - sequence.FrameAsDouble(8)).squaredNorm();
-  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[0], frame.centre)), measured,
+  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[0], frame.center)), measured,
               1e-5 * measured);
-  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[8], frame.centre)), 0, 1e-9);
+  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[8], frame.center)), 0, 1e-9);
 }
 
 TEST(MomentsTest, FarFromTheOriginTheEnergyKeepsItsDigits) {
@@ -76,8 +76,8 @@ TEST(MomentsTest, FarFromTheOriginTheEnergyKeepsItsDigits) {
   PoseEnergy energy(chain, skeleton, 0);
   const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(1));
   energy.SetFrame(ComputeChainCross(moments, frame, skeleton), frame.sum_squares);
-  const double value = energy.DataValue(ToChainPose(skeleton, track.poses[1], frame.centre));
-  // float32 at 512 m resolves 31 micrometres; the weights' float sums add about as much.
+  const double value = energy.DataValue(ToChainPose(skeleton, track.poses[1], frame.center));
+  // float32 at 512 m resolves 31 micrometers; the weights' float sums add about as much.
   EXPECT_LT(std::sqrt(std::abs(value) / sequence.num_vertices()), 1e-4);
 }
 

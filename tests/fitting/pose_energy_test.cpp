@@ -134,8 +134,8 @@ TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
 
 TEST_F(PoseEnergyTest, ChainPoseRoundTrip) {
   const Skeleton& skeleton = figure_.rig.skeleton;
-  const Eigen::Vector3d centre(1, 2, 3);
-  const Pose pose = FromChainPose(skeleton, ToChainPose(skeleton, track_.poses[6], centre), centre);
+  const Eigen::Vector3d center(1, 2, 3);
+  const Pose pose = FromChainPose(skeleton, ToChainPose(skeleton, track_.poses[6], center), center);
   EXPECT_LT((pose.root_position - track_.poses[6].root_position).norm(), 1e-12);
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     EXPECT_LT(pose.rotations[j].angularDistance(track_.poses[6].rotations[j]), 1e-7);

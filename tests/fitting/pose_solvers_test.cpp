@@ -55,7 +55,7 @@ TEST_F(PoseSolversTest, ClosedFormWalkIsAGoodStartForAnyFrame) {
 
 TEST_F(PoseSolversTest, WalkSweepNeverRaisesTheEnergyAndConverges) {
   const FrameMoments frame = SetFrame(30);
-  ChainPose pose = ToChainPose(skeleton_, Pose::Rest(skeleton_), frame.centre);
+  ChainPose pose = ToChainPose(skeleton_, Pose::Rest(skeleton_), frame.center);
   double before = energy_.Value(pose);
   const double start = before;
   for (int sweep = 0; sweep < 30; ++sweep) {
@@ -74,7 +74,7 @@ TEST_F(PoseSolversTest, AllJointsRecoverTheTruth) {
     const PoseSolverSummary summary = MinimizePose(energy_, {}, &pose);
     EXPECT_TRUE(summary.converged);
     EXPECT_LT(Rms(pose), 1e-5) << "frame " << t;
-    const ChainPose truth = ToChainPose(skeleton_, track_.poses[t], frame.centre);
+    const ChainPose truth = ToChainPose(skeleton_, track_.poses[t], frame.center);
     EXPECT_LT((pose.root_position - truth.root_position).norm(), 1e-4);
     for (int b = 1; b < skeleton_.num_joints(); ++b) {
       EXPECT_LT((pose.rotation(b) - truth.rotation(b)).norm(), 1e-3) << "bone " << b;

@@ -34,7 +34,7 @@ TEST(FrameFilesTest, SortsWithoutZeroPadding) {
   EXPECT_THAT(sorted, ElementsAre("d/f8.obj", "d/f9.obj", "d/f10.obj", "d/f11.obj"));
 }
 
-TEST(FrameFilesTest, MissingNumberIsNamedWithItsNeighbours) {
+TEST(FrameFilesTest, MissingNumberIsNamedWithItsNeighbors) {
   EXPECT_THAT(Sort({"f_001.obj", "f_002.obj", "f_004.obj", "f_005.obj"}),
               HasStatus(kInvalid, AllOf(HasSubstr("frame number 3 is missing"),
                                         HasSubstr("f_002.obj"), HasSubstr("f_004.obj"))));

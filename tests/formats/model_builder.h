@@ -123,7 +123,7 @@ class SmallModelBuilder {
     }
     const Eigen::VectorXf mean = Vector(3 * num_control).cast<float>() * 0.01f;
     const Eigen::MatrixXd basis = Matrix(3 * num_control, kComponents);
-    detail.basis = DetailBasis::Quantise(mean, basis, Eigen::VectorXd::Constant(kComponents, 1e-4))
+    detail.basis = DetailBasis::Quantize(mean, basis, Eigen::VectorXd::Constant(kComponents, 1e-4))
                        .value()
                        .parameters();
     return detail;

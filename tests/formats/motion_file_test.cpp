@@ -36,7 +36,7 @@ TEST(MotionFileTest, JointsAreMatchedByNameInAnyOrder) {
   const Pose& first = motion.track.poses[0];
   EXPECT_EQ(first.root_position, Eigen::Vector3d(0, 1, 2));
   ASSERT_EQ(first.rotations.size(), 18u);
-  EXPECT_EQ(first.rotations[kHips].x(), 1);  // [0, 2, 0, 0] normalised; w comes first
+  EXPECT_EQ(first.rotations[kHips].x(), 1);  // [0, 2, 0, 0] normalized; w comes first
   EXPECT_EQ(first.rotations[kHips].w(), 0);
   EXPECT_EQ(motion.track.poses[1].rotations[kHead].y(), 0.8);
   EXPECT_EQ(first.rotations[kLeftFoot].w(), 1);

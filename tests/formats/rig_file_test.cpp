@@ -60,7 +60,7 @@ TEST(RigFile, LocksJointsByFlagAndByName) {
 }
 
 // Weights of bones that are not as EncodeRig writes them: unsorted, doubled, of any sum.
-TEST(RigFile, NormalisesWeightsOfBones) {
+TEST(RigFile, NormalizesWeightsOfBones) {
   const SkinnedFigure figure = SmallFigure();
   json root = json::parse(EncodeRig(RigOf(figure)));
   root["weights"]["vertices"][0] = {2, 1, 3, 2, 2, 1, 4, 4, 5, .5, 6, .25};
@@ -164,7 +164,7 @@ TEST(RigFile, ResolvesForTheClip) {
 // --- GLB ---
 
 // A binary glTF of a figure: the skin's joints in reverse order, an armature node that scales from
-// centimetres, weights of joints (that of a bone belongs to the joint it turns about).
+// centimeters, weights of joints (that of a bone belongs to the joint it turns about).
 std::string MakeGlb(const SkinnedFigure& figure, const std::function<void(json&)>& edit = {}) {
   const Skeleton& skeleton = figure.rig.skeleton;
   const int num_joints = skeleton.num_joints();

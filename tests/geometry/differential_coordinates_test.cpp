@@ -20,7 +20,7 @@ std::vector<int> AllVertices(const MeshShape& shape) {
   return all;
 }
 
-TEST(DifferentialCoordinatesTest, AreTheDifferenceToTheMeanOfTheNeighbours) {
+TEST(DifferentialCoordinatesTest, AreTheDifferenceToTheMeanOfTheNeighbors) {
   const MeshShape shape = MakeGrid(5, 4, 1, 1);
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const auto coordinates,
@@ -30,11 +30,11 @@ TEST(DifferentialCoordinatesTest, AreTheDifferenceToTheMeanOfTheNeighbours) {
   const Eigen::MatrixXd encoded = coordinates.Encode(rows);
   const VertexAdjacency adjacency(shape.topology);
   for (int v = 0; v < shape.topology.num_vertices(); ++v) {
-    const auto neighbours = adjacency.neighbors(v);
-    EXPECT_EQ(coordinates.num_neighbours()[v], static_cast<int>(neighbours.size()));
+    const auto neighbors = adjacency.neighbors(v);
+    EXPECT_EQ(coordinates.num_neighbors()[v], static_cast<int>(neighbors.size()));
     Eigen::RowVector3d mean = Eigen::RowVector3d::Zero();
-    for (const int n : neighbours) mean += rows.middleCols<3>(3 * n);
-    mean /= static_cast<double>(neighbours.size());
+    for (const int n : neighbors) mean += rows.middleCols<3>(3 * n);
+    mean /= static_cast<double>(neighbors.size());
     const Eigen::RowVector3d expected = 1.25 * rows.middleCols<3>(3 * v) - mean;
     EXPECT_LT((encoded.middleCols<3>(3 * v) - expected).norm(), 1e-12) << v;
   }
@@ -48,7 +48,7 @@ TEST(DifferentialCoordinatesTest, DecodingIsTheInverseOnAnySubset) {
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const auto coordinates,
         DifferentialCoordinates::Build(sphere.topology, sphere.positions, control));
-    for (const int count : coordinates.num_neighbours()) EXPECT_GT(count, 0);
+    for (const int count : coordinates.num_neighbors()) EXPECT_GT(count, 0);
     Eigen::MatrixXd rows(4, 3 * control.size());
     for (Eigen::Index i = 0; i < rows.size(); ++i) rows(i) = std::sin(7. * double(i));
     const Eigen::MatrixXd back =

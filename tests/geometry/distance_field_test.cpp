@@ -22,13 +22,13 @@ absl::StatusOr<DistanceField> FieldOf(const TriangleMesh& mesh, int resolution, 
 }
 
 TEST(DistanceFieldTest, AgreesWithASphere) {
-  const Eigen::Vector3d centre(.5, -1, 2);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const DistanceField field, FieldOf(MakeSphere(centre, .8, 48), 48));
+  const Eigen::Vector3d center(.5, -1, 2);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DistanceField field, FieldOf(MakeSphere(center, .8, 48), 48));
   Random random(4);
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3d offset(random.Normal(), random.Normal(), random.Normal());
-    const Eigen::Vector3d point = centre + random.Uniform(0, .85) * offset.normalized();
-    EXPECT_NEAR(field.SignedDistance(point), (point - centre).norm() - .8, .02);
+    const Eigen::Vector3d point = center + random.Uniform(0, .85) * offset.normalized();
+    EXPECT_NEAR(field.SignedDistance(point), (point - center).norm() - .8, .02);
   }
 }
 

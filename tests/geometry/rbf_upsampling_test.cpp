@@ -154,7 +154,7 @@ TEST(RbfUpsamplingTest, FeaturesSharpenATransition) {
   EXPECT_LT(MeanError(featured, field, controls), 0.5 * MeanError(plain, field, controls));
 }
 
-TEST(RbfUpsamplingTest, RefinementLearnsFromAnAnimationAndGeneralises) {
+TEST(RbfUpsamplingTest, RefinementLearnsFromAnAnimationAndGeneralizes) {
   const Mesh mesh = Tube();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .05);
   // Rough but linear in the motion: every vertex mixes two smooth fields with its own factors.
@@ -237,7 +237,7 @@ TEST(RbfUpsamplingTest, WrongInputIsRefusedWithWords) {
   EXPECT_THAT(build({3, 1200}), HasStatus(invalid, HasSubstr("1200")));
   EXPECT_THAT(build({3, -1}), HasStatus(invalid, HasSubstr("-1")));
   EXPECT_THAT(build({3, 3}), HasStatus(invalid, HasSubstr("twice")));
-  EXPECT_THAT(build({3}, {.num_neighbours = 0}), HasStatus(invalid, HasSubstr("num_neighbours")));
+  EXPECT_THAT(build({3}, {.num_neighbors = 0}), HasStatus(invalid, HasSubstr("num_neighbors")));
   EXPECT_THAT(build({3}, {.features = Eigen::MatrixXd::Zero(2, 5)}),
               HasStatus(invalid, HasSubstr("feature")));
   EXPECT_THAT(RbfUpsampler::Build(mesh.topology, mesh.positions.leftCols(9), {3}),

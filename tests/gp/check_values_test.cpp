@@ -1,4 +1,5 @@
-// The training of the paper's learner against the check values of method.md section 7.
+// The training of the paper's learner against the check values of
+// docs/method/learner.md#check-values.
 #include <gtest/gtest.h>
 
 #include "pleat/gp/shared_gplvm.h"
@@ -59,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Gplvm, CheckValuesTest,
 // settled. So it is the run of SCG, not the optimum, that determines them. It does so well: noise
 // of 1e-5 in the poses (radians) moves no log by more than .002. Hence the
 // tolerances: half a unit of the last digit given, and .002.
-TEST(CheckLogsTest, LearntLogsAreThoseOfTheTable) {
+TEST(CheckLogsTest, LearnedLogsAreThoseOfTheTable) {
   PLEAT_SHARED_DATA_OR_SKIP(poses_path, "gplvm/n100_poses.csv");
   PLEAT_SHARED_DATA_OR_SKIP(details_path, "gplvm/n100_details.csv");
   PLEAT_ASSERT_OK_AND_ASSIGN(const SharedGplvm model,

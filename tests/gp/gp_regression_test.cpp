@@ -43,7 +43,7 @@ TEST(GpRegressionTest, LearnsASmoothFunctionAndItsNoise) {
 TEST(GpRegressionTest, IsTheTextbookFormula) {
   const Eigen::MatrixXd x = RandomMatrix(30, 3, 1), y = RandomMatrix(30, 2, 2);
   const KernelLogs logs{-.3, .2, -1, -2, -1.5};
-  GpRegressionOptions options{.kernel = {.bias = true, .linear = true}, .normalise_inputs = false};
+  GpRegressionOptions options{.kernel = {.bias = true, .linear = true}, .normalize_inputs = false};
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, GpRegression::Condition(x, y, logs, options));
   const double scale = gp.parameters().output_scale;
   const auto kernel = [&](const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
@@ -59,14 +59,14 @@ TEST(GpRegressionTest, IsTheTextbookFormula) {
   Eigen::VectorXd cross(30);
   for (int i = 0; i < 30; ++i) cross[i] = kernel(query, x.row(i));
   const Eigen::RowVectorXd mean = y.colwise().mean();
-  const Eigen::MatrixXd centred = y.rowwise() - mean;
+  const Eigen::MatrixXd centered = y.rowwise() - mean;
   const Eigen::VectorXd solved = k.llt().solve(cross);
 
   GpRegression::Workspace workspace;
   Eigen::VectorXd predicted(2);
   double variance = 0;
   gp.Predict(query.transpose(), 0, &workspace, predicted, &variance);
-  EXPECT_LT((predicted.transpose() - mean - solved.transpose() * centred).norm(), 1e-9);
+  EXPECT_LT((predicted.transpose() - mean - solved.transpose() * centered).norm(), 1e-9);
   EXPECT_NEAR(variance, (kernel(query, query) - cross.dot(solved)) * scale * scale, 1e-5);
 }
 

@@ -26,7 +26,7 @@ struct Truth {
 };
 
 DetailBasis Rounded(const Truth& truth, double largest_step) {
-  return DetailBasis::Quantise(truth.mean, truth.basis,
+  return DetailBasis::Quantize(truth.mean, truth.basis,
                                Eigen::VectorXd::Constant(kNumComponents, largest_step))
       .value();
 }
@@ -111,7 +111,7 @@ TEST(DetailBasisTest, SumsDoNotOverflow) {
   // Many components with the same large product: the sum of the weights decides the unit.
   constexpr int kMany = 900;
   const DetailBasis basis =
-      DetailBasis::Quantise(Eigen::VectorXf::Zero(5), Eigen::MatrixXd::Ones(5, kMany),
+      DetailBasis::Quantize(Eigen::VectorXf::Zero(5), Eigen::MatrixXd::Ones(5, kMany),
                             Eigen::VectorXd::Constant(kMany, 1))
           .value();
   for (const float sign : {1.f, -1.f}) {
@@ -153,7 +153,7 @@ TEST(DetailBasisTest, RefusesWhatDoesNotFit) {
   for (const double wrong : {std::nan(""), 1e300}) {
     hole(5, 2) = wrong;
     EXPECT_THAT(
-        DetailBasis::Quantise(truth.mean, hole, Eigen::VectorXd::Ones(kNumComponents)).status(),
+        DetailBasis::Quantize(truth.mean, hole, Eigen::VectorXd::Ones(kNumComponents)).status(),
         HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("finite")));
   }
 }

@@ -312,7 +312,7 @@ TEST(TrainDetailModelTest, ConstantDetailsAreThePredictedMean) {
 
 struct HeldOut {
   const char* name;
-  double gp, paper, back_constrained;  // RMS vertex error, cm; method.md section 7
+  double gp, paper, back_constrained;  // RMS vertex error, cm; docs/method/learner.md#check-values
 };
 
 class HeldOutTest : public ::testing::TestWithParam<HeldOut> {};

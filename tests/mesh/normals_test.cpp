@@ -7,7 +7,7 @@
 namespace pleat {
 namespace {
 
-TEST(NormalsTest, OfASpherePointAwayFromItsCentre) {
+TEST(NormalsTest, OfASpherePointAwayFromItsCenter) {
   const MeshShape sphere = MakeUvSphere(2, 40, 80);
   const Eigen::Matrix3Xd normals = ComputeVertexNormals(sphere.topology, sphere.positions);
   for (int v = 0; v < normals.cols(); ++v) {

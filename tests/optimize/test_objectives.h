@@ -1,4 +1,4 @@
-// Objectives with known minima for the optimiser tests.
+// Objectives with known minima for the optimizer tests.
 #pragma once
 
 #include <cmath>

@@ -94,7 +94,7 @@ TEST(Performer, IsAClosedOutwardSphereAtAnyResolution) {
       EXPECT_NEAR(performer.sequence.num_vertices(), wanted, .05 * wanted);
       const double volume = SignedVolume(performer.sequence.FrameAsDouble(0),
                                          performer.sequence.topology().triangles());
-      EXPECT_GT(volume, .03);  // cubic metres
+      EXPECT_GT(volume, .03);  // cubic meters
       EXPECT_LT(volume, .15);
     }
   }
@@ -169,7 +169,7 @@ TEST(Performer, BodyIsExactlySkinnedAndTheSkirtIsNot) {
 
 TEST(Performer, SkirtMovesSmoothlyInTime) {
   const MeshSequence& sequence = SmallPerformer().sequence;
-  double fastest = 0;  // metres per frame
+  double fastest = 0;  // meters per frame
   for (int t = 1; t < sequence.num_frames(); ++t) {
     fastest = std::max<double>(
         fastest, (sequence.frame(t) - sequence.frame(t - 1)).colwise().norm().maxCoeff());
@@ -232,9 +232,9 @@ TEST(Performer, WalkTravelsForward) {
     const Eigen::Vector3d step = track.poses[t].root_position - track.poses[t - 1].root_position;
     along += step.dot(track.poses[t].rotations[0] * Eigen::Vector3d::UnitZ());
   }
-  const double metres_per_second = along / (track.num_frames() - 31) * track.fps;
-  EXPECT_GT(metres_per_second, .5);
-  EXPECT_LT(metres_per_second, 2.0);
+  const double meters_per_second = along / (track.num_frames() - 31) * track.fps;
+  EXPECT_GT(meters_per_second, .5);
+  EXPECT_LT(meters_per_second, 2.0);
 }
 
 TEST(Performer, StandingFeetDoNotSlide) {
@@ -262,7 +262,7 @@ TEST(Performer, StandingFeetDoNotSlide) {
   }
 }
 
-TEST(Performer, HeightAndFrameRateAreHonoured) {
+TEST(Performer, HeightAndFrameRateAreHonored) {
   PerformerOptions options = SmallOptions();
   options.num_frames = 5;
   options.height_m = 1.2;

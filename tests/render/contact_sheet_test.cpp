@@ -44,7 +44,7 @@ TEST(ContactSheet, HasRoomForAllTilesAndTitles) {
   options.title = "title";
   options.column_titles = {"a", "b", "c"};
   options.row_titles = {"input", "skinned", "hybrid"};
-  options.legend = ColourScale{};
+  options.legend = ColorScale{};
   PLEAT_ASSERT_OK_AND_ASSIGN(const Image titled, RenderContactSheet(tiles, options));
   EXPECT_GT(titled.width(), plain.width() + 40);
   EXPECT_GT(titled.height(), plain.height() + 60);
@@ -55,7 +55,7 @@ TEST(ContactSheet, HasRoomForAllTilesAndTitles) {
   EXPECT_LT(row.width(), 8 * 84);
 }
 
-TEST(ContactSheet, CentredTilesLookAlikeWhereverTheCharacterIs) {
+TEST(ContactSheet, CenteredTilesLookAlikeWhereverTheCharacterIs) {
   std::vector<SheetTile> tiles = {TriangleTile(0), TriangleTile(50)};
   ContactSheetOptions options = SmallTiles();
   options.num_columns = 2;
@@ -73,7 +73,7 @@ TEST(ContactSheet, RefusesWhatDoesNotFitTogether) {
   EXPECT_THAT(RenderContactSheet({}, SmallTiles()),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("at least one tile")));
   SheetTile tile = TriangleTile(0);
-  tile.vertex_colours.assign(2, Rgb{});
+  tile.vertex_colors.assign(2, Rgb{});
   EXPECT_THAT(RenderContactSheet({tile}, SmallTiles()),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("tile 0")));
   tile = TriangleTile(0);

@@ -13,13 +13,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-int CountColour(const Image& image, Rgb colour) {
+int CountColor(const Image& image, Rgb color) {
   int count = 0;
-  for (const Rgb& pixel : image.pixels()) count += pixel == colour;
+  for (const Rgb& pixel : image.pixels()) count += pixel == color;
   return count;
 }
 
-TEST(LinePlot, DrawsEverySeriesInItsOwnColour) {
+TEST(LinePlot, DrawsEverySeriesInItsOwnColor) {
   PlotSeries rising{"rising", {}}, flat{"flat", {}};
   for (int i = 0; i < 100; ++i) {
     rising.values.push_back(.1 * i);
@@ -31,8 +31,8 @@ TEST(LinePlot, DrawsEverySeriesInItsOwnColour) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Image image, RenderLinePlot({rising, flat}, options));
   EXPECT_EQ(image.width(), 800);
   EXPECT_EQ(image.height(), 360);
-  EXPECT_GT(CountColour(image, {213, 94, 0}), 400);  // second colour: the horizontal line
-  EXPECT_GT(CountColour(image, {0, 114, 178}), 100);
+  EXPECT_GT(CountColor(image, {213, 94, 0}), 400);  // second color: the horizontal line
+  EXPECT_GT(CountColor(image, {0, 114, 178}), 100);
 }
 
 TEST(LinePlot, LeavesGapsAndTakesSinglePointsAndConstants) {
@@ -54,10 +54,10 @@ TEST(LinePlot, LongLegendsTakeMoreRowsAndStayInside) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Image image, RenderLinePlot(series, options));
   // One swatch below the other, and the curve of the last series somewhere below them.
   const Rgb first{0, 114, 178}, second{213, 94, 0};
-  const auto highest = [&](Rgb colour) {
+  const auto highest = [&](Rgb color) {
     for (int y = 0; y < image.height(); ++y) {
       for (int x = 0; x < image.width(); ++x) {
-        if (image.at(x, y) == colour) return y;
+        if (image.at(x, y) == color) return y;
       }
     }
     return image.height();

@@ -56,8 +56,8 @@ TEST(RenderMesh, NearFacesHideFarOnesInAnyOrder) {
       2, 3, 6, 7;
   near_first << far_first.rightCols(2), far_first.leftCols(2);
   RenderOptions options;
-  options.vertex_colours.assign(4, Rgb{200, 0, 0});
-  options.vertex_colours.insert(options.vertex_colours.end(), 4, Rgb{0, 200, 0});
+  options.vertex_colors.assign(4, Rgb{200, 0, 0});
+  options.vertex_colors.insert(options.vertex_colors.end(), 4, Rgb{0, 200, 0});
   for (Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
     ViewOptions view = FrontView(32);
     view.projection = projection;
@@ -70,14 +70,14 @@ TEST(RenderMesh, NearFacesHideFarOnesInAnyOrder) {
   }
 }
 
-TEST(RenderMesh, BackFacesHaveTheirOwnColour) {
+TEST(RenderMesh, BackFacesHaveTheirOwnColor) {
   const Eigen::Matrix3Xd positions = Square(0);
   Eigen::Matrix3Xi front(3, 2), back(3, 2);
   front << 0, 0, 1, 2, 2, 3;
   back << 0, 0, 2, 3, 1, 2;
   RenderOptions options;
-  options.colour = {0, 0, 200};
-  options.back_colour = {200, 0, 0};
+  options.color = {0, 0, 200};
+  options.back_color = {200, 0, 0};
   const Camera camera = Camera::Fit(FrontView(32), positions);
   const Rgb seen_front = RenderMesh(positions, front, camera, options).at(16, 16);
   const Rgb seen_back = RenderMesh(positions, back, camera, options).at(16, 16);

@@ -49,11 +49,11 @@ TriangleMesh WithoutFaces(const TriangleMesh& mesh, int count) {
   return WithTriangles(mesh, kept);
 }
 
-// One wide hole: all faces within `radius` of `centre`.
-TriangleMesh WithHole(const TriangleMesh& mesh, const Eigen::Vector3d& centre, double radius) {
+// One wide hole: all faces within `radius` of `center`.
+TriangleMesh WithHole(const TriangleMesh& mesh, const Eigen::Vector3d& center, double radius) {
   std::vector<int> kept;
   for (int f = 0; f < mesh.triangles.cols(); ++f) {
-    if ((mesh.positions.col(mesh.triangles(0, f)) - centre).norm() > radius) kept.push_back(f);
+    if ((mesh.positions.col(mesh.triangles(0, f)) - center).norm() > radius) kept.push_back(f);
   }
   return WithTriangles(mesh, kept);
 }
@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Moved, BrokenVariantTest,
     ::testing::Values(
-        Variant{"Centimetres", [](const auto& mesh) { return mesh; }, Eigen::Matrix3d::Identity(),
+        Variant{"Centimeters", [](const auto& mesh) { return mesh; }, Eigen::Matrix3d::Identity(),
                 100},
         Variant{"Inches", [](const auto& mesh) { return mesh; }, Eigen::Matrix3d::Identity(),
                 1 / .0254},

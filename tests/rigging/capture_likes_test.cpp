@@ -66,7 +66,7 @@ TEST(CaptureLikes, NoisyFrames) {
   EXPECT_LT(LimbError(rig, Dancer().truth, summary.rest_frame), .03);
 }
 
-// Every third frame only, and half a metre of leap between them.
+// Every third frame only, and half a meter of leap between them.
 TEST(CaptureLikes, FastJumps) {
   std::vector<Eigen::Matrix3Xf> frames;
   for (int t = 0; t < Dancer().sequence.num_frames(); t += 3) {
@@ -98,7 +98,7 @@ TEST(CaptureLikes, OpenPieces) {
   const Eigen::Matrix3Xd rest = Dancer().sequence.FrameAsDouble(0);
   const Topology& whole = Dancer().sequence.topology();
   const Skeleton& skeleton = Dancer().truth.rig.skeleton;
-  const auto is_cut = [&](const Eigen::Vector3d& centre) {
+  const auto is_cut = [&](const Eigen::Vector3d& center) {
     for (const auto& [from, to, share] : {std::tuple{kChest, kHead, .55},
                                           {kLeftLowerArm, kLeftHand, .85},
                                           {kRightLowerArm, kRightHand, .85},
@@ -107,7 +107,7 @@ TEST(CaptureLikes, OpenPieces) {
                                           {kHips, kChest, .6}}) {
       const Eigen::Vector3d a = skeleton.rest_position(from), b = skeleton.rest_position(to);
       const Eigen::Vector3d at = a + share * (b - a), axis = (b - a).normalized();
-      if ((centre - at).norm() < .2 && std::abs(axis.dot(centre - at)) < .01) return true;
+      if ((center - at).norm() < .2 && std::abs(axis.dot(center - at)) < .01) return true;
     }
     return false;
   };

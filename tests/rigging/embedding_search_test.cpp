@@ -24,7 +24,7 @@ SphereGraph RandomGraph(uint64_t seed, int num_spheres) {
   std::vector<std::pair<int, int>> edges;
   for (int i = 0; i < num_spheres; ++i) {
     for (int j = 0; j < i; ++j) {
-      if ((spheres[i].centre - spheres[j].centre).norm() < .55) edges.push_back({i, j});
+      if ((spheres[i].center - spheres[j].center).norm() < .55) edges.push_back({i, j});
     }
   }
   return SphereGraph(spheres, edges);

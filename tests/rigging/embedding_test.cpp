@@ -20,7 +20,7 @@ absl::StatusOr<Embedding> Embed(const TriangleMesh& mesh, const EmbeddingOptions
   return EmbedSkeleton(*volume, options);
 }
 
-// Mean distance over the joints of arms and legs, metres.
+// Mean distance over the joints of arms and legs, meters.
 double LimbError(const Eigen::Matrix3Xd& joints, const Eigen::Matrix3Xd& truth) {
   return (joints - truth).rightCols(kNumHumanJoints - kLeftUpperLeg).colwise().norm().mean();
 }

@@ -65,13 +65,13 @@ TEST(HeatWeightsTest, ScaleAndUnitDoNotMatter) {
   const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .04});
   const Topology topology = MakeTopology(figure.mesh);
   PLEAT_ASSERT_OK_AND_ASSIGN(
-      const SkinWeights metres,
+      const SkinWeights meters,
       ComputeHeatWeights(topology, figure.mesh.positions, FigureSkeleton(figure)));
   PLEAT_ASSERT_OK_AND_ASSIGN(
-      const SkinWeights centimetres,
+      const SkinWeights centimeters,
       ComputeHeatWeights(topology, 100 * figure.mesh.positions,
                          HumanTemplate().WithRestPositions(100 * figure.joints)));
-  EXPECT_LT((metres.ToDense() - centimetres.ToDense()).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((meters.ToDense() - centimeters.ToDense()).cwiseAbs().maxCoeff(), 1e-4);
 }
 
 TEST(HeatWeightsTest, ColdComponentsAndLooseVerticesFollowTheirNearestBone) {

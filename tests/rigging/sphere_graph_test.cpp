@@ -44,10 +44,10 @@ TEST(SphereGraphTest, JoinsOverlapsAndClearSightOnly) {
                                        {{3.9, .95, .95}, .04},  // in a corner, sees the third
                                        {{2, 3, .5}, .5}};       // outside
   const SphereGraph graph(spheres, field);
-  EXPECT_THAT(graph.neighbours(0), ElementsAre(1));  // the second hides the third: not Gabriel
-  EXPECT_THAT(graph.neighbours(1), ElementsAre(0, 2));
-  EXPECT_THAT(graph.neighbours(2), ElementsAre(1, 3));
-  EXPECT_THAT(graph.neighbours(4), IsEmpty());
+  EXPECT_THAT(graph.neighbors(0), ElementsAre(1));  // the second hides the third: not Gabriel
+  EXPECT_THAT(graph.neighbors(1), ElementsAre(0, 2));
+  EXPECT_THAT(graph.neighbors(2), ElementsAre(1, 3));
+  EXPECT_THAT(graph.neighbors(4), IsEmpty());
 }
 
 }  // namespace

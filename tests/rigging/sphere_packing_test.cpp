@@ -17,20 +17,20 @@ std::vector<MedialSample> RandomSamples(int count) {
   return samples;
 }
 
-TEST(SpherePackingTest, CentresLieOutsideLargerSpheresAndEverySampleIsCovered) {
+TEST(SpherePackingTest, CentersLieOutsideLargerSpheresAndEverySampleIsCovered) {
   const std::vector<MedialSample> samples = RandomSamples(2000);
   const std::vector<Sphere> spheres = PackSpheres(samples);
   ASSERT_GT(spheres.size(), 10u);
   for (size_t i = 0; i < spheres.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
       EXPECT_GE(spheres[j].radius, spheres[i].radius);
-      EXPECT_GE((spheres[i].centre - spheres[j].centre).norm(), spheres[j].radius);
+      EXPECT_GE((spheres[i].center - spheres[j].center).norm(), spheres[j].radius);
     }
   }
   for (const MedialSample& sample : samples) {
     bool is_covered = false;
     for (const Sphere& sphere : spheres) {
-      is_covered |= (sphere.centre - sample.position).norm() <= sphere.radius;
+      is_covered |= (sphere.center - sample.position).norm() <= sphere.radius;
     }
     EXPECT_TRUE(is_covered);
   }
@@ -40,7 +40,7 @@ TEST(SpherePackingTest, KeepsTheLargestWithinTheLimit) {
   const std::vector<Sphere> all = PackSpheres(RandomSamples(500));
   const std::vector<Sphere> few = PackSpheres(RandomSamples(500), 5);
   ASSERT_EQ(few.size(), 5u);
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(few[i].centre, all[i].centre);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(few[i].center, all[i].center);
   EXPECT_TRUE(PackSpheres({}).empty());
 }
 

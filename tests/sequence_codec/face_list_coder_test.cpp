@@ -12,11 +12,11 @@ namespace {
 
 TEST(FaceListCoderTest, FacesInAnyOrderRoundTrip) {
   FaceListCode::ExpectRoundTrip(MakeTorus(24, 12, 5).topology);
-  FaceListCode::ExpectRoundTrip(QuadsAsModelled(7, 9));
+  FaceListCode::ExpectRoundTrip(QuadsAsModeled(7, 9));
 }
 
-TEST(FaceListCoderTest, MeshesAsModelledAreMuchSmallerThanByTheirSurface) {
-  const Topology mesh = QuadsAsModelled(40, 50);
+TEST(FaceListCoderTest, MeshesAsModeledAreMuchSmallerThanByTheirSurface) {
+  const Topology mesh = QuadsAsModeled(40, 50);
   const size_t by_surface = SurfaceCode::Encode(mesh).size();
   EXPECT_LT(8.0 * static_cast<double>(FaceListCode::Encode(mesh).size()) / mesh.num_faces(),
             .5);  // bits

@@ -148,7 +148,7 @@ TEST(SequenceDecoderTest, TheGoldenFileWithAListOfFacesStaysReadable) {
   PLEAT_ASSERT_OK_AND_ASSIGN(SequenceDecoder decoder, SequenceDecoder::Open(bytes));
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence decoded, decoder.DecodeAll());
   EXPECT_EQ(decoded.num_frames(), 3);
-  EXPECT_TRUE(decoded.topology() == QuadsAsModelled(4, 5));
+  EXPECT_TRUE(decoded.topology() == QuadsAsModeled(4, 5));
   EXPECT_NEAR(decoded.frame(2)(1, 7), 2, 1e-3);
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(SkinWeightsTest, FromDenseKeepsTheFourLargestAndNormalises) {
+TEST(SkinWeightsTest, FromDenseKeepsTheFourLargestAndNormalizes) {
   Eigen::MatrixXd dense(2, 7);
   dense << 9, .1, .5, .05, .2, .15, .3,  // column 0 (no bone) is ignored
       0, 0, 0, 2, 0, -1, 0;              // one bone; negative weights are none

@@ -28,13 +28,13 @@ TEST(UserRig, JointWeightsBecomeBoneWeights) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const UserRig rig,
       RigFromJointWeights(Legs(), {{{0, 1}}, {{0, 2}}, {{1, 3}, {3, 1}}, {{3, 1}}}, positions));
-  // right moves nothing and stays as it is; foot gets an end behind the centre of its vertices.
+  // right moves nothing and stays as it is; foot gets an end behind the center of its vertices.
   ASSERT_EQ(rig.skeleton.num_joints(), 5);
   EXPECT_EQ(rig.skeleton.joint(4).name, "foot_end");
   EXPECT_EQ(rig.skeleton.parent(4), 3);
-  const Eigen::Vector3d centre =
+  const Eigen::Vector3d center =
       (Eigen::Vector3d(positions.col(2)) * .25 * 4 + Eigen::Vector3d(positions.col(3)) * 1) / 2;
-  EXPECT_LT((rig.skeleton.rest_position(4) - (2 * centre - Eigen::Vector3d(.2, 0, 0))).norm(),
+  EXPECT_LT((rig.skeleton.rest_position(4) - (2 * center - Eigen::Vector3d(.2, 0, 0))).norm(),
             1e-12);
   EXPECT_EQ(rig.weights.value().vertex(0).bones[0],
             1);  // the nearer of the bones that begin in hips

@@ -106,7 +106,7 @@ TEST(DeltaStreamTest, ALostFrameIsNoticedAndAKeyFrameHeals) {
   EXPECT_LE(LargestError(decoded, Bend(mesh.positions, 5)), encoder.header().box.step_m());
 }
 
-TEST(DeltaStreamTest, TheGridFollowsABoundInMillimetres) {
+TEST(DeltaStreamTest, TheGridFollowsABoundInMillimeters) {
   const TestMesh mesh = MakeTorus(24, 12, 3);
   for (const double bound_mm : {0.05, 0.4, 3.0}) {
     FrameEncoderOptions options = kDelta;

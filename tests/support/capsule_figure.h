@@ -13,7 +13,7 @@ namespace pleat {
 
 struct CapsuleFigure {
   TriangleMesh mesh;
-  Eigen::Matrix3Xd joints;  // 3 x 18, template order, metres
+  Eigen::Matrix3Xd joints;  // 3 x 18, template order, meters
 };
 
 struct CapsuleFigureOptions {

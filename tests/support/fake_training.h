@@ -51,7 +51,7 @@ inline MeshSequence MakeSwayingTube(int num_frames, const std::string& name = "t
       .value();
 }
 
-// A chain of three joints up the mesh, weights by height, and a detail of a few millimetres.
+// A chain of three joints up the mesh, weights by height, and a detail of a few millimeters.
 // Depends on clip and seed only.
 inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& clip,
                                                            const TrainOptions& options) {
@@ -97,7 +97,7 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
   detail.learner = Learner::kGp;
   detail.stages = {stage};
   const Eigen::VectorXf mean = matrix(3 * num_vertices, 1).col(0).cast<float>() * .005f;
-  detail.basis = DetailBasis::Quantise(mean, matrix(3 * num_vertices, kComponents) * .005,
+  detail.basis = DetailBasis::Quantize(mean, matrix(3 * num_vertices, kComponents) * .005,
                                        Eigen::VectorXd::Constant(kComponents, 1e-6))
                      .value()
                      .parameters();

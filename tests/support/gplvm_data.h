@@ -1,4 +1,5 @@
-// The check data of method.md section 7: N poses (N x 102) and details (N x 1050, centimetres).
+// The check data of docs/method/learner.md#check-values: N poses (N x 102) and details (N x 1050,
+// centimeters).
 #pragma once
 
 #include <Eigen/Core>

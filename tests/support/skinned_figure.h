@@ -79,7 +79,7 @@ inline SkinnedFigure MakeSkinnedFigure(const SkinnedFigureOptions& options = {})
   return figure;
 }
 
-// T x 3V details in each vertex's own axes, metres: a travelling wave over the surface.
+// T x 3V details in each vertex's own axes, meters: a traveling wave over the surface.
 inline Eigen::MatrixXd MakeWaveDetails(const SkinnedFigure& figure, int num_frames,
                                        double amplitude_m = 0.005) {
   const Eigen::Matrix3Xd& rest = figure.rig.rest_positions;

@@ -66,7 +66,7 @@ inline Eigen::Matrix3Xf Bend(const Eigen::Matrix3Xf& positions, int t) {
 }
 
 // Rows of quads as pairs of triangles, vertices numbered as the faces first use them.
-inline Topology QuadsAsModelled(int rows, int columns) {
+inline Topology QuadsAsModeled(int rows, int columns) {
   std::vector<int> numbers((rows + 1) * (columns + 1), -1);
   int num_vertices = 0;
   std::vector<int32_t> corners;

@@ -1,4 +1,4 @@
-// Small closed triangle meshes: polygonised shapes, unions of capsules, boxes, spheres.
+// Small closed triangle meshes: polygonized shapes, unions of capsules, boxes, spheres.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,8 @@ struct TriangleMesh {
 };
 
 // The zero surface of `signed_distance` (negative inside) in `box`, by marching tetrahedra on a
-// grid of `cell` metres: closed and oriented outward when the box encloses the shape.
-inline TriangleMesh PolygoniseShape(
+// grid of `cell` meters: closed and oriented outward when the box encloses the shape.
+inline TriangleMesh PolygonizeShape(
     const std::function<double(const Eigen::Vector3d&)>& signed_distance,
     const Eigen::AlignedBox3d& box, double cell) {
   Eigen::Vector3i num;
@@ -122,10 +122,10 @@ inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double
     }
     return nearest;
   };
-  return PolygoniseShape(signed_distance, box, cell);
+  return PolygonizeShape(signed_distance, box, cell);
 }
 
-// A horse-like body, two metres long, its head towards +z.
+// A horse-like body, two meters long, its head towards +z.
 inline TriangleMesh MakeCapsuleQuadruped(double cell = 0.03) {
   std::vector<Capsule> capsules = {{{0, 1.1, -.6}, {0, 1.1, .5}, .26, .26},
                                    {{0, 1.15, .6}, {0, 1.7, 1.0}, .16, .11},
@@ -156,9 +156,9 @@ inline TriangleMesh MakeBox(const Eigen::Vector3d& low, const Eigen::Vector3d& h
 }
 
 // A sphere of about `num_rings` triangles across.
-inline TriangleMesh MakeSphere(const Eigen::Vector3d& centre, double radius, int num_rings = 24) {
-  Eigen::AlignedBox3d box(centre.array() - 1.2 * radius, centre.array() + 1.2 * radius);
-  return PolygoniseShape([&](const Eigen::Vector3d& p) { return (p - centre).norm() - radius; },
+inline TriangleMesh MakeSphere(const Eigen::Vector3d& center, double radius, int num_rings = 24) {
+  Eigen::AlignedBox3d box(center.array() - 1.2 * radius, center.array() + 1.2 * radius);
+  return PolygonizeShape([&](const Eigen::Vector3d& p) { return (p - center).norm() - radius; },
                          box, 2 * radius / num_rings);
 }
 

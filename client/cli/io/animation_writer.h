@@ -32,13 +32,13 @@ struct AnimationOptions {
   MeshAppearance appearance;
   std::string name;  // of the sequence, .pseq only
   FrameEncoderOptions encoder{.encoding = FrameEncoding::kDracoMesh};  // kDraco only
-  Eigen::Matrix3Xf reference;  // kDraco only: 3 x V, rest pose, metres; empty = the first frame
+  Eigen::Matrix3Xf reference;  // kDraco only: 3 x V, rest pose, meters; empty = the first frame
 };
 
 class AnimationWriter {
  public:
   virtual ~AnimationWriter() = default;
-  virtual absl::Status AddFrame(const Eigen::Matrix3Xf& positions) = 0;  // 3 x V, metres
+  virtual absl::Status AddFrame(const Eigen::Matrix3Xf& positions) = 0;  // 3 x V, meters
   // Completes the files; kInvalidArgument when no frame was added.
   virtual absl::Status Finish() = 0;
 };

@@ -141,7 +141,7 @@ absl::StatusOr<Topology> ReadTopology(const DracoFolder& stream, const std::stri
   return Topology::FromTriangles(stream.header.num_vertices, geometry.triangles);
 }
 
-// 3 x V, metres, in the character's vertex order.
+// 3 x V, meters, in the character's vertex order.
 absl::StatusOr<Eigen::Matrix3Xf> ReadFrame(const DracoFolder& stream, const std::string& path,
                                            const Progress& progress) {
   const StreamHeader& header = stream.header;

@@ -16,7 +16,7 @@ namespace pleat {
 struct JointTruth {
   int frame = 0;
   std::vector<std::string> names;
-  Eigen::Matrix3Xd positions;  // 3 x N, metres
+  Eigen::Matrix3Xd positions;  // 3 x N, meters
 };
 
 // A JSON object {"joints": [{"name", "position_m": [x, y, z]}, ...], "frame": 0}; other members are

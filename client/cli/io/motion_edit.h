@@ -16,7 +16,7 @@ struct MotionEdits {
   // "joint=x,y,z": intrinsic X-Y-Z angles in degrees, turned after the motion's own rotation about
   // the axes of the rest pose as the parent bone carries them.
   std::vector<std::string> offset_rotation;
-  std::vector<std::string> offset_root;  // "x,y,z": metres, world
+  std::vector<std::string> offset_root;  // "x,y,z": meters, world
   double time_scale = 1;                 // duration times this, same frame rate
 };
 

@@ -8,11 +8,11 @@
 namespace pleat {
 namespace {
 
-constexpr double kMillimetres = 1000;
+constexpr double kMillimeters = 1000;
 
 Eigen::VectorXd Distances_mm(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                              const Eigen::Ref<const Eigen::Matrix3Xd>& truth) {
-  return kMillimetres * (positions - truth).colwise().norm().transpose();
+  return kMillimeters * (positions - truth).colwise().norm().transpose();
 }
 
 absl::Status CheckColumns(const MeshSequence& truth, const std::vector<int>& frame_numbers,
@@ -41,8 +41,8 @@ absl::Status CheckColumns(const MeshSequence& truth, const std::vector<int>& fra
 
 }  // namespace
 
-ColourScale ErrorScale(double scale_mm) {
-  return {.map = ColourMap::kTurbo,
+ColorScale ErrorScale(double scale_mm) {
+  return {.map = ColorMap::kTurbo,
           .low = 0,
           .high = scale_mm,
           .title = absl::StrFormat("distance of each vertex from the input, %g and more at the end",
@@ -50,10 +50,10 @@ ColourScale ErrorScale(double scale_mm) {
           .unit = "mm"};
 }
 
-std::vector<Rgb> ErrorColours(const ColourScale& scale,
-                              const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
-                              const Eigen::Ref<const Eigen::Matrix3Xd>& truth) {
-  return ColourValues(scale, Distances_mm(positions, truth));
+std::vector<Rgb> ErrorColors(const ColorScale& scale,
+                             const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                             const Eigen::Ref<const Eigen::Matrix3Xd>& truth) {
+  return ColorValues(scale, Distances_mm(positions, truth));
 }
 
 absl::StatusOr<std::string> RenderErrorSheet(const MeshSequence& truth,
@@ -61,7 +61,7 @@ absl::StatusOr<std::string> RenderErrorSheet(const MeshSequence& truth,
                                              const std::vector<ErrorColumn>& columns,
                                              const ErrorSheetOptions& options) {
   PLEAT_RETURN_IF_ERROR(CheckColumns(truth, frame_numbers, columns, options));
-  const ColourScale scale = ErrorScale(options.scale_mm);
+  const ColorScale scale = ErrorScale(options.scale_mm);
   ContactSheetOptions sheet;
   sheet.num_columns = static_cast<int>(columns.size()) + 1;
   sheet.view.width = options.tile_width;
@@ -78,8 +78,8 @@ absl::StatusOr<std::string> RenderErrorSheet(const MeshSequence& truth,
       SheetTile tile;
       tile.positions = column.sequence.FrameAsDouble(t);
       tile.triangles = &truth.topology().triangles();
-      tile.vertex_colours = ErrorColours(scale, tile.positions, expected);
-      tile.shading = 0;  // what is drawn is the legend's colour
+      tile.vertex_colors = ErrorColors(scale, tile.positions, expected);
+      tile.shading = 0;  // what is drawn is the legend's color
       const Eigen::VectorXd distances = Distances_mm(tile.positions, expected);
       tile.label =
           absl::StrFormat("mean %.1f mm, largest %.0f mm", distances.mean(), distances.maxCoeff());

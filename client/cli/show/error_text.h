@@ -9,10 +9,10 @@
 
 namespace pleat {
 
-// `first` and the columns mean, rms, p95, max in percent, mean and max in millimetres.
+// `first` and the columns mean, rms, p95, max in percent, mean and max in millimeters.
 std::vector<std::string> ErrorTableHeader(const std::string& first);
 
-// diagonal_m: what the percents are of, metres.
+// diagonal_m: what the percents are of, meters.
 std::vector<std::string> ErrorTableRow(const std::string& name, const ErrorSummary& error,
                                        double diagonal_m);
 

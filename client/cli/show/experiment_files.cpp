@@ -68,7 +68,7 @@ const char* Meaning(Experiment experiment) {
     case Experiment::kSkinnedVsHybrid:
       break;
   }
-  return "Skinning alone against skinning with learnt details.";
+  return "Skinning alone against skinning with learned details.";
 }
 
 std::string Title(const ExperimentReport& report, const ExperimentSubject& subject) {

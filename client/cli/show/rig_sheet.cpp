@@ -83,7 +83,7 @@ absl::StatusOr<std::string> RenderRigSheet(const std::vector<RigSheetRow>& rows,
       SheetTile tile;
       tile.positions = turned.positions;
       tile.triangles = &row.topology.triangles();
-      tile.vertex_colours.assign(turned.positions.cols(), kPaleMesh);
+      tile.vertex_colors.assign(turned.positions.cols(), kPaleMesh);
       tile.skeleton = SkeletonOverlay{turned.joints, parents, sides};
       tile.label = view.label;
       tiles.push_back(std::move(tile));

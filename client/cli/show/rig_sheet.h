@@ -20,8 +20,8 @@ std::vector<BodySide> SidesOfJoints(const Skeleton& skeleton);
 struct RigSheetRow {
   struct View {
     std::string label;
-    Eigen::Matrix3Xd positions;  // 3 x V, metres
-    Eigen::Matrix3Xd joints;     // 3 x J, metres
+    Eigen::Matrix3Xd positions;  // 3 x V, meters
+    Eigen::Matrix3Xd joints;     // 3 x J, meters
   };
   std::string label;
   Topology topology;

@@ -123,7 +123,7 @@ void AddGenerateVerb(CLI::App& app, Session& session) {
   verb->add_option("--vertices", options->performer.num_vertices, "wanted number of vertices")
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second [30]");
-  verb->add_option("--height", options->performer.height_m, "body height, metres")
+  verb->add_option("--height", options->performer.height_m, "body height, meters")
       ->capture_default_str();
   verb->add_option("--yaw", options->performer.yaw_degrees, "facing of frame 0 about +y from +z")
       ->capture_default_str();

@@ -32,7 +32,7 @@ nlohmann::ordered_json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y
 
 // What the verb finds out, in the words of both forms of output.
 struct Findings {
-  Eigen::AlignedBox3d bounds;  // of all frames, metres
+  Eigen::AlignedBox3d bounds;  // of all frames, meters
   double diagonal_m = 0;       // of frame 0
   MeshReport report;           // of frame 0
 };

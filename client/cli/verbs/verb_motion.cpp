@@ -61,7 +61,7 @@ void AddMotionVerb(CLI::App& app, Session& session) {
                    "(leftLowerArm is the upper arm); JOINT 'all' is every bone");
   verb->add_option("--offset-rotation", options->edits.offset_rotation,
                    "JOINT=X,Y,Z: turns that bone further, degrees");
-  verb->add_option("--offset-root", options->edits.offset_root, "X,Y,Z: moves it, metres");
+  verb->add_option("--offset-root", options->edits.offset_root, "X,Y,Z: moves it, meters");
   verb->add_option("--time-scale", options->edits.time_scale, "duration times this")
       ->capture_default_str();
   verb->add_option("--bone-scale", options->bone_scales,

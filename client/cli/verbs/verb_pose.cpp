@@ -270,7 +270,7 @@ void AddPoseVerb(CLI::App& app, Session& session) {
   AddContentFlag(verb, &options->content);
   verb->add_option("--bone-scale", options->bone_scales,
                    "JOINT=FACTOR: length of the bone that ends in JOINT; wins over the motion's");
-  verb->add_flag("--skinned-only", options->skinned_only, "without the learnt detail");
+  verb->add_flag("--skinned-only", options->skinned_only, "without the learned detail");
   AddServerFlags(verb, session);
 }
 

@@ -41,7 +41,7 @@ struct ModelAnimations {
   MeshSequence skinned, hybrid;
 };
 
-// What the model's rig alone makes of the input's poses, and what rig and learnt detail make of
+// What the model's rig alone makes of the input's poses, and what rig and learned detail make of
 // them, in the given frames.
 absl::StatusOr<ModelAnimations> AnimateModel(std::shared_ptr<const CharacterModel> model,
                                              const MeshSequence& input,
@@ -78,7 +78,7 @@ absl::Status CheckFrames(const std::string& label, const MeshSequence& sequence,
   return absl::OkStatus();
 }
 
-// --compare: skinned only and hybrid coloured by their distance from the input, and the input.
+// --compare: skinned only and hybrid colored by their distance from the input, and the input.
 absl::StatusOr<std::string> DrawComparison(const RenderVerbOptions& options,
                                            const Session& session) {
   if (options.inputs.size() != 2 || options.rig || !options.model.empty() ||
@@ -233,10 +233,10 @@ void AddRenderVerb(CLI::App& app, Session& session) {
                  "draw mesh and skeleton from two sides: the rig of a model (.pleat), or the "
                  "automatic one of a sequence in its rest frame and in --frames");
   verb->add_flag("--compare", options->compare,
-                 "INPUT is a sequence and a model: skinned only and hybrid, coloured by the "
+                 "INPUT is a sequence and a model: skinned only and hybrid, colored by the "
                  "distance of every vertex from the sequence, beside it");
   verb->add_option("--scale-mm", options->scale_mm,
-                   "with --compare: error at the end of the colour scale, mm")
+                   "with --compare: error at the end of the color scale, mm")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");

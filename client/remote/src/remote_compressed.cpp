@@ -78,7 +78,7 @@ class DecodedFramesReader {
   std::string shape_;
   int num_vertices_ = 0;        // 0 before the shape is complete
   int next_vertex_ = 0;         // of the frame that is arriving
-  Eigen::Matrix3Xf positions_;  // 3 x V, metres
+  Eigen::Matrix3Xf positions_;  // 3 x V, meters
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a learner must beat on held-out motion (method.md, section 6).
+// What a learner must beat on held-out motion (docs/method/evaluation.md#baselines).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace pleat {
 
-// Feature row (D_S) -> details of the control vertices (3C), metres.
+// Feature row (D_S) -> details of the control vertices (3C), meters.
 using DetailPredictor = std::function<Eigen::VectorXd(const Eigen::VectorXd& features)>;
 
 // "zero" (no detail), "mean" (of the training details), "nearest" (details of the training frame

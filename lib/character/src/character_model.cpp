@@ -110,7 +110,7 @@ Eigen::MatrixXd UpsampleColumns(const RbfUpsampler& upsampler, const Eigen::Matr
 
 absl::StatusOr<DetailBasis> Upsample(const RbfUpsampler& upsampler, const DetailBasis& control) {
   const Eigen::VectorXd mean = control.Mean().cast<double>();
-  return DetailBasis::Quantise(UpsampleColumns(upsampler, mean).cast<float>(),
+  return DetailBasis::Quantize(UpsampleColumns(upsampler, mean).cast<float>(),
                                UpsampleColumns(upsampler, control.Dense()), control.FinestSteps());
 }
 

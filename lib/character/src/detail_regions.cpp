@@ -9,17 +9,17 @@ namespace pleat {
 namespace {
 
 // Bones that share a joint: parent and child, and children of one parent.
-bool AreNeighbours(const Skeleton& skeleton, int a, int b) {
+bool AreNeighbors(const Skeleton& skeleton, int a, int b) {
   return skeleton.parent(a) == b || skeleton.parent(b) == a ||
          skeleton.parent(a) == skeleton.parent(b);
 }
 
-// `bones` and their neighbours.
+// `bones` and their neighbors.
 std::set<int> Grown(const Skeleton& skeleton, const std::set<int>& bones) {
   std::set<int> grown = bones;
   for (int candidate = 1; candidate < skeleton.num_joints(); ++candidate) {
     for (const int bone : bones) {
-      if (AreNeighbours(skeleton, bone, candidate)) grown.insert(candidate);
+      if (AreNeighbors(skeleton, bone, candidate)) grown.insert(candidate);
     }
   }
   return grown;

@@ -1,4 +1,4 @@
-// The body regions of the regional learner: one for each bone (method.md, 5.7).
+// The body regions of the regional learner: one for each bone (docs/method/learner.md#regions).
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ namespace pleat {
 std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& control_vertices,
                                         const TrainOptions& options);
 
-// The columns of the features in groups whose relevance is learnt as one: those of a joint in one
+// The columns of the features in groups whose relevance is learned as one: those of a joint in one
 // pose of the history.
 std::vector<std::vector<int>> FeatureGroups(int num_joints, const TrainOptions& options);
 

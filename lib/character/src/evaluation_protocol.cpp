@@ -1,4 +1,4 @@
-// The frame splits of method.md, section 6.
+// The frame splits of docs/method/evaluation.md#protocols.
 #include <array>
 #include <utility>
 

@@ -13,7 +13,7 @@
 
 namespace pleat {
 
-// What does not depend on how details are learnt: rig and poses.
+// What does not depend on how details are learned: rig and poses.
 struct EvaluationSetup {
   RiggedFrames rigged;                    // training frames and the rig found on them
   PoseTrack train_track;                  // their poses
@@ -27,7 +27,7 @@ absl::StatusOr<EvaluationSetup> PrepareEvaluation(const MeshSequence& sequence,
                                                   const Progress& progress);
 
 // Learns from the training frames and measures the test frames. `train` may differ from the
-// options of the setup in what is learnt from rig and poses, not in how those are found.
+// options of the setup in what is learned from rig and poses, not in how those are found.
 absl::StatusOr<EvaluateReport> EvaluateLearning(const EvaluationSetup& setup,
                                                 const TrainOptions& train,
                                                 const EvaluateOptions& options,

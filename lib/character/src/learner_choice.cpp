@@ -1,4 +1,5 @@
-// Learners by name, and their choice by validation inside the training frames (method.md, 5.7).
+// Learners by name, and their choice by validation inside the training frames
+// (docs/method/learner.md#choice-of-the-learner).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,7 +50,7 @@ RowSplit HoldOutBlocks(int num_rows, const std::vector<int>& clip_starts) {
 // Enough to compare learners; a sequence may have thousands.
 constexpr int kMaxHeldOutRows = 400;
 
-// Mean vertex distance, metres, between predicted and true details of the held-out rows.
+// Mean vertex distance, meters, between predicted and true details of the held-out rows.
 double HeldOutError(const DetailModel& model, const LearningData& data,
                     const std::vector<int>& rows) {
   DetailModel::Workspace workspace;

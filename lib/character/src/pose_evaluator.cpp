@@ -18,7 +18,7 @@ namespace pleat {
 struct PoseEvaluator::Scratch {
   explicit Scratch(const CharacterModel& model);
 
-  std::vector<Pose> history;  // normalised copies, [0] = pose to show
+  std::vector<Pose> history;  // normalized copies, [0] = pose to show
   std::vector<const Pose*> history_pointers;
   BoneTransforms transforms;
   std::vector<Eigen::Matrix3d> axes;  // J, of the bones' details

@@ -19,7 +19,7 @@ ErrorSummary WithoutFrames(ErrorSummary summary) {
   return summary;
 }
 
-// Whether frame t of `num_frames` is measured: all, or of thousands pairs of neighbours.
+// Whether frame t of `num_frames` is measured: all, or of thousands pairs of neighbors.
 bool IsMeasured(int t, int num_frames) {
   constexpr int kMaxMeasuredFrames = 2000;
   const int period = 2 * ((num_frames + kMaxMeasuredFrames - 1) / kMaxMeasuredFrames);
@@ -65,7 +65,7 @@ absl::StatusOr<TrainingRecord> MeasureReconstruction(
     const PoseTrack& track, const Progress& progress) {
   TrainingRecord record = model->record();
   const SkinWeights& weights = model->rig().weights;
-  Eigen::VectorXd vertex_error = Eigen::VectorXd::Zero(sequence.num_vertices());  // summed, metres
+  Eigen::VectorXd vertex_error = Eigen::VectorXd::Zero(sequence.num_vertices());  // summed, meters
   ErrorAccumulator fit(record.diagonal_m), reconstruction(record.diagonal_m);
   PoseEvaluator evaluator(model);
   EvaluatedFrame skinned;

@@ -48,7 +48,7 @@ absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged,
 // Frames whose details give the basis; those of a longer sequence are expressed in it.
 constexpr int kMaxBasisFrames = 1000;
 
-// The frames and poses `frame_indices`, each alone: details know no neighbours.
+// The frames and poses `frame_indices`, each alone: details know no neighbors.
 absl::StatusOr<Eigen::MatrixXd> DetailsOfFrames(const RiggedFrames& rigged, const PoseTrack& track,
                                                 const std::vector<int>& frame_indices,
                                                 const std::vector<int>& vertices,
@@ -257,7 +257,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   }
   PLEAT_RETURN_IF_ERROR(ComputeControlDetails(rigged, track, options, resources, progress, &data));
   const PoseFeatureOptions feature_options = FeatureOptionsOf(options);
-  // A single held-out frame is bridged from its neighbours, so that the frame after it has a speed.
+  // A single held-out frame is bridged from its neighbors, so that the frame after it has a speed.
   const FilledTrack filled = FillGaps(track, rigged.frames.frame_numbers, kMaxBridgedFrames);
   data.feature_reference = PoseFeatures::Reference(feature_options, track);
   data.features =

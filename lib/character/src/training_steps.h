@@ -62,7 +62,7 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
 struct LearningData {
   Eigen::VectorXd feature_reference;
   Eigen::MatrixXd features;  // T x D_S
-  // T rows of scores, 3C values each: offsets in metres, or those that `differential` encodes.
+  // T rows of scores, 3C values each: offsets in meters, or those that `differential` encodes.
   PrincipalComponents details;
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
@@ -71,7 +71,7 @@ struct LearningData {
   std::vector<DetailRegion> regions;             // one for each bone that moves a control vertex
   std::vector<std::vector<int>> feature_groups;  // columns of `features`, by joint and pose
 
-  // The offsets (3C, metres) that one row of scores stands for.
+  // The offsets (3C, meters) that one row of scores stands for.
   Eigen::VectorXd DetailOf(const Eigen::VectorXd& scores) const;
 };
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
@@ -96,7 +96,7 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
                                           double diagonal_m, LearnerValidation* validation,
                                           const Progress& progress);
 
-// All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, metres.
+// All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, meters.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
     const std::string& learner, std::shared_ptr<const DetailModel> detail_model, double diagonal_m);

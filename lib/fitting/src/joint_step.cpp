@@ -93,19 +93,19 @@ Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMo
   for (int j = 0; j < skeleton.num_joints(); ++j) num_inner += !skeleton.children(j).empty();
   const double stiffness = prior * sum.matrix.trace() / (3.0 * std::max(1, num_inner));
   if (!(stiffness > 0)) return first;  // nothing bends
-  const Eigen::Matrix3Xd centred = first.colwise() - moments.centre;
+  const Eigen::Matrix3Xd centered = first.colwise() - moments.center;
   sum.matrix.diagonal().array() += stiffness;
-  sum.right += stiffness * centred.reshaped();
+  sum.right += stiffness * centered.reshaped();
   for (const int j : locked) {  // known: to the right-hand side
-    sum.right -= sum.matrix.middleCols<3>(3 * j) * centred.col(j);
+    sum.right -= sum.matrix.middleCols<3>(3 * j) * centered.col(j);
     sum.matrix.middleCols<3>(3 * j).setZero();
     sum.matrix.middleRows<3>(3 * j).setZero();
     sum.matrix.block<3, 3>(3 * j, 3 * j).setIdentity();
   }
-  for (const int j : locked) sum.right.segment<3>(3 * j) = centred.col(j);
+  for (const int j : locked) sum.right.segment<3>(3 * j) = centered.col(j);
   const Eigen::VectorXd solved = sum.matrix.llt().solve(sum.right);
   Eigen::Matrix3Xd joints =
-      Eigen::Matrix3Xd(solved.reshaped(3, skeleton.num_joints())).colwise() + moments.centre;
+      Eigen::Matrix3Xd(solved.reshaped(3, skeleton.num_joints())).colwise() + moments.center;
   for (const int j : locked) joints.col(j) = first.col(j);  // without rounding
   return joints;
 }

@@ -1,5 +1,6 @@
-// One step of rig refinement: the rest joints that minimise the error of all frames while
-// rotations and weights are held. Linear least squares in the moments of method.md, 3.2.
+// One step of rig refinement: the rest joints that minimize the error of all frames while
+// rotations and weights are held. Linear least squares in the moments of
+// docs/method/fit.md#moments.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +22,7 @@ struct SubtreeMoments {
 
 SubtreeMoments ComputeSubtreeMoments(const RigMoments& moments, const Skeleton& skeleton);
 
-// Normal equations of the joints relative to RigMoments::centre, 3J x 3J and 3J. The frame's
+// Normal equations of the joints relative to RigMoments::center, 3J x 3J and 3J. The frame's
 // translation is eliminated.
 struct JointSystem {
   Eigen::MatrixXd matrix;
@@ -33,7 +34,7 @@ JointSystem ComputeJointSystem(const RigMoments& moments, const SubtreeMoments& 
                                const Skeleton& skeleton, const FrameMoments& frame,
                                const ChainPose& pose);
 
-// The joints (3 x J, metres) that minimise the sum of `frames` plus a pull to `first` whose
+// The joints (3 x J, meters) that minimize the sum of `frames` plus a pull to `first` whose
 // stiffness is `prior` times the mean curvature of the error per joint. Leaves have no influence
 // on the mesh and stay at `first`; so do the joints `locked`, exactly.
 Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMoments& moments,

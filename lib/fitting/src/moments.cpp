@@ -12,7 +12,7 @@ using Eigen::Vector4d;
 using Matrix4x3d = Eigen::Matrix<double, 4, 3>;
 using Matrix3x4d = Eigen::Matrix<double, 3, 4>;
 
-// Weights of one vertex in double precision, normalised to sum 1 exactly.
+// Weights of one vertex in double precision, normalized to sum 1 exactly.
 std::array<double, kMaxInfluences> NormalizedWeights(const VertexInfluences& influences) {
   std::array<double, kMaxInfluences> weights;
   double total = 0;
@@ -46,13 +46,13 @@ RigMoments ComputeRigMoments(const Rig& rig) {
   RigMoments moments;
   moments.num_joints = num_joints;
   moments.num_vertices = num_vertices;
-  moments.centre = rig.rest_positions.rowwise().mean();
+  moments.center = rig.rest_positions.rowwise().mean();
   moments.products.assign(static_cast<size_t>(num_joints) * num_joints, Eigen::Matrix4d::Zero());
   for (int v = 0; v < num_vertices; ++v) {
     const VertexInfluences& influences = rig.weights.vertex(v);
     const auto weights = NormalizedWeights(influences);
     Vector4d u;
-    u << rig.rest_positions.col(v) - moments.centre, 1;
+    u << rig.rest_positions.col(v) - moments.center, 1;
     const Eigen::Matrix4d square = u * u.transpose();
     for (int k = 0; k < kMaxInfluences && weights[k] > 0; ++k) {
       for (int l = 0; l < kMaxInfluences && weights[l] > 0; ++l) {
@@ -76,15 +76,15 @@ FrameMoments ComputeFrameMoments(const Rig& rig, const RigMoments& rig_moments,
   FrameMoments frame;
   Vector3d sum = Vector3d::Zero();
   for (Eigen::Index v = 0; v < positions.cols(); ++v) sum += positions.col(v).cast<double>();
-  frame.centre = sum / static_cast<double>(positions.cols());
+  frame.center = sum / static_cast<double>(positions.cols());
   frame.cross.assign(rig_moments.num_joints, Matrix4x3d::Zero());
   for (Eigen::Index v = 0; v < positions.cols(); ++v) {
     const VertexInfluences& influences = rig.weights.vertex(static_cast<int>(v));
     const auto weights = NormalizedWeights(influences);
-    const Vector3d y = positions.col(v).cast<double>() - frame.centre;
+    const Vector3d y = positions.col(v).cast<double>() - frame.center;
     frame.sum_squares += y.squaredNorm();
     Vector4d u;
-    u << rig.rest_positions.col(v) - rig_moments.centre, 1;
+    u << rig.rest_positions.col(v) - rig_moments.center, 1;
     const Matrix4x3d product = u * y.transpose();
     for (int k = 0; k < kMaxInfluences && weights[k] > 0; ++k) {
       frame.cross[influences.bones[k]] += weights[k] * product;
@@ -107,7 +107,7 @@ ChainMoments ComputeChainMoments(const RigMoments& moments, const Skeleton& skel
   std::vector<Matrix4x3d> right(num_joints);  // sum_l U_kl A_bl^T for the current b
   for (int b = 1; b < num_joints; ++b) {
     const Vector3d& parent_position = skeleton.rest_position(skeleton.parent(b));
-    const Matrix3x4d own = OwnBlock(parent_position - moments.centre);
+    const Matrix3x4d own = OwnBlock(parent_position - moments.center);
     const Vector3d offset = skeleton.rest_position(b) - parent_position;
     for (int k = 1; k < num_joints; ++k) {
       right[k] = moments.products[k * num_joints + b] * own.transpose();
@@ -118,7 +118,7 @@ ChainMoments ComputeChainMoments(const RigMoments& moments, const Skeleton& skel
     }
     for (int a = 1; a < num_joints; ++a) {
       const Vector3d& pivot_a = skeleton.rest_position(skeleton.parent(a));
-      Matrix3d block = OwnBlock(pivot_a - moments.centre) * right[a];
+      Matrix3d block = OwnBlock(pivot_a - moments.center) * right[a];
       const Vector3d offset_a = skeleton.rest_position(a) - pivot_a;
       for (const int k : descendants[a]) block += offset_a * right[k].row(3);
       chain.gram.block<3, 3>(3 * a, 3 * b) = block;
@@ -136,7 +136,7 @@ Eigen::MatrixXd ComputeChainCross(const RigMoments& moments, const FrameMoments&
   for (int a = num_joints - 1; a >= 1; --a) {
     const int parent = skeleton.parent(a);
     const Vector3d& pivot = skeleton.rest_position(parent);
-    cross.middleRows<3>(3 * a) = OwnBlock(pivot - moments.centre) * frame.cross[a] +
+    cross.middleRows<3>(3 * a) = OwnBlock(pivot - moments.center) * frame.cross[a] +
                                  (skeleton.rest_position(a) - pivot) * below[a];
     below[parent] += below[a] + frame.cross[a].row(3);
   }

@@ -17,7 +17,7 @@ Vector3d CrossSum(const Matrix3d& moment) {
   return {moment(1, 2) - moment(2, 1), moment(2, 0) - moment(0, 2), moment(0, 1) - moment(1, 0)};
 }
 
-// The energy of moments (gram, sums, cross, constant) at `pose`. The observations are centred, so
+// The energy of moments (gram, sums, cross, constant) at `pose`. The observations are centered, so
 // sum_i y_i = 0 and no term of r with y is left.
 double EnergyOf(const MatrixXd& gram, const Eigen::Matrix3Xd& sums, const MatrixXd& cross,
                 double num_vertices, double constant, const ChainPose& pose) {
@@ -43,7 +43,7 @@ void ChainPose::Move(const Eigen::VectorXd& step) {
 }
 
 ChainPose ToChainPose(const Skeleton& skeleton, const Pose& pose,
-                      const Eigen::Vector3d& frame_centre) {
+                      const Eigen::Vector3d& frame_center) {
   const int num_joints = skeleton.num_joints();
   ChainPose result;
   result.rotations.resize(3, 3 * num_joints);
@@ -55,16 +55,16 @@ ChainPose ToChainPose(const Skeleton& skeleton, const Pose& pose,
       result.rotation(a) = result.rotation(skeleton.parent(a)) * local;
     }
   }
-  result.root_position = pose.root_position - frame_centre;
+  result.root_position = pose.root_position - frame_center;
   return result;
 }
 
 Pose FromChainPose(const Skeleton& skeleton, const ChainPose& chain_pose,
-                   const Eigen::Vector3d& frame_centre) {
+                   const Eigen::Vector3d& frame_center) {
   const int num_joints = skeleton.num_joints();
   std::vector<Eigen::Quaterniond> world(num_joints);
   Pose pose;
-  pose.root_position = chain_pose.root_position + frame_centre;
+  pose.root_position = chain_pose.root_position + frame_center;
   pose.rotations.resize(num_joints);
   for (int a = 0; a < num_joints; ++a) {
     world[a] = Eigen::Quaterniond(Matrix3d(chain_pose.rotation(a))).normalized();

@@ -42,11 +42,11 @@ class PoseFitter {
       if (!walk) Improve(t, frames_[t].pose, energy_);
     }));
     if (walk) return WalkThroughTime(progress.Stage("fit", 0.8, 1));
-    std::vector<char> changed(frames_.size(), 1);  // poses that their neighbours have not tried
-    for (int pass = 0; pass < options_.neighbour_passes; ++pass) {
-      const double begin = 0.5 + 0.3 * pass / options_.neighbour_passes;
-      const double end = 0.5 + 0.3 * (pass + 1) / options_.neighbour_passes;
-      PLEAT_RETURN_IF_ERROR(TryNeighbours(progress.Stage("fit", begin, end), &changed));
+    std::vector<char> changed(frames_.size(), 1);  // poses that their neighbors have not tried
+    for (int pass = 0; pass < options_.neighbor_passes; ++pass) {
+      const double begin = 0.5 + 0.3 * pass / options_.neighbor_passes;
+      const double end = 0.5 + 0.3 * (pass + 1) / options_.neighbor_passes;
+      PLEAT_RETURN_IF_ERROR(TryNeighbors(progress.Stage("fit", begin, end), &changed));
       if (std::find(changed.begin(), changed.end(), 1) == changed.end()) break;
     }
     if (!(options_.smoothness > 0)) return progress.Stage("fit", 0.8, 1).Report(1);
@@ -60,7 +60,7 @@ class PoseFitter {
     track.fps = sequence_.frame_rate().fps();
     track.clip_starts = options_.clip_starts;
     for (const Frame& frame : frames_) {
-      track.poses.push_back(FromChainPose(rig_.skeleton, frame.pose, frame.centre));
+      track.poses.push_back(FromChainPose(rig_.skeleton, frame.pose, frame.center));
       FixRootGauge(rig_.skeleton, &track.poses.back());
     }
     for (int t = 1; t < track.num_frames(); ++t) {
@@ -92,7 +92,7 @@ class PoseFitter {
 
  private:
   struct Frame {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
     Eigen::MatrixXd cross;  // 3J x 3
     double sum_squares = 0;
     ChainPose pose;
@@ -139,7 +139,7 @@ class PoseFitter {
   void StartFrame(int t) {
     const FrameMoments moments = ComputeFrameMoments(rig_, rig_moments_, sequence_.frame(t));
     Frame& frame = frames_[t];
-    frame.centre = moments.centre;
+    frame.center = moments.center;
     frame.cross = ComputeChainCross(rig_moments_, moments, rig_.skeleton);
     frame.sum_squares = moments.sum_squares;
     frame.pose = ClosedFormWalk(rig_moments_, moments, rig_.skeleton);
@@ -167,9 +167,9 @@ class PoseFitter {
     return s >= 0 && s < sequence_.num_frames() && clip_of_[s] == clip_of_[t];
   }
 
-  // Every frame tries its neighbours' poses of the pass before (so the order does not matter),
+  // Every frame tries its neighbors' poses of the pass before (so the order does not matter),
   // those that `changed` there; fills `changed` anew.
-  absl::Status TryNeighbours(const Progress& progress, std::vector<char>* changed) {
+  absl::Status TryNeighbors(const Progress& progress, std::vector<char>* changed) {
     constexpr int kTrial = 5;  // iterations that show whether a start leads to a deeper valley
     std::vector<ChainPose> before;
     for (const Frame& frame : frames_) before.push_back(frame.pose);
@@ -236,7 +236,7 @@ class PoseFitter {
   const PoseFitOptions& options_;
   const RigMoments rig_moments_;
   const ChainMoments chain_;
-  const double stiffness_unit_;  // square metres
+  const double stiffness_unit_;  // square meters
   const PoseEnergy energy_;      // without a frame
   std::vector<Frame> frames_;
   std::vector<int> clip_of_;

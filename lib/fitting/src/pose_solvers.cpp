@@ -14,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-// sum_i W_ib (u_i - rest_pivot)(y_i - pivot)^T, from the moments; u, y relative to their centres.
+// sum_i W_ib (u_i - rest_pivot)(y_i - pivot)^T, from the moments; u, y relative to their centers.
 Matrix3d CovarianceAbout(const RigMoments& moments, const FrameMoments& frame, int b,
                          const Vector3d& rest_pivot, const Vector3d& pivot) {
   const Eigen::Matrix4d& rest = moments.weighted[b];
@@ -45,7 +45,7 @@ void FitRoot(const RigMoments& moments, const FrameMoments& frame, const Skeleto
     weight += moments.weighted[b](3, 3);
   }
   *rotation = Matrix3d::Identity();
-  *root_position = skeleton.rest_position(0) - moments.centre;
+  *root_position = skeleton.rest_position(0) - moments.center;
   if (!(weight > 1e-9)) return;
   covariance -= rest_sum * sum.transpose() / weight;
   *rotation = NearestRotation(covariance.transpose());
@@ -62,11 +62,11 @@ ChainPose ClosedFormWalk(const RigMoments& moments, const FrameMoments& frame,
   Matrix3d root_rotation;
   FitRoot(moments, frame, skeleton, &root_rotation, &pose.root_position);
   pose.rotation(0) = root_rotation;
-  Eigen::Matrix3Xd joints(3, num_joints);  // posed, relative to the frame's centre
+  Eigen::Matrix3Xd joints(3, num_joints);  // posed, relative to the frame's center
   joints.col(0) = pose.root_position;
   for (int b = 1; b < num_joints; ++b) {
     const int parent = skeleton.parent(b);
-    const Vector3d rest_pivot = skeleton.rest_position(parent) - moments.centre;
+    const Vector3d rest_pivot = skeleton.rest_position(parent) - moments.center;
     const Matrix3d covariance = CovarianceAbout(moments, frame, b, rest_pivot, joints.col(parent));
     const Eigen::Matrix4d& rest = moments.weighted[b];
     const double spread = rest.diagonal().head<3>().sum() -
@@ -84,7 +84,7 @@ void WalkSweep(const PoseEnergy& energy, const Skeleton& skeleton, ChainPose* po
   const ChainMoments& chain = energy.chain();
   const MatrixXd& gram = energy.frame_gram();
   const MatrixXd& cross = energy.frame_cross();
-  // The whole body rigidly; the observations are centred.
+  // The whole body rigidly; the observations are centered.
   Matrix3d covariance = Matrix3d::Zero();
   Vector3d rotated_sums = Vector3d::Zero();
   for (int a = 0; a < num_joints; ++a) {
@@ -117,7 +117,7 @@ void WalkSweep(const PoseEnergy& energy, const Skeleton& skeleton, ChainPose* po
       if (inside[k]) pose->rotation(k) = (turn * pose->rotation(k)).eval();
     }
   }
-  pose->Move(Eigen::VectorXd::Zero(3 * num_joints + 3));  // renormalise
+  pose->Move(Eigen::VectorXd::Zero(3 * num_joints + 3));  // renormalize
 }
 
 PoseSolverSummary MinimizePose(const PoseEnergy& energy, const PoseSolverOptions& options,

@@ -25,10 +25,10 @@ class RigRefiner {
     const int num_frames = std::min(sequence.num_frames(), options.max_frames);
     for (int f = 0; f < num_frames; ++f) {
       const int t = static_cast<int>(static_cast<int64_t>(f) * sequence.num_frames() / num_frames);
-      const Eigen::Vector3d centre = sequence.frame(t).cast<double>().rowwise().mean();
+      const Eigen::Vector3d center = sequence.frame(t).cast<double>().rowwise().mean();
       frames_.push_back(t);
-      centres_.push_back(centre);
-      poses_.push_back(ToChainPose(rig.skeleton, track.poses[t], centre));
+      centers_.push_back(center);
+      poses_.push_back(ToChainPose(rig.skeleton, track.poses[t], center));
     }
     moments_.resize(frames_.size());
     energies_.resize(frames_.size());
@@ -110,7 +110,7 @@ class RigRefiner {
   absl::Status StepVertices(const VertexAdjacency& adjacency, const Progress& progress) {
     PLEAT_ASSIGN_OR_RETURN(
         const VertexMoments moments,
-        ComputeVertexMoments(sequence_, frames_, poses_, centres_, rig_, options_.num_threads,
+        ComputeVertexMoments(sequence_, frames_, poses_, centers_, rig_, options_.num_threads,
                              progress.Stage("refine", 0, .4)));
     if (options_.weights) {
       const WeightStepOptions step{.smoothness = options_.weight_smoothness,
@@ -148,10 +148,10 @@ class RigRefiner {
   Rig rig_;  // as refined so far
   // Per frame that is used.
   std::vector<int> frames_;
-  std::vector<Eigen::Vector3d> centres_;
+  std::vector<Eigen::Vector3d> centers_;
   std::vector<ChainPose> poses_;
   std::vector<FrameMoments> moments_;
-  std::vector<double> energies_;  // square metres, of the data
+  std::vector<double> energies_;  // square meters, of the data
   RigMoments rig_moments_;
 };
 

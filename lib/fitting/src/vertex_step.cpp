@@ -19,10 +19,10 @@ using Eigen::Vector4d;
 constexpr int kVerticesPerItem = 128;  // of the parallel loops: enough for a matrix product
 
 // T_b of all bones of one frame, transposed: 4J x 3.
-MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vector3d& centre) {
+MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vector3d& center) {
   const int num_joints = skeleton.num_joints();
   MatrixXd bones = MatrixXd::Zero(4 * num_joints, 3);
-  Eigen::Matrix3Xd joints(3, num_joints);  // posed, relative to the frame's centre
+  Eigen::Matrix3Xd joints(3, num_joints);  // posed, relative to the frame's center
   joints.col(0) = pose.root_position;
   for (int b = 1; b < num_joints; ++b) {
     const int parent = skeleton.parent(b);
@@ -31,7 +31,7 @@ MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vec
                     rotation * (skeleton.rest_position(b) - skeleton.rest_position(parent));
     bones.block<3, 3>(4 * b, 0) = rotation.transpose();
     bones.row(4 * b + 3) =
-        (joints.col(parent) - rotation * (skeleton.rest_position(parent) - centre)).transpose();
+        (joints.col(parent) - rotation * (skeleton.rest_position(parent) - center)).transpose();
   }
   return bones;
 }
@@ -115,12 +115,12 @@ VertexInfluences ToInfluences(const Candidates& candidates, const SimplexQpVecto
   return influences;
 }
 
-// Mean squared distance of the rest mesh from its centre, square metres: the unit of the pulls.
-double SquaredSize(const Rig& rig, const Vector3d& centre) {
-  return (rig.rest_positions.colwise() - centre).colwise().squaredNorm().mean();
+// Mean squared distance of the rest mesh from its center, square meters: the unit of the pulls.
+double SquaredSize(const Rig& rig, const Vector3d& center) {
+  return (rig.rest_positions.colwise() - center).colwise().squaredNorm().mean();
 }
 
-// The weights of vertex v, from `current` weights of its neighbours.
+// The weights of vertex v, from `current` weights of its neighbors.
 VertexInfluences SolveVertexWeights(const VertexMoments& moments, const Rig& rig,
                                     const VertexInfluences& first,
                                     const std::vector<VertexInfluences>& current,
@@ -129,7 +129,7 @@ VertexInfluences SolveVertexWeights(const VertexMoments& moments, const Rig& rig
   const Candidates candidates = FindCandidates(rig.skeleton, current, neighbors, v);
   const int n = candidates.size();
   Vector4d u;
-  u << rig.rest_positions.col(v) - moments.rest_centre, 1;
+  u << rig.rest_positions.col(v) - moments.rest_center, 1;
   SimplexQpMatrix hessian(n, n);
   SimplexQpVector linear = SimplexQpVector::Zero(n), x = SimplexQpVector::Zero(n);
   for (int a = 0; a < n; ++a) {
@@ -161,7 +161,7 @@ VertexInfluences SolveVertexWeights(const VertexMoments& moments, const Rig& rig
 absl::StatusOr<VertexMoments> ComputeVertexMoments(const MeshSequence& sequence,
                                                    const std::vector<int>& frames,
                                                    const std::vector<ChainPose>& poses,
-                                                   const std::vector<Vector3d>& centres,
+                                                   const std::vector<Vector3d>& centers,
                                                    const Rig& rig, int num_threads,
                                                    const Progress& progress) {
   const int num_frames = static_cast<int>(frames.size());
@@ -169,10 +169,10 @@ absl::StatusOr<VertexMoments> ComputeVertexMoments(const MeshSequence& sequence,
   const int num_vertices = sequence.num_vertices();
   VertexMoments moments;
   moments.num_frames = num_frames;
-  moments.rest_centre = rig.rest_positions.rowwise().mean();
+  moments.rest_center = rig.rest_positions.rowwise().mean();
   MatrixXd bones(num_rows, 3 * num_frames);
   for (int f = 0; f < num_frames; ++f) {
-    bones.middleCols<3>(3 * f) = BoneMatrices(rig.skeleton, poses[f], moments.rest_centre);
+    bones.middleCols<3>(3 * f) = BoneMatrices(rig.skeleton, poses[f], moments.rest_center);
   }
   moments.pairs = bones * bones.transpose();
   moments.cross.resize(num_rows, num_vertices);
@@ -184,7 +184,7 @@ absl::StatusOr<VertexMoments> ComputeVertexMoments(const MeshSequence& sequence,
     MatrixXd observed(3 * num_frames, count);
     for (int f = 0; f < num_frames; ++f) {
       observed.middleRows<3>(3 * f) =
-          sequence.frame(frames[f]).middleCols(begin, count).cast<double>().colwise() - centres[f];
+          sequence.frame(frames[f]).middleCols(begin, count).cast<double>().colwise() - centers[f];
     }
     moments.cross.middleCols(begin, count).noalias() = bones * observed;
   });
@@ -197,7 +197,7 @@ absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Ri
                                           const VertexAdjacency& adjacency,
                                           const WeightStepOptions& options,
                                           const Progress& progress) {
-  const double unit = moments.num_frames * SquaredSize(rig, moments.rest_centre);
+  const double unit = moments.num_frames * SquaredSize(rig, moments.rest_center);
   std::vector<VertexInfluences> current = rig.weights.influences();
   std::vector<VertexInfluences> next(current.size());
   for (int sweep = 0; sweep < options.num_sweeps; ++sweep) {
@@ -237,17 +237,17 @@ absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moment
             }
           }
           const auto neighbors = adjacency.neighbors(v);
-          Vector3d mean = Vector3d::Zero();  // of the neighbours' displacements
+          Vector3d mean = Vector3d::Zero();  // of the neighbors' displacements
           for (const int32_t n : neighbors) mean += current.col(n) - first.col(n);
           if (!neighbors.empty()) mean /= static_cast<double>(neighbors.size());
           const double prior = moments.num_frames * options.prior;
           const double smoothness = neighbors.empty() ? 0 : moments.num_frames * options.smoothness;
           Eigen::Matrix3d matrix = blend.topLeftCorner<3, 3>();
           matrix.diagonal().array() += prior + smoothness;
-          const Vector3d anchor = first.col(v) - moments.rest_centre;
+          const Vector3d anchor = first.col(v) - moments.rest_center;
           const Vector3d right = target.head<3>() - blend.topRightCorner<3, 1>() + prior * anchor +
                                  smoothness * (anchor + mean);
-          next.col(v) = matrix.ldlt().solve(right) + moments.rest_centre;
+          next.col(v) = matrix.ldlt().solve(right) + moments.rest_center;
         }));
     current.swap(next);
   }

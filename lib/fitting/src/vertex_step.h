@@ -16,33 +16,33 @@
 namespace pleat {
 
 // All that the per-vertex problems know about the frames. T_bt (3 x 4) takes [u; 1], u relative to
-// the rest centre, to where bone b alone would carry it in frame t; y_it is the observed vertex.
+// the rest center, to where bone b alone would carry it in frame t; y_it is the observed vertex.
 struct VertexMoments {
   int num_frames = 0;
-  Eigen::Vector3d rest_centre = Eigen::Vector3d::Zero();  // metres
+  Eigen::Vector3d rest_center = Eigen::Vector3d::Zero();  // meters
   Eigen::MatrixXd pairs;  // 4J x 4J, block bc = sum_t T_bt^T T_ct; blocks of bone 0 are zero
   Eigen::MatrixXd cross;  // 4J x V, block b of column i = sum_t T_bt^T y_it
 };
 
-// `frames` (F) are indices into `sequence`, `poses` and `centres` belong to them in order. The only
+// `frames` (F) are indices into `sequence`, `poses` and `centers` belong to them in order. The only
 // loop over frames and vertices.
 absl::StatusOr<VertexMoments> ComputeVertexMoments(const MeshSequence& sequence,
                                                    const std::vector<int>& frames,
                                                    const std::vector<ChainPose>& poses,
-                                                   const std::vector<Eigen::Vector3d>& centres,
+                                                   const std::vector<Eigen::Vector3d>& centers,
                                                    const Rig& rig, int num_threads,
                                                    const Progress& progress);
 
 struct WeightStepOptions {
-  // Both are in units of the squared size of the body (mean squared distance from the centre):
-  double smoothness = 0;  // pull of a vertex's weights to the mean of its neighbours' weights
+  // Both are in units of the squared size of the body (mean squared distance from the center):
+  double smoothness = 0;  // pull of a vertex's weights to the mean of its neighbors' weights
   double prior = 0;       // pull to the first weights
-  int num_sweeps = 3;     // over all vertices, each from the neighbours' weights of the one before
+  int num_sweeps = 3;     // over all vertices, each from the neighbors' weights of the one before
   int num_threads = 0;
 };
 
 // The weights of every vertex: at most kMaxInfluences bones, non-negative, sum 1. A vertex may take
-// bones of its own, of its neighbours, and bones next to its own in the skeleton.
+// bones of its own, of its neighbors, and bones next to its own in the skeleton.
 absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Rig& rig,
                                           const SkinWeights& first,
                                           const VertexAdjacency& adjacency,
@@ -50,13 +50,13 @@ absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Ri
                                           const Progress& progress);
 
 struct RestStepOptions {
-  double smoothness = 0;  // pull of a vertex's displacement to the mean of its neighbours'
+  double smoothness = 0;  // pull of a vertex's displacement to the mean of its neighbors'
   double prior = 0;       // pull to the first rest positions; both per frame
   int num_sweeps = 3;
   int num_threads = 0;
 };
 
-// The rest position (3 x V, metres) of every vertex.
+// The rest position (3 x V, meters) of every vertex.
 absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moments, const Rig& rig,
                                                      const Eigen::Matrix3Xd& first,
                                                      const VertexAdjacency& adjacency,

@@ -229,7 +229,7 @@ absl::StatusOr<DetailBasisParameters> ReadFloatBasis(ByteReader* reader) {
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, num_components, "detail basis", &basis));
   PLEAT_ASSIGN_OR_RETURN(
       const DetailBasis rounded,
-      DetailBasis::Quantise(mean, basis.cast<double>(), Eigen::VectorXd::Zero(num_components)));
+      DetailBasis::Quantize(mean, basis.cast<double>(), Eigen::VectorXd::Zero(num_components)));
   return rounded.parameters();
 }
 

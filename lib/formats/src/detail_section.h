@@ -1,4 +1,4 @@
-// Section 9 of the model file: the learnt detail.
+// Section 9 of the model file: the learned detail.
 #pragma once
 
 #include "absl/status/statusor.h"

@@ -96,7 +96,7 @@ absl::Status CheckDoubled(const std::vector<NameParts>& names) {
 }
 
 absl::Status CheckMissing(const std::vector<NameParts>& names, size_t position) {
-  // The step is the smallest distance; with two files only neighbours are a series.
+  // The step is the smallest distance; with two files only neighbors are a series.
   uint64_t step = names.size() == 2 ? 1 : ~uint64_t{0};
   for (size_t i = 1; i < names.size() && names.size() > 2; ++i) {
     step = std::min(step, names[i].numbers[position] - names[i - 1].numbers[position]);

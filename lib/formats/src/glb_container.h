@@ -13,7 +13,7 @@ namespace pleat {
 class GlbAccessor {
  public:
   size_t count() const { return count_; }
-  // Component k of element i as a number; normalised integers become 0..1 or -1..1.
+  // Component k of element i as a number; normalized integers become 0..1 or -1..1.
   double At(size_t i, int k) const;
 
  private:

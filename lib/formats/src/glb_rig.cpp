@@ -181,7 +181,7 @@ class SkinReader {
   absl::Status MakeSkeleton() {
     PLEAT_ASSIGN_OR_RETURN(const std::vector<int> order, ParentsFirst());
     new_index_.assign(joint_nodes_.size(), -1);
-    // The rest pose as the file shows it: armatures that are turned or scaled (centimetres) carry
+    // The rest pose as the file shows it: armatures that are turned or scaled (centimeters) carry
     // mesh and joints along.
     PLEAT_ASSIGN_OR_RETURN(const Eigen::Matrix4d root, GlobalTransform(joint_nodes_[order[0]]));
     world_from_bind_ = root * inverse_binds_[order[0]];

@@ -129,8 +129,8 @@ absl::Status ReadMeshSections(const Sections& sections, const MeshFileLimits& li
   });
 }
 
-absl::Status ReadLearntSections(const Sections& sections, uint32_t version,
-                                const ModelFileLimits& limits, CharacterModel::Parts* parts) {
+absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
+                                 const ModelFileLimits& limits, CharacterModel::Parts* parts) {
   const std::string_view options = sections[5];
   PLEAT_ASSIGN_OR_RETURN(parts->options,
                          ParseTrainOptions(absl::string_view(options.data(), options.size())));
@@ -180,7 +180,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> DecodeModel(std::string_vi
   PLEAT_ASSIGN_OR_RETURN(const Sections sections, CutSections(content));
   CharacterModel::Parts parts;
   PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, limits.mesh, &parts));
-  PLEAT_RETURN_IF_ERROR(ReadLearntSections(sections, SealedFileVersion(content), limits, &parts));
+  PLEAT_RETURN_IF_ERROR(ReadLearnedSections(sections, SealedFileVersion(content), limits, &parts));
   return CharacterModel::Create(std::move(parts));
 }
 

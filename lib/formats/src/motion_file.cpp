@@ -21,7 +21,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "pleat.motion/1";
 constexpr double kMaxFps = 1000;
-constexpr double kUnitTolerance = 0.01;  // beyond it, normalising is worth a warning
+constexpr double kUnitTolerance = 0.01;  // beyond it, normalizing is worth a warning
 
 absl::Status Fault(const std::string& what) { return absl::InvalidArgumentError(what); }
 
@@ -211,7 +211,7 @@ class MotionParser {
     }
     if (num_rescaled_ > 0) {
       motion_.warnings.push_back(
-          absl::StrCat(num_rescaled_, " rotations were not of length 1 and were normalised"));
+          absl::StrCat(num_rescaled_, " rotations were not of length 1 and were normalized"));
     }
     static const std::set<std::string> kFields = {
         "schema",           "fps",       "joints",      "frames",

@@ -17,7 +17,7 @@ namespace pleat {
 namespace {
 
 constexpr double kMaxVertexDistance = .01;  // of the diagonal: another mesh, pose or unit
-constexpr double kMaxJointDistance = 1;     // of the diagonal, from the mesh's centre
+constexpr double kMaxJointDistance = 1;     // of the diagonal, from the mesh's center
 
 struct PointCloud {
   const Eigen::Matrix3Xd& points;
@@ -35,14 +35,14 @@ using PointTree =
                                         PointCloud, 3>;
 
 absl::Status CheckJoints(const Skeleton& skeleton, const Eigen::Matrix3Xd& rest, double diagonal) {
-  const Eigen::Vector3d centre = ComputeBounds(rest).center();
+  const Eigen::Vector3d center = ComputeBounds(rest).center();
   for (const Joint& joint : skeleton.joints()) {
-    if ((joint.rest_position - centre).norm() <= kMaxJointDistance * diagonal) continue;
+    if ((joint.rest_position - center).norm() <= kMaxJointDistance * diagonal) continue;
     return absl::InvalidArgumentError(absl::StrFormat(
         "rig: joint '%s' at (%g, %g, %g) lies far from the mesh, which is %.3g m large around "
         "(%.3g, %.3g, %.3g): is it in another unit or up axis?",
         joint.name, joint.rest_position.x(), joint.rest_position.y(), joint.rest_position.z(),
-        diagonal, centre.x(), centre.y(), centre.z()));
+        diagonal, center.x(), center.y(), center.z()));
   }
   return absl::OkStatus();
 }
@@ -64,7 +64,7 @@ absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigF
     if (!(std::sqrt(squared_distance) <= kMaxVertexDistance * diagonal)) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "rig: vertex %d of the clip is %.3g m from the nearest vertex of the file: its mesh must "
-          "be the clip's frame %d (rest_frame), in metres, Y up",
+          "be the clip's frame %d (rest_frame), in meters, Y up",
           v, std::sqrt(squared_distance), file.rest_frame));
     }
     influences[v] = file.influences[nearest];

@@ -13,7 +13,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "point_index.h"
-#include "surface_neighbours.h"
+#include "surface_neighbors.h"
 
 namespace pleat {
 namespace {
@@ -109,7 +109,7 @@ void Thin(const Matrix3Xd& reference, const std::vector<char>& is_required, int 
     const int count = static_cast<int>(kept->size());
     struct Pair {
       double squared_distance;
-      int vertex, neighbour;  // positions in *kept
+      int vertex, neighbor;  // positions in *kept
     };
     std::vector<Pair> pairs;
     for (int i = 0; i < count; ++i) {
@@ -120,12 +120,12 @@ void Thin(const Matrix3Xd& reference, const std::vector<char>& is_required, int 
     std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) {
       return a.squared_distance < b.squared_distance;
     });
-    // A vertex whose nearest neighbour just went is no longer crowded: leave it for the next round.
+    // A vertex whose nearest neighbor just went is no longer crowded: leave it for the next round.
     std::vector<char> removed(count, 0);
     int num_removed = 0;
     for (const Pair& pair : pairs) {
       if (count - num_removed <= target) break;
-      if (removed[pair.vertex] || removed[pair.neighbour]) continue;
+      if (removed[pair.vertex] || removed[pair.neighbor]) continue;
       removed[pair.vertex] = 1;
       ++num_removed;
     }
@@ -176,7 +176,7 @@ void FillGaps(const Matrix3Xd& reference, int target, std::vector<int>* kept) {
 }
 
 // One kept vertex of every component is required; components without one get the vertex nearest
-// to their centre. Returns the flags.
+// to their center. Returns the flags.
 std::vector<char> RequireComponents(const Topology& topology, const Matrix3Xd& reference,
                                     std::vector<int>* kept, int* num_components) {
   const std::vector<int> component = Components(topology, reference, num_components);
@@ -184,11 +184,11 @@ std::vector<char> RequireComponents(const Topology& topology, const Matrix3Xd& r
   for (const int v : *kept) {
     if (component[v] >= 0 && chosen[component[v]] < 0) chosen[component[v]] = v;
   }
-  Matrix3Xd centres = Matrix3Xd::Zero(3, *num_components);
+  Matrix3Xd centers = Matrix3Xd::Zero(3, *num_components);
   Eigen::VectorXd sizes = Eigen::VectorXd::Zero(*num_components);
   for (Eigen::Index v = 0; v < reference.cols(); ++v) {
     if (component[v] < 0) continue;
-    centres.col(component[v]) += reference.col(v);
+    centers.col(component[v]) += reference.col(v);
     sizes[component[v]] += 1;
   }
   std::vector<int> nearest(*num_components, -1);
@@ -196,7 +196,7 @@ std::vector<char> RequireComponents(const Topology& topology, const Matrix3Xd& r
   for (Eigen::Index v = 0; v < reference.cols(); ++v) {
     const int c = component[v];
     if (c < 0) continue;
-    const double squared = (reference.col(v) - centres.col(c) / sizes[c]).squaredNorm();
+    const double squared = (reference.col(v) - centers.col(c) / sizes[c]).squaredNorm();
     if (squared < distance[c]) distance[c] = squared, nearest[c] = static_cast<int>(v);
   }
   std::vector<char> required(reference.cols(), 0);
@@ -209,10 +209,10 @@ std::vector<char> RequireComponents(const Topology& topology, const Matrix3Xd& r
 
 // Moves every kept vertex to the vertex nearest to the middle of the cell that it serves (Lloyd's
 // relaxation on the surface); required ones stay in their component, as cells do.
-void CentreCells(const Topology& topology, const Matrix3Xd& reference, int num_rounds,
+void CenterCells(const Topology& topology, const Matrix3Xd& reference, int num_rounds,
                  std::vector<int>* kept) {
   for (int round = 0; round < num_rounds; ++round) {
-    const auto nearest = FindSurfaceNeighbours(topology, reference, *kept, 1);
+    const auto nearest = FindSurfaceNeighbors(topology, reference, *kept, 1);
     const Eigen::Index num_cells = static_cast<Eigen::Index>(kept->size());
     Matrix3Xd middles = Matrix3Xd::Zero(3, num_cells);
     Eigen::VectorXd sizes = Eigen::VectorXd::Zero(num_cells);
@@ -257,7 +257,7 @@ absl::StatusOr<std::vector<int>> SelectControlVertices(const Topology& topology,
     return kept;
   }
   // Collapses leave flat places bare, which is where cloth folds later. So half of the vertices are
-  // from simplification, half fill the gaps, and all are centred in their cells: on captured
+  // from simplification, half fill the gaps, and all are centered in their cells: on captured
   // clothes the interpolation error at 5 % falls by a quarter.
   if (topology.num_triangles() > 0) {
     kept = SimplifyToCount(topology, reference, (target + 1) / 2);
@@ -267,7 +267,7 @@ absl::StatusOr<std::vector<int>> SelectControlVertices(const Topology& topology,
   target = std::max(target, num_components);
   Thin(reference, required, target, &kept);
   FillGaps(reference, target, &kept);
-  CentreCells(topology, reference, /*num_rounds=*/2, &kept);
+  CenterCells(topology, reference, /*num_rounds=*/2, &kept);
   std::sort(kept.begin(), kept.end());
   return kept;
 }

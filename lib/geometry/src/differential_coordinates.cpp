@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "surface_neighbours.h"
+#include "surface_neighbors.h"
 
 namespace pleat {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 std::vector<std::pair<int, int>> TouchingCells(const Topology& topology,
                                                const Eigen::Matrix3Xd& reference,
                                                const std::vector<int>& control_vertices) {
-  const auto nearest = FindSurfaceNeighbours(topology, reference, control_vertices, 1);
+  const auto nearest = FindSurfaceNeighbors(topology, reference, control_vertices, 1);
   std::vector<std::pair<int, int>> pairs;
   for (int f = 0; f < topology.num_faces(); ++f) {
     const auto face = topology.face(f);
@@ -61,16 +61,16 @@ absl::StatusOr<DifferentialCoordinates> DifferentialCoordinates::Build(
   }
   const auto count = static_cast<Eigen::Index>(control_vertices.size());
   DifferentialCoordinates result;
-  result.num_neighbours_.assign(control_vertices.size(), 0);
+  result.num_neighbors_.assign(control_vertices.size(), 0);
   std::vector<Eigen::Triplet<double>> entries;
   for (const auto& [a, b] : TouchingCells(topology, reference, control_vertices)) {
-    ++result.num_neighbours_[a];
-    ++result.num_neighbours_[b];
+    ++result.num_neighbors_[a];
+    ++result.num_neighbors_[b];
     entries.emplace_back(a, b, -1);
     entries.emplace_back(b, a, -1);
   }
   for (int i = 0; i < count; ++i) {
-    entries.emplace_back(i, i, (1 + anchor) * std::max(1, result.num_neighbours_[i]));
+    entries.emplace_back(i, i, (1 + anchor) * std::max(1, result.num_neighbors_[i]));
   }
   result.matrix_.resize(count, count);
   result.matrix_.setFromTriplets(entries.begin(), entries.end());
@@ -88,7 +88,7 @@ Eigen::MatrixXd DifferentialCoordinates::Encode(
         displacements.row(t).reshaped(3, displacements.cols() / 3).transpose();  // C x 3
     Eigen::MatrixXd differences = matrix_ * xyz;
     for (Eigen::Index i = 0; i < differences.rows(); ++i) {
-      differences.row(i) /= std::max(1, num_neighbours_[i]);
+      differences.row(i) /= std::max(1, num_neighbors_[i]);
     }
     encoded.row(t) = differences.transpose().reshaped().transpose();
   }
@@ -102,7 +102,7 @@ Eigen::MatrixXd DifferentialCoordinates::DecodeColumns(
     Eigen::MatrixXd differences =
         columns.col(c).reshaped(3, columns.rows() / 3).transpose();  // C x 3
     for (Eigen::Index i = 0; i < differences.rows(); ++i) {
-      differences.row(i) *= std::max(1, num_neighbours_[i]);
+      differences.row(i) *= std::max(1, num_neighbors_[i]);
     }
     const Eigen::MatrixXd xyz = factor_->solve(differences);
     decoded.col(c) = xyz.transpose().reshaped();

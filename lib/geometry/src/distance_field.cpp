@@ -16,7 +16,7 @@ constexpr double kBandCells = 2;
 constexpr int kBlockNodes = 16;             // work items
 constexpr double kWindingTolerance = 0.05;  // of the winding number's approximation
 
-// Side of a ball free of surface whose centre has the winding number `winding`.
+// Side of a ball free of surface whose center has the winding number `winding`.
 enum class Side { kUnknown, kInside, kOutside };
 
 // The winding number is harmonic away from the surface, so that its distance u >= 0 to 0 (outside)
@@ -41,7 +41,7 @@ class DistanceField::Sampler {
   Sampler(const TriangleTree& tree, const WindingNumber& winding_number, DistanceField* field)
       : tree_(tree), winding_number_(winding_number), field_(*field) {}
 
-  // Nodes low <= node < high. `reach`: an upper bound of the distance of the block's centre.
+  // Nodes low <= node < high. `reach`: an upper bound of the distance of the block's center.
   void Fill(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
             double reach = std::numeric_limits<double>::infinity()) const {
     const Eigen::Vector3i sizes = high - low;
@@ -49,14 +49,14 @@ class DistanceField::Sampler {
       FillNode(low, reach, Side::kUnknown);
       return;
     }
-    const Eigen::Vector3d centre = Centre(low, high);
+    const Eigen::Vector3d center = Center(low, high);
     const double radius =
         0.5 * field_.spacing_ * (sizes.array() - 1).matrix().cast<double>().norm();
-    const double distance = DistanceWithin(centre, reach);
+    const double distance = DistanceWithin(center, reach);
     const Side side =
-        distance > radius ? SideOfBall(winding_number_(centre), radius / distance) : Side::kUnknown;
+        distance > radius ? SideOfBall(winding_number_(center), radius / distance) : Side::kUnknown;
     if (side != Side::kUnknown) {
-      FillOneSided(low, high, centre, distance, side);
+      FillOneSided(low, high, center, distance, side);
       return;
     }
     Eigen::Vector3i middle = low + (sizes + Eigen::Vector3i::Ones()) / 2;
@@ -64,12 +64,12 @@ class DistanceField::Sampler {
       Eigen::Vector3i from = low, to = high;
       for (int k = 0; k < 3; ++k) ((part >> k & 1) != 0 ? from[k] : to[k]) = middle[k];
       if ((from.array() >= to.array()).any()) continue;
-      Fill(from, to, distance + (Centre(from, to) - centre).norm());
+      Fill(from, to, distance + (Center(from, to) - center).norm());
     }
   }
 
  private:
-  Eigen::Vector3d Centre(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const {
+  Eigen::Vector3d Center(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const {
     return field_.origin_ +
            0.5 * field_.spacing_ * (low + high - Eigen::Vector3i::Ones()).cast<double>();
   }
@@ -80,12 +80,12 @@ class DistanceField::Sampler {
   }
 
   void FillOneSided(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
-                    const Eigen::Vector3d& centre, double distance, Side side) const {
+                    const Eigen::Vector3d& center, double distance, Side side) const {
     const double band = kBandCells * field_.spacing_;
     for (int z = low.z(); z < high.z(); ++z) {
       for (int y = low.y(); y < high.y(); ++y) {
         for (int x = low.x(); x < high.x(); ++x) {
-          const double offset = (field_.NodePosition(x, y, z) - centre).norm();
+          const double offset = (field_.NodePosition(x, y, z) - center).norm();
           if (side == Side::kOutside && distance - offset >= band) {
             field_.distances_[field_.NodeIndex(x, y, z)] = static_cast<float>(band);
           } else {

@@ -1,4 +1,4 @@
-// Nearest neighbours among points of three-space (nanoflann's k-d tree).
+// Nearest neighbors among points of three-space (nanoflann's k-d tree).
 #pragma once
 
 #include <Eigen/Core>

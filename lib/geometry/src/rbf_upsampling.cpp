@@ -10,7 +10,7 @@
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "point_index.h"
-#include "surface_neighbours.h"
+#include "surface_neighbors.h"
 
 namespace pleat {
 namespace {
@@ -57,14 +57,14 @@ absl::Status CheckBuild(const Topology& topology, const Eigen::Matrix3Xd& rest,
   if (!rest.allFinite() || !options.features.allFinite()) {
     return absl::InvalidArgumentError("upsampling: a rest position or feature is not finite");
   }
-  if (options.num_neighbours < 1 || !(options.kernel_length > 0) || !(options.feature_scale >= 0)) {
+  if (options.num_neighbors < 1 || !(options.kernel_length > 0) || !(options.feature_scale >= 0)) {
     return absl::InvalidArgumentError(
-        "upsampling: num_neighbours and kernel_length must be positive, feature_scale at least 0");
+        "upsampling: num_neighbors and kernel_length must be positive, feature_scale at least 0");
   }
   return CheckControls(num_vertices, control_vertices);
 }
 
-// Rest positions and scaled features, one column per vertex (metres).
+// Rest positions and scaled features, one column per vertex (meters).
 MatrixXd KernelCoordinates(const Eigen::Matrix3Xd& rest, const RbfUpsamplingOptions& options) {
   MatrixXd coordinates(3 + options.features.rows(), rest.cols());
   coordinates.topRows(3) = rest;
@@ -76,7 +76,7 @@ MatrixXd KernelCoordinates(const Eigen::Matrix3Xd& rest, const RbfUpsamplingOpti
   return coordinates;
 }
 
-// Mean distance of a control vertex to the nearest other one, metres; 1 when there is none.
+// Mean distance of a control vertex to the nearest other one, meters; 1 when there is none.
 double MeanSpacing(const Eigen::Matrix3Xd& controls, const PointIndex& index) {
   if (controls.cols() < 2) return 1;
   double sum = 0;
@@ -158,8 +158,8 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Build(const Topology& topology,
                                                  const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(CheckBuild(topology, rest, control_vertices, options));
   const int num_vertices = topology.num_vertices();
-  const auto neighbours =
-      FindSurfaceNeighbours(topology, rest, control_vertices, options.num_neighbours);
+  const auto neighbors =
+      FindSurfaceNeighbors(topology, rest, control_vertices, options.num_neighbors);
   Eigen::Matrix3Xd control_positions(3, control_vertices.size());
   for (size_t c = 0; c < control_vertices.size(); ++c) {
     control_positions.col(c) = rest.col(control_vertices[c]);
@@ -175,9 +175,9 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Build(const Topology& topology,
       return;
     }
     std::vector<int> controls;
-    for (const SurfaceNeighbour& neighbour : neighbours[v]) controls.push_back(neighbour.source);
+    for (const SurfaceNeighbor& neighbor : neighbors[v]) controls.push_back(neighbor.source);
     if (controls.empty()) {
-      for (const auto& [control, squared] : index.Nearest(rest.col(v), options.num_neighbours)) {
+      for (const auto& [control, squared] : index.Nearest(rest.col(v), options.num_neighbors)) {
         controls.push_back(control);
       }
     }

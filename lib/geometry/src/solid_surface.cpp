@@ -109,15 +109,15 @@ std::vector<EdgeSide> SortedEdgeSides(const Eigen::Matrix3Xi& triangles) {
   return sides;
 }
 
-struct Neighbour {
+struct Neighbor {
   int triangle;
   bool same_orientation;
   bool is_manifold;  // across an edge of exactly two triangles
 };
 
-std::vector<std::vector<Neighbour>> TriangleNeighbours(const std::vector<EdgeSide>& sides,
-                                                       int num_triangles, SurfaceReport* report) {
-  std::vector<std::vector<Neighbour>> neighbours(num_triangles);
+std::vector<std::vector<Neighbor>> TriangleNeighbors(const std::vector<EdgeSide>& sides,
+                                                     int num_triangles, SurfaceReport* report) {
+  std::vector<std::vector<Neighbor>> neighbors(num_triangles);
   for (size_t start = 0; start < sides.size();) {
     size_t end = start;
     while (end < sides.size() && sides[end].edge == sides[start].edge) ++end;
@@ -126,32 +126,32 @@ std::vector<std::vector<Neighbour>> TriangleNeighbours(const std::vector<EdgeSid
     for (size_t i = start; i + 1 < end; ++i) {
       const EdgeSide &a = sides[i], &b = sides[i + 1];
       const bool same = a.forward != b.forward;
-      neighbours[a.triangle].push_back({b.triangle, same, end - start == 2});
-      neighbours[b.triangle].push_back({a.triangle, same, end - start == 2});
+      neighbors[a.triangle].push_back({b.triangle, same, end - start == 2});
+      neighbors[b.triangle].push_back({a.triangle, same, end - start == 2});
     }
     start = end;
   }
-  return neighbours;
+  return neighbors;
 }
 
-// Six times the signed volume of `patch` seen from its own centre.
+// Six times the signed volume of `patch` seen from its own center.
 double SignedVolume(const SolidSurface& surface, const std::vector<int>& patch) {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (int f : patch) {
-    for (int k = 0; k < 3; ++k) centre += surface.positions.col(surface.triangles(k, f));
+    for (int k = 0; k < 3; ++k) center += surface.positions.col(surface.triangles(k, f));
   }
-  centre /= 3.0 * patch.size();
+  center /= 3.0 * patch.size();
   double volume = 0;
   for (int f : patch) {
-    const Eigen::Vector3d a = surface.positions.col(surface.triangles(0, f)) - centre;
-    const Eigen::Vector3d b = surface.positions.col(surface.triangles(1, f)) - centre;
-    const Eigen::Vector3d c = surface.positions.col(surface.triangles(2, f)) - centre;
+    const Eigen::Vector3d a = surface.positions.col(surface.triangles(0, f)) - center;
+    const Eigen::Vector3d b = surface.positions.col(surface.triangles(1, f)) - center;
+    const Eigen::Vector3d c = surface.positions.col(surface.triangles(2, f)) - center;
     volume += a.dot(b.cross(c));
   }
   return volume;
 }
 
-void OrientPatches(const std::vector<std::vector<Neighbour>>& neighbours, SolidSurface* surface) {
+void OrientPatches(const std::vector<std::vector<Neighbor>>& neighbors, SolidSurface* surface) {
   const int num_triangles = static_cast<int>(surface->triangles.cols());
   std::vector<char> visited(num_triangles, 0), flipped(num_triangles, 0);
   const auto flip = [&](int f) {
@@ -163,11 +163,11 @@ void OrientPatches(const std::vector<std::vector<Neighbour>>& neighbours, SolidS
     std::vector<int> patch = {seed};
     visited[seed] = 1;
     for (size_t i = 0; i < patch.size(); ++i) {
-      for (const Neighbour& neighbour : neighbours[patch[i]]) {
-        if (!neighbour.is_manifold || visited[neighbour.triangle]) continue;
-        visited[neighbour.triangle] = 1;
-        if (neighbour.same_orientation == (flipped[patch[i]] != 0)) flip(neighbour.triangle);
-        patch.push_back(neighbour.triangle);
+      for (const Neighbor& neighbor : neighbors[patch[i]]) {
+        if (!neighbor.is_manifold || visited[neighbor.triangle]) continue;
+        visited[neighbor.triangle] = 1;
+        if (neighbor.same_orientation == (flipped[patch[i]] != 0)) flip(neighbor.triangle);
+        patch.push_back(neighbor.triangle);
       }
     }
     if (SignedVolume(*surface, patch) < 0) {
@@ -177,22 +177,21 @@ void OrientPatches(const std::vector<std::vector<Neighbour>>& neighbours, SolidS
   for (char was_flipped : flipped) surface->report.num_flipped_triangles += was_flipped;
 }
 
-void NumberComponents(const std::vector<std::vector<Neighbour>>& neighbours,
-                      SolidSurface* surface) {
+void NumberComponents(const std::vector<std::vector<Neighbor>>& neighbors, SolidSurface* surface) {
   std::vector<int>& components = surface->triangle_components;
-  components.assign(neighbours.size(), -1);
+  components.assign(neighbors.size(), -1);
   std::vector<int> stack;
-  for (size_t seed = 0; seed < neighbours.size(); ++seed) {
+  for (size_t seed = 0; seed < neighbors.size(); ++seed) {
     if (components[seed] >= 0) continue;
     components[seed] = surface->report.num_components;
     stack = {static_cast<int>(seed)};
     while (!stack.empty()) {
       const int f = stack.back();
       stack.pop_back();
-      for (const Neighbour& neighbour : neighbours[f]) {
-        if (components[neighbour.triangle] >= 0) continue;
-        components[neighbour.triangle] = surface->report.num_components;
-        stack.push_back(neighbour.triangle);
+      for (const Neighbor& neighbor : neighbors[f]) {
+        if (components[neighbor.triangle] >= 0) continue;
+        components[neighbor.triangle] = surface->report.num_components;
+        stack.push_back(neighbor.triangle);
       }
     }
     ++surface->report.num_components;
@@ -216,10 +215,10 @@ absl::StatusOr<SolidSurface> PrepareSolidSurface(
                      " triangles has an area: the mesh encloses nothing"));
   }
   const std::vector<EdgeSide> sides = SortedEdgeSides(surface.triangles);
-  const std::vector<std::vector<Neighbour>> neighbours =
-      TriangleNeighbours(sides, num_triangles, &surface.report);
-  OrientPatches(neighbours, &surface);
-  NumberComponents(neighbours, &surface);
+  const std::vector<std::vector<Neighbor>> neighbors =
+      TriangleNeighbors(sides, num_triangles, &surface.report);
+  OrientPatches(neighbors, &surface);
+  NumberComponents(neighbors, &surface);
   return surface;
 }
 

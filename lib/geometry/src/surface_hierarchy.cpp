@@ -13,13 +13,13 @@ namespace {
 constexpr int kMaxNeighbors = 12;  // of a vertex that is removed
 constexpr int kNumCoarsest = 24;
 // Pull towards equal weights, as a share of the squared distance. Without it nearly singular
-// neighbourhoods get weights that amplify the quantisation error (.02 doubles the error of samba).
+// neighborhoods get weights that amplify the quantization error (.02 doubles the error of samba).
 constexpr double kRegularization = 0.3;
 
 using Small = std::array<double, kMaxNeighbors>;
 
-// Weights of sum 1 that reproduce `offsets` = 0 as well as possible: minimises |D w|^2 + r sum_i
-// |d_i|^2 w_i^2 (locally linear embedding, Roweis and Saul 2000) by Cholesky factorisation.
+// Weights of sum 1 that reproduce `offsets` = 0 as well as possible: minimizes |D w|^2 + r sum_i
+// |d_i|^2 w_i^2 (locally linear embedding, Roweis and Saul 2000) by Cholesky factorization.
 Small LinearWeights(const std::array<Eigen::Vector3d, kMaxNeighbors>& offsets, int n) {
   std::array<Small, kMaxNeighbors> gram;
   double trace = 0;
@@ -98,7 +98,7 @@ class SurfaceHierarchy::Builder {
     return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
   }
 
-  // A set without neighbours in it, few-edged vertices first.
+  // A set without neighbors in it, few-edged vertices first.
   std::vector<int32_t> ChooseRemoved() const {
     std::vector<int32_t> candidates = active_;
     std::stable_sort(candidates.begin(), candidates.end(),
@@ -135,7 +135,7 @@ class SurfaceHierarchy::Builder {
     }
   }
 
-  // What the removed vertex stood for falls to its neighbours.
+  // What the removed vertex stood for falls to its neighbors.
   void SpreadArea(int v) {
     for (int i = 0; i < result_.counts_[v]; ++i) {
       const int entry = result_.starts_[v] + i;
@@ -152,7 +152,7 @@ class SurfaceHierarchy::Builder {
     }
   }
 
-  // Joins v to its nearest neighbour (half-edge collapse), so that the surface stays connected.
+  // Joins v to its nearest neighbor (half-edge collapse), so that the surface stays connected.
   void Collapse(int v) {
     int nearest = -1;
     double least = 0;

@@ -46,30 +46,30 @@ TriangleTree::TriangleTree(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
   order_.resize(num_triangles);
   std::iota(order_.begin(), order_.end(), 0);
   corners_.resize(num_triangles);
-  std::vector<Eigen::Vector3d> centres(num_triangles);
+  std::vector<Eigen::Vector3d> centers(num_triangles);
   for (int f = 0; f < num_triangles; ++f) {
     for (int k = 0; k < 3; ++k) corners_[f][k] = positions.col(triangles(k, f));
-    centres[f] = (corners_[f][0] + corners_[f][1] + corners_[f][2]) / 3;
+    centers[f] = (corners_[f][0] + corners_[f][1] + corners_[f][2]) / 3;
   }
   nodes_.reserve(num_triangles);
-  Build(centres, 0, num_triangles);
+  Build(centers, 0, num_triangles);
   std::vector<std::array<Eigen::Vector3d, 3>> sorted(num_triangles);
   for (int k = 0; k < num_triangles; ++k) sorted[k] = corners_[order_[k]];
   corners_ = std::move(sorted);
 }
 
-int32_t TriangleTree::Build(std::vector<Eigen::Vector3d>& centres, int32_t first, int32_t count) {
+int32_t TriangleTree::Build(std::vector<Eigen::Vector3d>& centers, int32_t first, int32_t count) {
   const int32_t index = static_cast<int32_t>(nodes_.size());
   nodes_.emplace_back();
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d high = -low, centre_low = low, centre_high = -low;
+  Eigen::Vector3d high = -low, center_low = low, center_high = -low;
   for (int32_t k = first; k < first + count; ++k) {
     for (const Eigen::Vector3d& corner : corners_[order_[k]]) {
       low = low.cwiseMin(corner);
       high = high.cwiseMax(corner);
     }
-    centre_low = centre_low.cwiseMin(centres[order_[k]]);
-    centre_high = centre_high.cwiseMax(centres[order_[k]]);
+    center_low = center_low.cwiseMin(centers[order_[k]]);
+    center_high = center_high.cwiseMax(centers[order_[k]]);
   }
   nodes_[index].low = low;
   nodes_[index].high = high;
@@ -78,15 +78,15 @@ int32_t TriangleTree::Build(std::vector<Eigen::Vector3d>& centres, int32_t first
   if (count <= kMaxLeafTriangles) return index;
 
   int axis = 0;
-  (centre_high - centre_low).maxCoeff(&axis);
+  (center_high - center_low).maxCoeff(&axis);
   const int32_t half = count / 2;
   std::nth_element(order_.begin() + first, order_.begin() + first + half,
                    order_.begin() + first + count, [&](int32_t a, int32_t b) {
-                     const double ca = centres[a][axis], cb = centres[b][axis];
+                     const double ca = centers[a][axis], cb = centers[b][axis];
                      return ca != cb ? ca < cb : a < b;
                    });
-  Build(centres, first, half);
-  const int32_t right = Build(centres, first + half, count - half);
+  Build(centers, first, half);
+  const int32_t right = Build(centers, first + half, count - half);
   nodes_[index].right = right;
   return index;
 }

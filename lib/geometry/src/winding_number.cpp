@@ -28,14 +28,14 @@ WindingNumber::WindingNumber(const TriangleTree& tree, double accuracy)
       const auto& [a, b, c] = tree.corners(k);
       const Eigen::Vector3d area_vector = 0.5 * (b - a).cross(c - a);
       dipole.moment += area_vector;
-      dipole.centre += area_vector.norm() * (a + b + c) / 3;
+      dipole.center += area_vector.norm() * (a + b + c) / 3;
       area += area_vector.norm();
     }
-    dipole.centre = area > 0 ? Eigen::Vector3d(dipole.centre / area)
+    dipole.center = area > 0 ? Eigen::Vector3d(dipole.center / area)
                              : Eigen::Vector3d(0.5 * (node.low + node.high));
     // The farthest corner of the node's box bounds every triangle below it.
     const Eigen::Vector3d reach =
-        (node.high - dipole.centre).cwiseMax(dipole.centre - node.low) * accuracy;
+        (node.high - dipole.center).cwiseMax(dipole.center - node.low) * accuracy;
     dipole.squared_reach = reach.squaredNorm();
   }
 }
@@ -49,7 +49,7 @@ double WindingNumber::operator()(const Eigen::Vector3d& point) const {
   while (size > 0) {
     const int n = stack[--size];
     const Dipole& dipole = dipoles_[n];
-    const Eigen::Vector3d offset = dipole.centre - point;
+    const Eigen::Vector3d offset = dipole.center - point;
     const double squared_distance = offset.squaredNorm();
     if (squared_distance > dipole.squared_reach) {
       solid_angle += offset.dot(dipole.moment) / (squared_distance * std::sqrt(squared_distance));

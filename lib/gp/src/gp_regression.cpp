@@ -14,7 +14,7 @@
 namespace pleat {
 namespace {
 
-constexpr double kFarthest = 1e6;  // normalised units
+constexpr double kFarthest = 1e6;  // normalized units
 
 // whitened = W k, W lower triangular, in blocks of rows: no temporary, half the work.
 void Whiten(const Eigen::MatrixXf& whitener, const Eigen::VectorXf& kernel,

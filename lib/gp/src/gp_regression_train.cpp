@@ -46,8 +46,8 @@ absl::Status CheckGroups(const std::vector<std::vector<int>>& groups, Eigen::Ind
   return absl::OkStatus();
 }
 
-// Centred and scaled copies of the data, and what was taken off.
-GpRegressionParameters Normalise(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+// Centered and scaled copies of the data, and what was taken off.
+GpRegressionParameters Normalize(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                  const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                  const GpRegressionOptions& options) {
   GpRegressionParameters p;
@@ -55,7 +55,7 @@ GpRegressionParameters Normalise(const Eigen::Ref<const Eigen::MatrixXd>& inputs
   p.input_mean.setZero(inputs.cols());
   p.input_scales.setOnes(inputs.cols());
   p.inputs = inputs;
-  if (options.normalise_inputs) {
+  if (options.normalize_inputs) {
     p.input_mean = inputs.colwise().mean().transpose();
     p.inputs.rowwise() -= p.input_mean.transpose();
     p.input_scales *= PositiveRoot(p.inputs.squaredNorm() / double(inputs.rows()));
@@ -72,7 +72,7 @@ Eigen::MatrixXd TakeRows(const Eigen::MatrixXd& all, const std::vector<Eigen::In
   return all(rows, Eigen::all);
 }
 
-// Finishes `parameters`, whose `alpha` holds the normalised outputs, for the given kernel.
+// Finishes `parameters`, whose `alpha` holds the normalized outputs, for the given kernel.
 absl::Status Solve(const Progress& progress, GpRegressionParameters* p) {
   GramTerm term(static_cast<int>(p->inputs.rows()), p->kernel_options);
   term.SetInputs(p->inputs);
@@ -125,7 +125,7 @@ KernelLogs StartingLogs(double median) {
           .linear = std::log(.5)};
 }
 
-// Learns kernel and relevance of the inputs from the normalised data in `p`, and scales its inputs.
+// Learns kernel and relevance of the inputs from the normalized data in `p`, and scales its inputs.
 absl::Status LearnKernel(const GpRegressionOptions& options, const Progress& progress,
                          GpRegressionSummary* summary, GpRegressionParameters* p) {
   const auto rows = SpreadRows(p->inputs.rows(), options.max_hyperparameter_rows);
@@ -166,7 +166,7 @@ absl::StatusOr<GpRegression> GpRegression::Train(const Eigen::Ref<const Eigen::M
   PLEAT_RETURN_IF_ERROR(CheckGroups(options.input_groups, inputs.cols()));
   GpRegressionSummary local;
   GpRegressionSummary& report = summary ? *summary : local;
-  GpRegressionParameters p = Normalise(inputs, outputs, options);
+  GpRegressionParameters p = Normalize(inputs, outputs, options);
 
   PLEAT_RETURN_IF_ERROR(LearnKernel(options, progress.Stage("gp", 0, .9), &report, &p));
 
@@ -184,7 +184,7 @@ absl::StatusOr<GpRegression> GpRegression::Condition(
     const GpRegressionOptions& options) {
   PLEAT_RETURN_IF_ERROR(CheckData(inputs, outputs));
   PLEAT_RETURN_IF_ERROR(CheckKernelLogs(options.kernel, kernel, "GP regression"));
-  GpRegressionParameters p = Normalise(inputs, outputs, options);
+  GpRegressionParameters p = Normalize(inputs, outputs, options);
   p.kernel = kernel;
   PLEAT_RETURN_IF_ERROR(Solve({}, &p));
   return GpRegression(std::move(p));

@@ -44,7 +44,7 @@ struct GramTerm::State {
   Eigen::VectorXd log_gradient;
   KernelValues values{};
   double log_determinant = 0;
-  double relative_floor = 0;  // noise floor + jitter of the last factorisation, share of a
+  double relative_floor = 0;  // noise floor + jitter of the last factorization, share of a
 
   Eigen::MatrixXd& weighted() { return options.linear ? beside : work->kernel; }
   bool Factor();

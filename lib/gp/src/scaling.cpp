@@ -8,12 +8,12 @@ namespace pleat {
 
 double PositiveRoot(double square) { return square > 0 ? std::sqrt(square) : 1; }
 
-void ScaleColumns(Eigen::MatrixXd* centred) {
-  const double count = static_cast<double>(centred->rows()) - 1;
-  const Eigen::VectorXd squares = centred->colwise().squaredNorm() / count;
+void ScaleColumns(Eigen::MatrixXd* centered) {
+  const double count = static_cast<double>(centered->rows()) - 1;
+  const Eigen::VectorXd squares = centered->colwise().squaredNorm() / count;
   const double smallest = 1e-20 * (squares.size() > 0 ? squares.maxCoeff() : 0);  // rounding
-  for (Eigen::Index d = 0; d < centred->cols(); ++d) {
-    if (squares[d] > smallest) centred->col(d) /= std::sqrt(squares[d]);
+  for (Eigen::Index d = 0; d < centered->cols(); ++d) {
+    if (squares[d] > smallest) centered->col(d) /= std::sqrt(squares[d]);
   }
 }
 

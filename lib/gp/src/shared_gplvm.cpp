@@ -42,7 +42,7 @@ absl::Status CheckTraining(const Eigen::Ref<const Eigen::MatrixXd>& poses,
   return CheckClipStarts(clip_starts, poses.rows());
 }
 
-// First q left singular vectors of the centred poses, times sqrt(N - 1); missing ones are zero.
+// First q left singular vectors of the centered poses, times sqrt(N - 1); missing ones are zero.
 Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
   const PrincipalComponents pca = ComputePca(poses, {.max_components = q});
   Eigen::MatrixXd start = Eigen::MatrixXd::Zero(poses.rows(), q);
@@ -53,7 +53,7 @@ Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
   return start;
 }
 
-// K_b on centred poses, and log g of it.
+// K_b on centered poses, and log g of it.
 Eigen::MatrixXd BackKernel(const Eigen::MatrixXd& poses, const SharedGplvmOptions& options,
                            double* log_inverse_width) {
   const Eigen::Index n = poses.rows();
@@ -115,14 +115,14 @@ absl::Status CheckClipStarts(const std::vector<int>& clip_starts, Eigen::Index n
 
 DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling) {
   const Eigen::Index n = outputs.rows();
-  Eigen::MatrixXd centred = outputs.rowwise() - outputs.colwise().mean();
-  if (scaling == ViewScaling::kPerColumn) ScaleColumns(&centred);
+  Eigen::MatrixXd centered = outputs.rowwise() - outputs.colwise().mean();
+  if (scaling == ViewScaling::kPerColumn) ScaleColumns(&centered);
   DetailView view;
   view.num_outputs = static_cast<double>(outputs.cols());
   view.gram.setZero(n, n);
   DenseSolver solver;
-  const DenseView rows = ViewOf(centred);
-  solver.MultiplyRows(rows, rows, centred.cols(),
+  const DenseView rows = ViewOf(centered);
+  solver.MultiplyRows(rows, rows, centered.cols(),
                       {.c = view.gram.data(),
                        .ldc = n,
                        .m = n,
@@ -161,8 +161,8 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
   SharedGplvmSummary& report = summary ? *summary : local;
 
   // Scale both views.
-  const Eigen::MatrixXd centred = poses.rowwise() - poses.colwise().mean();
-  Eigen::MatrixXd scaled = centred, gram = details.gram;
+  const Eigen::MatrixXd centered = poses.rowwise() - poses.colwise().mean();
+  Eigen::MatrixXd scaled = centered, gram = details.gram;
   if (options.scaling == ViewScaling::kPerColumn) {
     ScaleColumns(&scaled);
     report.pose_scale = report.detail_scale = 1;
@@ -178,10 +178,10 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
   SharedGplvm model;
   model.detail_scale = report.detail_scale;
   // The start knows nothing of the scaling of columns: the check values were made that way.
-  const Eigen::MatrixXd start = PcaStart(centred, options.latent_dimension);
+  const Eigen::MatrixXd start = PcaStart(centered, options.latent_dimension);
   Eigen::MatrixXd points = start, back_kernel;
   if (options.back_constraints) {
-    back_kernel = BackKernel(centred, options, &model.back_log_inverse_width);
+    back_kernel = BackKernel(centered, options, &model.back_log_inverse_width);
     Eigen::MatrixXd ridged = back_kernel, whitener, whitened;
     ridged.diagonal().array() += options.back_noise;
     DenseSolver solver;

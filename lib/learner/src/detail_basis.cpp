@@ -55,7 +55,7 @@ inline int PlaceInBlocks(int row) {
 
 static_assert(DetailBasis::kBlockDetails == kPlaneRows);
 
-absl::StatusOr<DetailBasis> DetailBasis::Quantise(
+absl::StatusOr<DetailBasis> DetailBasis::Quantize(
     const Eigen::Ref<const Eigen::VectorXf>& mean, const Eigen::Ref<const Eigen::MatrixXd>& basis,
     const Eigen::Ref<const Eigen::VectorXd>& largest_steps) {
   if (!basis.cast<float>().allFinite()) return Refuse("a number to round is not finite");

@@ -95,9 +95,9 @@ absl::StatusOr<GpRegression> BackConstraintStage(const Eigen::Ref<const Eigen::M
   KernelLogs logs{.inverse_width = model.back_log_inverse_width,
                   .amplitude = 0,
                   .noise = std::log(options.back_noise)};
-  // Normalising rescales the inputs; the kernel's width follows.
-  const Eigen::MatrixXd centred = features.rowwise() - features.colwise().mean();
-  logs.inverse_width += std::log(centred.squaredNorm() / double(centred.rows()));
+  // Normalizing rescales the inputs; the kernel's width follows.
+  const Eigen::MatrixXd centered = features.rowwise() - features.colwise().mean();
+  logs.inverse_width += std::log(centered.squaredNorm() / double(centered.rows()));
   PLEAT_ASSIGN_OR_RETURN(const GpRegression fitted,
                          GpRegression::Condition(features, model.latents, logs,
                                                  {.kernel = {.bias = false, .linear = false}}));
@@ -126,7 +126,7 @@ class DetailModelTrainer {
     model_.learner_ = options_.learner;
     const Eigen::MatrixXd basis = Mapped(details_.basis);
     PLEAT_ASSIGN_OR_RETURN(model_.basis_,
-                           DetailBasis::Quantise(Mapped(details_.mean).cast<float>(), basis,
+                           DetailBasis::Quantize(Mapped(details_.mean).cast<float>(), basis,
                                                  LargestSteps(basis, details_.scores, options_)));
     model_.fade_confidence_ = options_.fade_confidence;
     summary_.num_components = static_cast<int>(details_.basis.cols());
@@ -182,7 +182,7 @@ class DetailModelTrainer {
       regions.push_back(
           {region.feature_sets, details_.scores * ShareOfRegion(details_.basis, region.weights)});
     }
-    // What the direct GP has learnt about the joints holds for their parts of the body too.
+    // What the direct GP has learned about the joints holds for their parts of the body too.
     RegionalGpOptions options = options_.regional;
     options.input_scales = model_.stages_.front().parameters().input_scales;
     PLEAT_ASSIGN_OR_RETURN(
@@ -216,7 +216,7 @@ class DetailModelTrainer {
     PLEAT_ASSIGN_OR_RETURN(
         GpRegression stage,
         GpRegression::Condition(latent.latents, scores, latent.detail_kernel,
-                                {.kernel = latent.detail_options, .normalise_inputs = false}));
+                                {.kernel = latent.detail_options, .normalize_inputs = false}));
     model_.stages_.push_back(std::move(stage));
     return absl::OkStatus();
   }

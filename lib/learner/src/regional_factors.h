@@ -22,7 +22,7 @@ class RegionalFactors {
   // Doubles that Compute() needs for its own use.
   size_t scratch_size() const;
 
-  // row: D, normalised. factors[r * N + n] = k_r(row, row n of the training).
+  // row: D, normalized. factors[r * N + n] = k_r(row, row n of the training).
   void Compute(const double* row, double* scratch, float* factors) const;
 
   // Kernels this processor can run, the fastest first; all give the same bits.

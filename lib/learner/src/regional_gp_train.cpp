@@ -164,13 +164,13 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
   PLEAT_RETURN_IF_ERROR(CheckScales(options.input_scales, inputs.cols()));
   RegionalGpParameters p;
   p.input_mean = inputs.colwise().mean().transpose();
-  Eigen::MatrixXd normalised = inputs.rowwise() - p.input_mean.transpose();
+  Eigen::MatrixXd normalized = inputs.rowwise() - p.input_mean.transpose();
   p.input_scales = options.input_scales;
   if (p.input_scales.size() == 0) p.input_scales.setOnes(inputs.cols());
-  normalised *= p.input_scales.cwiseInverse().asDiagonal();
-  const double unit = PositiveRoot(normalised.squaredNorm() / static_cast<double>(inputs.rows()));
+  normalized *= p.input_scales.cwiseInverse().asDiagonal();
+  const double unit = PositiveRoot(normalized.squaredNorm() / static_cast<double>(inputs.rows()));
   p.input_scales *= unit;
-  normalised /= unit;
+  normalized /= unit;
   const auto learning_rows = SpreadRows(inputs.rows(), options.max_hyperparameter_rows);
   const auto rows = SpreadRows(inputs.rows(), options.max_rows);
 
@@ -188,7 +188,7 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
     const int size = std::min(kBatch, num_regions - begin);
     ParallelFor(size, options.num_threads, [&](int item) {
       const int i = begin + item;
-      statuses[i] = TrainRegion(normalised, regions[i], learning_rows, rows, options, cancellation,
+      statuses[i] = TrainRegion(normalized, regions[i], learning_rows, rows, options, cancellation,
                                 &p.regions[i]);
     });
     PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(begin + size) / num_regions));
@@ -198,7 +198,7 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
     return absl::Status(statuses[i].code(),
                         absl::StrCat("region ", i, ": ", statuses[i].message()));
   }
-  p.inputs = normalised(rows, Eigen::all);
+  p.inputs = normalized(rows, Eigen::all);
   return RegionalGp(std::move(p));
 }
 

@@ -62,7 +62,7 @@ absl::StatusOr<GpRegression> TrainRidgeGp(const Eigen::Ref<const Eigen::MatrixXd
   const auto n = static_cast<double>(inputs.rows());
   Eigen::MatrixXd x = inputs.rowwise() - inputs.colwise().mean();
   const Eigen::MatrixXd y = outputs.rowwise() - outputs.colwise().mean();
-  x /= PositiveRoot(x.squaredNorm() / n);  // as Condition normalises inputs and outputs
+  x /= PositiveRoot(x.squaredNorm() / n);  // as Condition normalizes inputs and outputs
   const double output_scale = PositiveRoot(y.squaredNorm() / static_cast<double>(y.size()));
   Eigen::MatrixXd gram = x * x.transpose();
   const double noise = options.penalty * n;

@@ -19,9 +19,9 @@ void FixSigns(Eigen::MatrixXd& basis, Eigen::MatrixXd& partner) {
   }
 }
 
-// (X - 1 m^T)(X - 1 m^T)^T from X X^T: no centred copy of a matrix that may be the largest thing in
-// memory.
-Eigen::MatrixXd CentredGram(const Eigen::Ref<const Eigen::MatrixXd>& data) {
+// (X - 1 m^T)(X - 1 m^T)^T from X X^T: no centered copy of a matrix that may be the largest thing
+// in memory.
+Eigen::MatrixXd CenteredGram(const Eigen::Ref<const Eigen::MatrixXd>& data) {
   Eigen::MatrixXd gram = data * data.transpose();
   const Eigen::VectorXd row_means = gram.rowwise().mean();
   const double mean = row_means.mean();
@@ -38,10 +38,10 @@ PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
   PrincipalComponents pca;
   pca.mean = data.colwise().mean().transpose();
   const bool by_rows = data.rows() <= data.cols();
-  Eigen::MatrixXd centred;  // of tall matrices only
-  if (!by_rows) centred = data.rowwise() - pca.mean.transpose();
+  Eigen::MatrixXd centered;  // of tall matrices only
+  if (!by_rows) centered = data.rowwise() - pca.mean.transpose();
   const Eigen::MatrixXd gram =
-      by_rows ? CentredGram(data) : Eigen::MatrixXd(centred.transpose() * centred);
+      by_rows ? CenteredGram(data) : Eigen::MatrixXd(centered.transpose() * centered);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
   const Eigen::VectorXd values = solver.eigenvalues().reverse().cwiseMax(0);
   const double total = values.sum();
@@ -55,14 +55,14 @@ PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
   pca.kept_energy = total > 0 ? energy / total : 1;
   const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse().leftCols(rank);
   const Eigen::VectorXd lengths = values.head(rank).cwiseSqrt();
-  if (by_rows) {  // left singular vectors: basis = centred^T U / sigma
+  if (by_rows) {  // left singular vectors: basis = centered^T U / sigma
     pca.scores = vectors * lengths.asDiagonal();
     pca.basis = data.transpose() * vectors;
     pca.basis -= pca.mean * vectors.colwise().sum();
     pca.basis *= lengths.cwiseInverse().asDiagonal();
   } else {
     pca.basis = vectors;
-    pca.scores = centred * vectors;
+    pca.scores = centered * vectors;
   }
   FixSigns(pca.basis, pca.scores);
   return pca;

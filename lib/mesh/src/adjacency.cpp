@@ -6,7 +6,7 @@
 namespace pleat {
 
 VertexAdjacency::VertexAdjacency(const Topology& topology) {
-  std::vector<std::pair<int32_t, int32_t>> pairs;  // (vertex, neighbour), both directions
+  std::vector<std::pair<int32_t, int32_t>> pairs;  // (vertex, neighbor), both directions
   pairs.reserve(2 * static_cast<size_t>(topology.num_corners()));
   for (int f = 0; f < topology.num_faces(); ++f) {
     const std::span<const int32_t> corners = topology.face(f);

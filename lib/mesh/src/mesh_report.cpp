@@ -34,7 +34,7 @@ class DisjointSets {
 };
 
 void CountEdges(const Topology& topology, MeshReport* report) {
-  // low vertex, high vertex, direction; equal edges are neighbours after sorting.
+  // low vertex, high vertex, direction; equal edges are neighbors after sorting.
   std::vector<std::tuple<int32_t, int32_t, bool>> edges;
   edges.reserve(static_cast<size_t>(topology.num_corners()));
   for (int f = 0; f < topology.num_faces(); ++f) {

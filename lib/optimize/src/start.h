@@ -1,4 +1,4 @@
-// The common entry of both optimisers.
+// The common entry of both optimizers.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace pleat {
 
-// Evaluates `objective` at the start; an error when nothing can be minimised from there.
+// Evaluates `objective` at the start; an error when nothing can be minimized from there.
 inline absl::Status EvaluateStart(Objective& objective, const Eigen::VectorXd& start,
                                   const Progress& progress, double* value,
                                   Eigen::VectorXd* gradient) {

@@ -71,7 +71,7 @@ absl::StatusOr<TriangleSoup> BuildBodyMesh(const CharacterShape& shape, int num_
   const auto [low, high] = shape.bounds();
   PLEAT_ASSIGN_OR_RETURN(TriangleSoup soup,
                          ExtractIsosurface(options.distance, low, high, kGridSpacing,
-                                           progress.Stage("polygonise", 0, .3)));
+                                           progress.Stage("polygonize", 0, .3)));
   double edge_length = EdgeLengthFor(shape, soup, num_vertices);
   options.edge_length = [&](const Vector3d& p) {
     return edge_length * shape.RelativeEdgeLength(p);

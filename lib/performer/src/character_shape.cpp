@@ -36,11 +36,11 @@ ShapePart Capsule(const Vector3d& a, const Vector3d& b, double radius_a, double 
   return part;
 }
 
-ShapePart Ellipsoid(const Vector3d& centre, const Vector3d& radii, double blend,
+ShapePart Ellipsoid(const Vector3d& center, const Vector3d& radii, double blend,
                     const Eigen::Matrix3d& axes = Eigen::Matrix3d::Identity()) {
   ShapePart part;
   part.kind = ShapePart::Kind::kEllipsoid;
-  part.a = part.b = centre;
+  part.a = part.b = center;
   part.radii = radii;
   part.axes = axes;
   part.blend = blend;
@@ -101,15 +101,15 @@ double SkirtShape::Radius(double theta, double s) const {
 Vector3d SkirtShape::Point(double theta, double s) const {
   const double radius = Radius(theta, s);
   return {radius * std::sin(theta), waist_y + s * (hem_y - waist_y),
-          centre_z + radius * std::cos(theta)};
+          center_z + radius * std::cos(theta)};
 }
 
 double SkirtShape::Distance(const Vector3d& p) const {
   const double above = p.y() - waist_y, below = hem_y - p.y();
-  const double radial = std::hypot(p.x(), p.z() - centre_z);
+  const double radial = std::hypot(p.x(), p.z() - center_z);
   const double far = std::max({above, below, radial - 1.2 * hem_radii.maxCoeff()});
   if (far > .05) return far;  // away from the surface any lower bound serves
-  const double theta = std::atan2(p.x(), p.z() - centre_z);
+  const double theta = std::atan2(p.x(), p.z() - center_z);
   const double s = Fraction(p.y());
   const double radius = Radius(theta, s);
   const double outer = .92 * (radial - radius);  // .92: cosine of the mean flare
@@ -238,8 +238,8 @@ double CharacterShape::SkirtShare(const Vector3d& p) const {
   if (s <= 0 || s > 1.2) return 0;
   const double on_skirt = 1 - Smoothstep(.006, .012, std::abs(skirt_.Distance(p)));
   if (on_skirt <= 0) return 0;
-  const double radial = std::hypot(p.x(), p.z() - skirt_.centre_z);
-  const double theta = std::atan2(p.x(), p.z() - skirt_.centre_z);
+  const double radial = std::hypot(p.x(), p.z() - skirt_.center_z);
+  const double theta = std::atan2(p.x(), p.z() - skirt_.center_z);
   const double across = radial / skirt_.Radius(theta, s);
   return on_skirt * Smoothstep(.002, .035, LegDistance(p)) * Smoothstep(.30, .92, across);
 }

@@ -24,9 +24,9 @@ struct ShapePart {
   double Distance(const Eigen::Vector3d& p) const;
 };
 
-// The bell of the skirt. theta = atan2(x, z - centre_z), s = 0 at the waist .. 1 at the hem.
+// The bell of the skirt. theta = atan2(x, z - center_z), s = 0 at the waist .. 1 at the hem.
 struct SkirtShape {
-  double waist_y = .605, hem_y = .335, centre_z = -.010;
+  double waist_y = .605, hem_y = .335, center_z = -.010;
   Eigen::Vector2d waist_radii{.074, .060}, hem_radii{.165, .155};  // x, z
   double bell = .75;  // exponent of the flare along s: under 1 swells at the hips
   int num_folds = 9;

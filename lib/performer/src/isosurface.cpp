@@ -1,6 +1,6 @@
 // Marching tetrahedra (Doi and Koide 1991) on the Freudenthal subdivision of a regular grid: six
 // tetrahedra per cell, each a monotone path of corners from 000 to 111, alike in every cell, so
-// neighbouring cells share their faces' diagonals.
+// neighboring cells share their faces' diagonals.
 #include "isosurface.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Polygonisation of an implicit surface by marching tetrahedra.
+// Polygonization of an implicit surface by marching tetrahedra.
 #pragma once
 
 #include <Eigen/Core>

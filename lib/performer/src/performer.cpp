@@ -41,7 +41,7 @@ absl::Status Validate(const PerformerOptions& options) {
   return absl::OkStatus();
 }
 
-// Everything in metres and turned to the wanted facing.
+// Everything in meters and turned to the wanted facing.
 struct Stage {
   double height_m;
   Eigen::Quaterniond facing;
@@ -86,7 +86,7 @@ class SkirtDetail {
   }
   const std::vector<int>& vertices() const { return vertices_; }
 
-  // grid: 3 x P, body heights, unturned world axes. positions: 3 x V, metres.
+  // grid: 3 x P, body heights, unturned world axes. positions: 3 x V, meters.
   void Add(const Eigen::Matrix3Xf& grid, const Stage& stage, Eigen::Matrix3Xd* positions) const {
     for (size_t i = 0; i < vertices_.size(); ++i) {
       Eigen::Vector3d displacement = Eigen::Vector3d::Zero();

@@ -92,12 +92,12 @@ Bearing MotionGenerator::Walk(double time_s, double phase) const {
   b.chest_pitch = .02 * sway_(time_s);
   b.head_yaw = .9 * b.pelvis_yaw + .25 * look_(time_s);
   b.head_pitch = .06 * lean_(time_s + 1);
-  const double vigour = 1 + .3 * energy_(time_s);
+  const double vigor = 1 + .3 * energy_(time_s);
   for (int side = 0; side < 2; ++side) {
     const double sign = side == 0 ? 1 : -1;
-    b.arm_flexion[side] = -.36 * sign * vigour * std::cos(phase) + .05 * reach_[side](time_s);
+    b.arm_flexion[side] = -.36 * sign * vigor * std::cos(phase) + .05 * reach_[side](time_s);
     b.arm_abduction[side] = .02 + .05 * raise_[side](time_s);
-    b.elbow[side] = .26 - .14 * sign * vigour * std::cos(phase) + .08 * bend_[side](time_s);
+    b.elbow[side] = .26 - .14 * sign * vigor * std::cos(phase) + .08 * bend_[side](time_s);
   }
   return b;
 }

@@ -85,7 +85,7 @@ class Remesher {
   Vector3d AreaNormal(const Triangle& t) const {
     return (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
   }
-  std::vector<int> Neighbours(int v) const {
+  std::vector<int> Neighbors(int v) const {
     std::vector<int> ring;
     for (int t : vertex_triangles_[v]) {
       for (int u : triangles_[t]) {
@@ -162,7 +162,7 @@ void Remesher::Collapse(int a, int b) {
   const std::array<int, 2> sides = EdgeTriangles(a, b);
   if (sides[0] < 0 || sides[1] < 0) return;
   // Link condition (Dey et al. 1999): the ends share exactly the two opposite vertices.
-  const std::vector<int> ring_a = Neighbours(a), ring_b = Neighbours(b);
+  const std::vector<int> ring_a = Neighbors(a), ring_b = Neighbors(b);
   std::vector<int> common;
   std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
                         std::back_inserter(common));

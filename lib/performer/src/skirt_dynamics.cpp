@@ -25,7 +25,7 @@ constexpr double kAirDrag = .6;           // 1/s, against still air
 constexpr double kLegMargin = .015;       // cloth over skin, body heights
 constexpr double kStep_s = 1. / 400;      // longest substep
 
-// Catmull-Rom weights of four neighbours at fraction u.
+// Catmull-Rom weights of four neighbors at fraction u.
 std::array<double, 4> CubicWeights(double u) {
   return {((-.5 * u + 1) * u - .5) * u, (1.5 * u - 2.5) * u * u + 1, ((-1.5 * u + 2) * u + .5) * u,
           (.5 * u - .5) * u * u};
@@ -182,7 +182,7 @@ absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SkirtDynamics::Simulate(const Pose
 
 SkirtSample SkirtDynamics::Locate(const Vector3d& rest_point) const {
   const SkirtShape& skirt = shape_.skirt();
-  const double theta = std::atan2(rest_point.x(), rest_point.z() - skirt.centre_z);
+  const double theta = std::atan2(rest_point.x(), rest_point.z() - skirt.center_z);
   const double along = theta / (2 * std::numbers::pi) * kNumStrands;
   const double down = std::clamp(skirt.Fraction(rest_point.y()), 0.0, 1.0) * (kNumRings - 1);
   const double strand = std::floor(along);

@@ -21,7 +21,7 @@ Camera Camera::Fit(const ViewOptions& view, const Eigen::Ref<const Eigen::Matrix
           .toRotationMatrix();
   const Eigen::Matrix3Xd local = camera.camera_from_world_ * points;
   const Eigen::Vector3d low = local.rowwise().minCoeff(), high = local.rowwise().maxCoeff();
-  camera.centre_ = camera.camera_from_world_.transpose() * ((low + high) / 2);
+  camera.center_ = camera.camera_from_world_.transpose() * ((low + high) / 2);
   const double free = 1 - 2 * view.margin;
   const Eigen::Vector2d room(free * view.width, free * view.height);
   const Eigen::Vector2d extent = (high - low).head<2>().cwiseMax(1e-9);
@@ -30,12 +30,12 @@ Camera Camera::Fit(const ViewOptions& view, const Eigen::Ref<const Eigen::Matrix
     // Pixels = focal * x / (distance - z): the nearest points need the most room.
     const double focal = std::min(view.width, view.height) / 2. /
                          std::tan(view.field_of_view_degrees / 2 * kRadians);
-    const Eigen::Matrix3Xd centred = local.colwise() - (low + high) / 2;
+    const Eigen::Matrix3Xd centered = local.colwise() - (low + high) / 2;
     double distance = 1e-9;
-    for (int i = 0; i < centred.cols(); ++i) {
+    for (int i = 0; i < centered.cols(); ++i) {
       for (int axis = 0; axis < 2; ++axis) {
-        distance = std::max(distance,
-                            focal * std::abs(centred(axis, i)) / (room[axis] / 2) + centred(2, i));
+        distance = std::max(
+            distance, focal * std::abs(centered(axis, i)) / (room[axis] / 2) + centered(2, i));
       }
     }
     camera.distance_ = std::max(distance, (high - low).norm());
@@ -45,7 +45,7 @@ Camera Camera::Fit(const ViewOptions& view, const Eigen::Ref<const Eigen::Matrix
 }
 
 Eigen::Vector3d Camera::Project(const Eigen::Vector3d& world) const {
-  const Eigen::Vector3d local = camera_from_world_ * (world - centre_);
+  const Eigen::Vector3d local = camera_from_world_ * (world - center_);
   double scale = scale_, depth = -local.z();
   if (view_.projection == Projection::kPerspective) {
     const double away = std::max(distance_ - local.z(), 1e-3 * distance_);
@@ -58,7 +58,7 @@ Eigen::Vector3d Camera::Project(const Eigen::Vector3d& world) const {
 Eigen::Vector3d Camera::ToViewer(const Eigen::Vector3d& world) const {
   const Eigen::Vector3d back = camera_from_world_.row(2).transpose();
   if (view_.projection == Projection::kOrthographic) return back;
-  return (centre_ + distance_ * back - world).normalized();
+  return (center_ + distance_ * back - world).normalized();
 }
 
 }  // namespace pleat

@@ -31,18 +31,18 @@ absl::Status CheckTiles(const std::vector<SheetTile>& tiles, const ContactSheetO
         tile.triangles != nullptr && num_vertices > 0 &&
         (tile.triangles->size() == 0 ||
          (tile.triangles->minCoeff() >= 0 && tile.triangles->maxCoeff() < num_vertices)) &&
-        (tile.vertex_colours.empty() ||
-         static_cast<Eigen::Index>(tile.vertex_colours.size()) == num_vertices);
+        (tile.vertex_colors.empty() ||
+         static_cast<Eigen::Index>(tile.vertex_colors.size()) == num_vertices);
     if (!fits) {
       return absl::InvalidArgumentError(absl::StrCat(
-          "contact sheet: positions, triangles and colours of tile ", i, " do not fit together"));
+          "contact sheet: positions, triangles and colors of tile ", i, " do not fit together"));
     }
   }
   return absl::OkStatus();
 }
 
 // All tiles in the places where they will be drawn, 3 x (sum of V).
-Eigen::Matrix3Xd PlaceTiles(const std::vector<SheetTile>& tiles, bool centre,
+Eigen::Matrix3Xd PlaceTiles(const std::vector<SheetTile>& tiles, bool center,
                             std::vector<Eigen::Vector3d>* shifts) {
   Eigen::Index total = 0;
   for (const SheetTile& tile : tiles) total += tile.positions.cols();
@@ -50,7 +50,7 @@ Eigen::Matrix3Xd PlaceTiles(const std::vector<SheetTile>& tiles, bool centre,
   Eigen::Index column = 0;
   for (const SheetTile& tile : tiles) {
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-    if (centre) {
+    if (center) {
       shift = -ComputeBounds(tile.positions).center();
       shift.y() = 0;  // heights above the floor stay comparable
     }
@@ -89,7 +89,7 @@ Layout PlanLayout(int num_tiles, const ContactSheetOptions& options) {
 Image RenderTile(const SheetTile& tile, const Eigen::Vector3d& shift, const Camera& camera,
                  std::optional<double> floor_y) {
   RenderOptions render;
-  render.vertex_colours = tile.vertex_colours;
+  render.vertex_colors = tile.vertex_colors;
   render.shading = tile.shading;
   render.floor_y = floor_y;
   render.skeleton = tile.skeleton;
@@ -123,7 +123,7 @@ absl::StatusOr<Image> RenderContactSheet(const std::vector<SheetTile>& tiles,
   const int num_tiles = static_cast<int>(tiles.size());
   const Layout layout = PlanLayout(num_tiles, options);
   std::optional<Image> legend;
-  if (options.legend) legend = DrawColourLegend(*options.legend, std::min(layout.width, 420));
+  if (options.legend) legend = DrawColorLegend(*options.legend, std::min(layout.width, 420));
   const int height = layout.height + (legend ? legend->height() : 0);
   if (layout.width > Image::kMaxSide || height > Image::kMaxSide) {
     return absl::InvalidArgumentError(absl::StrCat("contact sheet: ", layout.width, " x ", height,
@@ -132,7 +132,7 @@ absl::StatusOr<Image> RenderContactSheet(const std::vector<SheetTile>& tiles,
   }
 
   std::vector<Eigen::Vector3d> shifts;
-  const Eigen::Matrix3Xd all = PlaceTiles(tiles, options.centre_tiles, &shifts);
+  const Eigen::Matrix3Xd all = PlaceTiles(tiles, options.center_tiles, &shifts);
   const Camera camera = Camera::Fit(options.view, all);
   std::optional<double> floor_y;
   if (options.floor) floor_y = all.row(1).minCoeff();

@@ -14,7 +14,7 @@ namespace pleat {
 namespace {
 
 constexpr Rgb kInk{40, 40, 40}, kGrid{228, 228, 228}, kAxis{120, 120, 120};
-// Okabe and Ito (2008): told apart by colour-blind readers, too.
+// Okabe and Ito (2008): told apart by color-blind readers, too.
 constexpr std::array<Rgb, 7> kPalette = {{{0, 114, 178},
                                           {213, 94, 0},
                                           {0, 158, 115},
@@ -74,7 +74,7 @@ class Plot {
 
   void DrawFrame(const LinePlotOptions& options);
   void DrawLegend(const std::vector<PlotSeries>& series);
-  void DrawSeries(const PlotSeries& series, double first_x, Rgb colour);
+  void DrawSeries(const PlotSeries& series, double first_x, Rgb color);
   Image Release() { return std::move(image_); }
 
  private:
@@ -123,15 +123,15 @@ void Plot::DrawLegend(const std::vector<PlotSeries>& series) {
   }
 }
 
-void Plot::DrawSeries(const PlotSeries& series, double first_x, Rgb colour) {
+void Plot::DrawSeries(const PlotSeries& series, double first_x, Rgb color) {
   const std::vector<double>& values = series.values;
   for (size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
     const double x = X(first_x + static_cast<double>(i)), y = Y(values[i]);
     const bool follows = i > 0 && std::isfinite(values[i - 1]);
     const bool leads = i + 1 < values.size() && std::isfinite(values[i + 1]);
-    if (follows) image_.DrawLine(X(first_x + i - 1.), Y(values[i - 1]), x, y, 1.5, colour);
-    if (!follows && !leads) image_.DrawDot(x, y, 2, colour);
+    if (follows) image_.DrawLine(X(first_x + i - 1.), Y(values[i - 1]), x, y, 1.5, color);
+    if (!follows && !leads) image_.DrawDot(x, y, 2, color);
   }
 }
 

@@ -32,7 +32,7 @@ int TextWidth(std::string_view text, int scale) {
   return stb_easy_font_width(printable.data()) * scale;
 }
 
-void DrawText(Image* image, int left, int top, std::string_view text, int scale, Rgb colour) {
+void DrawText(Image* image, int left, int top, std::string_view text, int scale, Rgb color) {
   struct Corner {
     float x, y, z;
     unsigned char rgba[4];
@@ -48,7 +48,7 @@ void DrawText(Image* image, int left, int top, std::string_view text, int scale,
     const int x1 = static_cast<int>(std::lround(high.x));
     const int y1 = static_cast<int>(std::lround(high.y));
     image->FillRectangle(left + x0 * scale, top + y0 * scale, (x1 - x0) * scale, (y1 - y0) * scale,
-                         colour);
+                         color);
   }
 }
 

@@ -50,7 +50,7 @@ Eigen::Matrix3Xd PlaceAllJoints(const SphereGraph& graph, const SearchTree& tree
   Eigen::Matrix3Xd joints(3, kNumHumanJoints);
   for (size_t j = 0; j < tree.size(); ++j) {
     if (tree[j].parent < 0) {
-      joints.col(tree[j].human_joint) = graph.sphere(spheres[j]).centre;
+      joints.col(tree[j].human_joint) = graph.sphere(spheres[j]).center;
       continue;
     }
     const Eigen::Matrix3Xd points =
@@ -174,8 +174,8 @@ double MeasuredYaw(const SphereGraph& graph, const FacingSearch& facing) {
   for (size_t j = 0; j < facing.tree.size(); ++j) {
     const int mirror = facing.tree[j].mirror;
     if (mirror <= static_cast<int>(j)) continue;  // the left one comes first
-    right_to_left += graph.sphere(facing.found->spheres[j]).centre -
-                     graph.sphere(facing.found->spheres[mirror]).centre;
+    right_to_left += graph.sphere(facing.found->spheres[j]).center -
+                     graph.sphere(facing.found->spheres[mirror]).center;
   }
   const double yaw = std::atan2(-right_to_left.z(), right_to_left.x()) * kDegrees;
   return yaw < 0 ? yaw + 360 : yaw;

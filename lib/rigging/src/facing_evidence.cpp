@@ -11,7 +11,7 @@
 namespace pleat {
 namespace {
 
-// Shares of the lower leg's length, from the knee: the two stretches whose centres give its line,
+// Shares of the lower leg's length, from the knee: the two stretches whose centers give its line,
 // and where the foot begins.
 constexpr double kShankBegin = .3, kShankMiddle = .6, kShankEnd = .85, kFootBegin = .97;
 constexpr int kMinBoneVertices = 12;
@@ -42,7 +42,7 @@ struct Centroid {
   Eigen::Vector3d mean() const { return sum / area; }
 };
 
-// How far the foot's centre lies before the line of its lower leg, metres; 0 without a foot.
+// How far the foot's center lies before the line of its lower leg, meters; 0 without a foot.
 double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
                   const std::vector<int>& bones, const FacingHypothesis& hypothesis,
                   const Leg& leg) {
@@ -57,13 +57,13 @@ double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
     if (bone != leg.ankle && bone != leg.toes) continue;
     const Eigen::Vector3d a = positions.col(corners[0]);
     const Eigen::Vector3d b = positions.col(corners[1]), c = positions.col(corners[2]);
-    const Eigen::Vector3d centre = (a + b + c) / 3;
+    const Eigen::Vector3d center = (a + b + c) / 3;
     const double area = (b - a).cross(c - a).norm();
-    const double along = (centre - knee).dot(shank) / (length * length);
+    const double along = (center - knee).dot(shank) / (length * length);
     if (along > kFootBegin) {
-      foot.Add(centre, area);
+      foot.Add(center, area);
     } else if (along > kShankBegin && along < kShankEnd) {
-      (along < kShankMiddle ? upper : lower).Add(centre, area);
+      (along < kShankMiddle ? upper : lower).Add(center, area);
     }
   }
   if (!(upper.area > 0 && lower.area > 0 && foot.area > 0)) return 0;

@@ -31,8 +31,8 @@ SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) 
   for (int i = 0; i < graph.size(); ++i) {
     if (group[i] != best_group) continue;
     index[i] = static_cast<int>(spheres.size());
-    spheres.push_back({turn * graph.sphere(i).centre, graph.sphere(i).radius});
-    for (int j : graph.neighbours(i)) {
+    spheres.push_back({turn * graph.sphere(i).center, graph.sphere(i).radius});
+    for (int j : graph.neighbors(i)) {
       if (j < i) edges.push_back({index[j], index[i]});
     }
   }
@@ -48,7 +48,7 @@ std::vector<char> ComponentsAround(const SphereGraph& graph, const SolidSurface&
     if (known != 0) continue;
     const Eigen::Vector3d corner = positions.col(surface.triangles(0, f));
     known = std::any_of(graph.spheres().begin(), graph.spheres().end(), [&](const Sphere& sphere) {
-      return (sphere.centre - corner).norm() < 1.5 * sphere.radius + spacing;
+      return (sphere.center - corner).norm() < 1.5 * sphere.radius + spacing;
     });
   }
   return is_body;

@@ -8,7 +8,7 @@
 namespace pleat {
 namespace {
 
-constexpr double kOppositeCosine = -0.7;  // neighbours that far apart make a limb, not its end
+constexpr double kOppositeCosine = -0.7;  // neighbors that far apart make a limb, not its end
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double Square(double x) { return x * x; }
@@ -27,26 +27,26 @@ Eigen::Matrix3Xd PointsAlongPath(const SphereGraph& graph, const std::vector<int
                                  const std::vector<double>& fractions) {
   double total = 0;
   for (size_t i = 1; i < path.size(); ++i) {
-    total += (graph.sphere(path[i]).centre - graph.sphere(path[i - 1]).centre).norm();
+    total += (graph.sphere(path[i]).center - graph.sphere(path[i - 1]).center).norm();
   }
   Eigen::Matrix3Xd points(3, fractions.size());
   size_t segment = 1;
   double before = 0;
   for (size_t k = 0; k < fractions.size(); ++k) {
     if (path.size() < 2) {
-      points.col(k) = graph.sphere(path[0]).centre;
+      points.col(k) = graph.sphere(path[0]).center;
       continue;
     }
     const double target = fractions[k] * total;
     double length = 0;
     for (;; ++segment) {
-      length = (graph.sphere(path[segment]).centre - graph.sphere(path[segment - 1]).centre).norm();
+      length = (graph.sphere(path[segment]).center - graph.sphere(path[segment - 1]).center).norm();
       if (before + length >= target || segment + 1 == path.size()) break;
       before += length;
     }
     const double share = length > 0 ? std::clamp((target - before) / length, 0.0, 1.0) : 1.0;
-    points.col(k) = (1 - share) * graph.sphere(path[segment - 1]).centre +
-                    share * graph.sphere(path[segment]).centre;
+    points.col(k) = (1 - share) * graph.sphere(path[segment - 1]).center +
+                    share * graph.sphere(path[segment]).center;
   }
   return points;
 }
@@ -75,12 +75,12 @@ PenaltyModel::PenaltyModel(const SphereGraph& graph, const SearchTree& tree, dou
   }
 }
 
-// The shape goes on behind a sphere with neighbours on opposite sides of it.
+// The shape goes on behind a sphere with neighbors on opposite sides of it.
 bool PenaltyModel::IsExtremity(int sphere) const {
   std::vector<Eigen::Vector3d> directions;
-  for (int i : graph_.neighbours(sphere)) {
+  for (int i : graph_.neighbors(sphere)) {
     const Eigen::Vector3d direction =
-        (graph_.sphere(i).centre - graph_.sphere(sphere).centre).normalized();
+        (graph_.sphere(i).center - graph_.sphere(sphere).center).normalized();
     for (const Eigen::Vector3d& other : directions) {
       if (direction.dot(other) < kOppositeCosine) return false;
     }
@@ -91,7 +91,7 @@ bool PenaltyModel::IsExtremity(int sphere) const {
 
 double PenaltyModel::LocalDirection(const SearchJoint& joint, const std::vector<int>& path) const {
   const Eigen::Matrix3Xd points = PointsAlongPath(graph_, path, joint.fractions);
-  Eigen::Vector3d start = graph_.sphere(path[0]).centre;
+  Eigen::Vector3d start = graph_.sphere(path[0]).center;
   double mismatch = 0;
   for (size_t k = 0; k < joint.chain.size(); ++k) {
     mismatch += joint.bone_lengths[k] / joint.length *
@@ -104,12 +104,12 @@ double PenaltyModel::LocalDirection(const SearchJoint& joint, const std::vector<
 double PenaltyModel::LeafPenalty(int sphere, int parent_sphere,
                                  const std::vector<int>& path) const {
   if (path.size() < 2) return 1;
-  const Eigen::Vector3d& centre = graph_.sphere(sphere).centre;
-  const Eigen::Vector3d arriving = centre - graph_.sphere(path[path.size() - 2]).centre;
+  const Eigen::Vector3d& center = graph_.sphere(sphere).center;
+  const Eigen::Vector3d arriving = center - graph_.sphere(path[path.size() - 2]).center;
   const double length = graph_.PathLength(parent_sphere, sphere);
-  for (int i : graph_.neighbours(sphere)) {
+  for (int i : graph_.neighbors(sphere)) {
     if (graph_.PathLength(parent_sphere, i) > length &&
-        arriving.dot(graph_.sphere(i).centre - centre) > 0) {
+        arriving.dot(graph_.sphere(i).center - center) > 0) {
       return 1;
     }
   }
@@ -129,11 +129,11 @@ double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
   double cost = weights.length * (0.5 * Square(std::max(0.0, 1 / natural - 1)) +
                                   2 * Square(std::max(0.0, natural - 1.15)));
   cost += weights.direction *
-          DirectionMismatch(graph_.sphere(sphere).centre - graph_.sphere(parent_sphere).centre,
+          DirectionMismatch(graph_.sphere(sphere).center - graph_.sphere(parent_sphere).center,
                             joint.position - tree_[joint.parent].position);
   if (joint.is_foot) {
     const Sphere& foot = graph_.sphere(sphere);
-    const double height = (foot.centre.y() - foot.radius - floor_height_) / body_size_;
+    const double height = (foot.center.y() - foot.radius - floor_height_) / body_size_;
     cost += weights.foot_height * Square(std::max(0.0, height) / 0.1);
   }
   if (sphere == parent_sphere) cost += weights.same_sphere;
@@ -173,12 +173,12 @@ double PenaltyModel::ContextPenalty(const PlacementContext& context, int sphere)
   if (context.joint == 0) return 0;
   const PenaltyWeights& weights = options_.weights;
   const double length = graph_.PathLength(context.parent_sphere, sphere);
-  const Eigen::Vector3d& centre = graph_.sphere(sphere).centre;
+  const Eigen::Vector3d& center = graph_.sphere(sphere).center;
   double cost = 0;
   for (const PlacementContext::Other& other : context.others) {
     if (other.is_sibling) {
       cost += weights.direction *
-              DirectionMismatch(centre - graph_.sphere(other.sphere).centre, other.template_offset);
+              DirectionMismatch(center - graph_.sphere(other.sphere).center, other.template_offset);
     }
     const double along = other.length_to_parent + length;
     const double in_body = graph_.PathLength(other.sphere, sphere);
@@ -189,7 +189,7 @@ double PenaltyModel::ContextPenalty(const PlacementContext& context, int sphere)
     for (int i = sphere; i != context.parent_sphere;) {
       const int before = graph_.Predecessor(context.parent_sphere, i);
       if (context.is_used[i]) {
-        shared += (graph_.sphere(i).centre - graph_.sphere(before).centre).norm();
+        shared += (graph_.sphere(i).center - graph_.sphere(before).center).norm();
       }
       i = before;
     }

@@ -46,7 +46,7 @@ class RefinementObjective {
     }
     double energy = 0;
     for (int b = 1; b < kNumHumanJoints; ++b) {
-      energy += Centring(joints, b, hessian, gradient);
+      energy += Centering(joints, b, hessian, gradient);
       energy += Shape(joints, b, hessian, gradient);
     }
     return energy + Proportions(joints, hessian, gradient);
@@ -59,8 +59,8 @@ class RefinementObjective {
     return b == kLeftUpperLeg || b == kRightUpperLeg || b == kLeftUpperArm || b == kRightUpperArm;
   }
 
-  double Centring(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
-                  Eigen::VectorXd* gradient) const {
+  double Centering(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
+                   Eigen::VectorXd* gradient) const {
     const Eigen::Vector3d direction = (joints.col(b) - joints.col(Parent(b))).normalized();
     Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
     if (!IsLeaf(b)) across -= direction * direction.transpose();
@@ -76,7 +76,7 @@ class RefinementObjective {
       const MedialSample& sample = cloud_.samples[nearest];
       const double clarity = std::min(1.0, options_.limb_radius / sample.depth);
       const Eigen::Matrix3d metric =
-          options_.centring / options_.samples_per_bone * clarity * clarity * across;
+          options_.centering / options_.samples_per_bone * clarity * clarity * across;
       const Eigen::Vector3d residual = point - sample.position;
       energy += residual.dot(metric * residual);
       if (!hessian) continue;

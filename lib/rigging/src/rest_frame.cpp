@@ -48,9 +48,9 @@ std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
         Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 0)}) {
     turns.push_back(TurnToY(up));
   }
-  const Eigen::Matrix3Xd centred =
+  const Eigen::Matrix3Xd centered =
       volume.surface.positions.colwise() - volume.surface.positions.rowwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centred * centred.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centered * centered.transpose());
   for (int k = 2; k >= 0; --k) {
     turns.push_back(TurnToY(axes.eigenvectors().col(k)));
     turns.push_back(TurnToY(-axes.eigenvectors().col(k)));

@@ -9,10 +9,10 @@ namespace pleat {
 namespace {
 
 bool IsGabrielEmpty(const std::vector<Sphere>& spheres, size_t i, size_t j) {
-  const Eigen::Vector3d middle = 0.5 * (spheres[i].centre + spheres[j].centre);
-  const double squared_reach = (spheres[i].centre - middle).squaredNorm();
+  const Eigen::Vector3d middle = 0.5 * (spheres[i].center + spheres[j].center);
+  const double squared_reach = (spheres[i].center - middle).squaredNorm();
   for (size_t k = 0; k < spheres.size(); ++k) {
-    if (k != i && k != j && (spheres[k].centre - middle).squaredNorm() < squared_reach) {
+    if (k != i && k != j && (spheres[k].center - middle).squaredNorm() < squared_reach) {
       return false;
     }
   }
@@ -22,29 +22,29 @@ bool IsGabrielEmpty(const std::vector<Sphere>& spheres, size_t i, size_t j) {
 }  // namespace
 
 SphereGraph::SphereGraph(std::vector<Sphere> spheres, const DistanceField& field)
-    : spheres_(std::move(spheres)), neighbours_(spheres_.size()) {
+    : spheres_(std::move(spheres)), neighbors_(spheres_.size()) {
   for (size_t i = 0; i < spheres_.size(); ++i) {
     for (size_t j = i + 1; j < spheres_.size(); ++j) {
       const Sphere &a = spheres_[i], &b = spheres_[j];
-      const double length = (a.centre - b.centre).norm();
+      const double length = (a.center - b.center).norm();
       const bool overlap = length < a.radius + b.radius;
       if (!overlap &&
           !(IsGabrielEmpty(spheres_, i, j) &&
-            field.MaxAlongSegment(a.centre, b.centre) <= -0.5 * std::min(a.radius, b.radius))) {
+            field.MaxAlongSegment(a.center, b.center) <= -0.5 * std::min(a.radius, b.radius))) {
         continue;
       }
-      neighbours_[i].push_back(static_cast<int>(j));
-      neighbours_[j].push_back(static_cast<int>(i));
+      neighbors_[i].push_back(static_cast<int>(j));
+      neighbors_[j].push_back(static_cast<int>(i));
     }
   }
   ComputeShortestPaths();
 }
 
 SphereGraph::SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pair<int, int>>& edges)
-    : spheres_(std::move(spheres)), neighbours_(spheres_.size()) {
+    : spheres_(std::move(spheres)), neighbors_(spheres_.size()) {
   for (const auto& [i, j] : edges) {
-    neighbours_[i].push_back(j);
-    neighbours_[j].push_back(i);
+    neighbors_[i].push_back(j);
+    neighbors_[j].push_back(i);
   }
   ComputeShortestPaths();
 }
@@ -62,8 +62,8 @@ void SphereGraph::ComputeShortestPaths() {
       const auto [length, i] = queue.top();
       queue.pop();
       if (length > distances_(i, start)) continue;
-      for (int j : neighbours_[i]) {
-        const double through = length + (spheres_[i].centre - spheres_[j].centre).norm();
+      for (int j : neighbors_[i]) {
+        const double through = length + (spheres_[i].center - spheres_[j].center).norm();
         if (through < distances_(j, start)) {
           distances_(j, start) = through;
           predecessors_(j, start) = i;

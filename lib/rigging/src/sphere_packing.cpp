@@ -11,7 +11,7 @@ std::vector<Sphere> PackSpheres(std::vector<MedialSample> samples, int max_spher
   for (const MedialSample& sample : samples) {
     if (static_cast<int>(spheres.size()) >= max_spheres) break;
     const bool is_covered = std::any_of(spheres.begin(), spheres.end(), [&](const Sphere& sphere) {
-      return (sphere.centre - sample.position).squaredNorm() < sphere.radius * sphere.radius;
+      return (sphere.center - sample.position).squaredNorm() < sphere.radius * sphere.radius;
     });
     if (!is_covered) spheres.push_back({sample.position, sample.depth});
   }

@@ -134,7 +134,7 @@ absl::StatusOr<std::string> EncodeSmallest(const SequenceEncoder& encoder, const
   return best;
 }
 
-// Distance of neighbouring float32 numbers of that size.
+// Distance of neighboring float32 numbers of that size.
 double Ulp(double value) { return std::ldexp(1, std::ilogb(std::max(value, 1e-30)) - 23); }
 
 absl::StatusOr<std::string> EncodeForMaxError(const SequenceEncoder& encoder, const Extent& extent,

@@ -59,7 +59,7 @@ absl::Status ReadQuantization(ByteReader* reader, CompressedHeader* header) {
   PLEAT_ASSIGN_OR_RETURN(const uint8_t kind, reader->Read<uint8_t>("kind of residuals"));
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<float>(steps), "steps"));
   for (const float step : steps) {
-    if (!IsStep(step)) return absl::InvalidArgumentError("a quantisation step is out of range");
+    if (!IsStep(step)) return absl::InvalidArgumentError("a quantization step is out of range");
   }
   header->steps = {steps[0], steps[1], steps[2], steps[3]};
   if (kind > static_cast<uint8_t>(ResidualKind::kGrid)) {

@@ -17,7 +17,7 @@
 namespace pleat {
 namespace {
 
-// A side that a neighbouring face may still use, as the directed edge that this face would have.
+// A side that a neighboring face may still use, as the directed edge that this face would have.
 struct Gate {
   int from = 0, to = 0;
   int opposite = 0;  // a corner of the face behind it
@@ -187,7 +187,7 @@ class ConnectivityWalk {
   absl::Status CodeNewVertex(int before, int after, int opposite, int32_t* vertex) {
     if (free_vertices_.num_free() == 0) return Damaged();
     if (after < 0) after = before;
-    // The file's numbers of neighbours are near each other: the middle one of three.
+    // The file's numbers of neighbors are near each other: the middle one of three.
     const int guess =
         std::max(std::min(before, after), std::min(std::max(before, after), opposite));
     const int spread =
@@ -248,7 +248,7 @@ class ConnectivityWalk {
     return absl::OkStatus();
   }
 
-  // The rank of a free number: one of the neighbours of `near`, or a signed difference to `base`.
+  // The rank of a free number: one of the neighbors of `near`, or a signed difference to `base`.
   struct RankModel {
     IntegerModel<2> hits{{256, 16 * 4}, 1};
     int history = 0;

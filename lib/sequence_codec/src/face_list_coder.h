@@ -1,5 +1,5 @@
 // Polygons one after the other as a file lists them. Small where a file's vertices are numbered
-// about in the order in which its faces use them and its faces come in rows, as modelling programs
+// about in the order in which its faces use them and its faces come in rows, as modeling programs
 // write them; connectivity_coder.h is for files whose order says nothing. Any polygon soup is
 // accepted.
 #pragma once

@@ -42,7 +42,7 @@ class FieldWalk {
       SumNeighbors(v);
       if (!coder_->decoding() && !QuantizeRow(v)) {
         return absl::InvalidArgumentError(absl::StrCat("vertex ", v,
-                                                       " moves too far for a quantisation step of ",
+                                                       " moves too far for a quantization step of ",
                                                        step_ * 1e3, " mm; ask for a larger error"));
       }
       CodeRow(v);
@@ -55,7 +55,7 @@ class FieldWalk {
  private:
   uint8_t* Magnitudes(int v) { return magnitudes_.data() + static_cast<size_t>(v) * num_columns_; }
 
-  // around_[column] = magnitudes of that column at the coarser neighbours.
+  // around_[column] = magnitudes of that column at the coarser neighbors.
   void SumNeighbors(int v) {
     std::fill(around_.begin(), around_.end(), 0);
     for (const int n : hierarchy_.neighbors(v)) {

@@ -1,4 +1,4 @@
-// Functions on a mesh as quantised wavelet coefficients.
+// Functions on a mesh as quantized wavelet coefficients.
 #pragma once
 
 #include "absl/status/status.h"
@@ -14,7 +14,7 @@ namespace pleat {
 absl::Status CodeFields(const SurfaceHierarchy& hierarchy, float step, BinaryCoder* coder,
                         FieldMatrix* fields);
 
-// Where the two middle quantisation cells meet: |x| < (1 - kRounding) * step becomes 0. Below 1/2,
+// Where the two middle quantization cells meet: |x| < (1 - kRounding) * step becomes 0. Below 1/2,
 // because zeros are cheap.
 inline constexpr float kRounding = 0.35f;
 // Decoded magnitudes are this much nearer to zero than the middle of their cell, in steps: within a

@@ -20,7 +20,7 @@ struct LogisticTables {
   static const LogisticTables& Get();
 };
 
-// The probability of one decision in one context, learnt at two speeds.
+// The probability of one decision in one context, learned at two speeds.
 struct AdaptiveBit {
   uint16_t slow = BinaryCoder::kHalf, fast = BinaryCoder::kHalf;
   uint8_t count = 0;

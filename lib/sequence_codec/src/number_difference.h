@@ -1,4 +1,4 @@
-// Signed differences between numbers of vertices or faces: their length is modelled, and the two
+// Signed differences between numbers of vertices or faces: their length is modeled, and the two
 // bits below the highest one; the rest is noise. The last length tells how far numbers jump.
 #pragma once
 
@@ -21,11 +21,11 @@ class NumberDifference {
     if (length > 28) return kDamaged;
     last_length_ = std::min(length, 15);
     if (length <= 1) return length == 0 ? 0 : -1;
-    const int num_modelled = std::min(length - 1, 2), num_raw = length - 1 - num_modelled;
+    const int num_modeled = std::min(length - 1, 2), num_raw = length - 1 - num_modeled;
     const int place = std::min(length, 19);
-    int high = zigzag >> num_raw & ((1 << num_modelled) - 1);
-    high = mantissas_.CodeUnsigned(coder, high, {place * 8 + num_modelled, place}, 0);
-    if (high >= 1 << num_modelled) return kDamaged;
+    int high = zigzag >> num_raw & ((1 << num_modeled) - 1);
+    high = mantissas_.CodeUnsigned(coder, high, {place * 8 + num_modeled, place}, 0);
+    if (high >= 1 << num_modeled) return kDamaged;
     const int raw = static_cast<int>(
         coder->CodeBits(static_cast<uint32_t>(zigzag) & ((1u << num_raw) - 1), num_raw));
     const int decoded = 1 << (length - 1) | high << num_raw | raw;

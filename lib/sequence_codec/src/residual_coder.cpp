@@ -89,7 +89,7 @@ class ResidualWalk {
   }
 
   void CodeVertex(int v, Integers* q) {
-    int around = 0;  // of the coarser neighbours in this frame, and of the vertex one frame ago
+    int around = 0;  // of the coarser neighbors in this frame, and of the vertex one frame ago
     for (const int n : hierarchy_.neighbors(v)) around += now_[n];
     const int near =
         around * 16 / std::max<int>(3, 3 * static_cast<int>(hierarchy_.neighbors(v).size()));

@@ -9,7 +9,7 @@
 
 namespace pleat {
 
-// rest: 3 x V, metres; encoding reads it, both directions leave the decoded shape there.
+// rest: 3 x V, meters; encoding reads it, both directions leave the decoded shape there.
 absl::Status CodeRestShape(const Topology& topology, float step_m, BinaryCoder* coder,
                            Eigen::Matrix3Xf* rest);
 

@@ -16,7 +16,7 @@ constexpr int kNumAlignments = 3, kNumGramParts = 8;
 
 struct Alignment {
   std::vector<RigidTransform> poses;  // frame from rest
-  Eigen::Matrix3Xd rest;              // 3 x V, centred
+  Eigen::Matrix3Xd rest;              // 3 x V, centered
 };
 
 Eigen::Matrix3Xd Centered(const Eigen::Matrix3Xf& frame, Eigen::Vector3d* center) {
@@ -25,7 +25,7 @@ Eigen::Matrix3Xd Centered(const Eigen::Matrix3Xf& frame, Eigen::Vector3d* center
   return positions.colwise() - *center;
 }
 
-// The mean shape and the rigid motions that bring it to the frames, in turn (generalised
+// The mean shape and the rigid motions that bring it to the frames, in turn (generalized
 // Procrustes, Gower 1975).
 absl::StatusOr<Alignment> Align(const MeshSequence& sequence, int num_threads,
                                 const Progress& progress) {

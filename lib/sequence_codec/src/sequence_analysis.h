@@ -16,13 +16,13 @@ struct SegmentAnalysis {
   int first_frame = 0, num_frames = 0;
   TrajectoryMatrix rigid;  // 7 x T: quaternion w, x, y, z without jumps of sign, then the centroid
   // Principal trajectories of the motion relative to the rest shape: K x T unit rows by falling
-  // `singular_values` (K, metres).
+  // `singular_values` (K, meters).
   TrajectoryMatrix trajectories;
   Eigen::VectorXd singular_values;
 };
 
 struct SequenceAnalysis {
-  Eigen::Matrix3Xf rest;  // 3 x V: mean of the aligned frames, centred
+  Eigen::Matrix3Xf rest;  // 3 x V: mean of the aligned frames, centered
   std::vector<SegmentAnalysis> segments;
 };
 

@@ -1,4 +1,4 @@
-// One encoding of an analysed sequence at one quantisation step.
+// One encoding of an analyzed sequence at one quantization step.
 #pragma once
 
 #include <string>

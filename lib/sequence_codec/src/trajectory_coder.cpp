@@ -85,7 +85,7 @@ absl::Status CodeTrajectories(const Eigen::Ref<const Eigen::VectorXd>& steps, Bi
       if (!coder->decoding()) {
         const double scaled = std::fabs(coefficients[f]) / steps[k];
         if (!(scaled < kMaxQuantized)) {
-          return absl::InvalidArgumentError("the motion is too large for the quantisation step");
+          return absl::InvalidArgumentError("the motion is too large for the quantization step");
         }
         q = static_cast<int>(scaled + kRounding);
         if (coefficients[f] < 0) q = -q;

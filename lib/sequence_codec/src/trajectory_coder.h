@@ -1,4 +1,4 @@
-// Functions of time as quantised cosine transforms.
+// Functions of time as quantized cosine transforms.
 #pragma once
 
 #include <Eigen/Core>

@@ -51,7 +51,7 @@ void FrameSkinning::SetMotions(const BoneTransforms& transforms,
     motion.topLeftCorner<3, 3>() = transforms.linear[b].cast<float>();
     motion.topRightCorner<3, 1>() = transforms.translation[b].cast<float>();
     motion.row(3) = Eigen::Quaterniond(axes[b]).coeffs().transpose().cast<float>();
-    // Neighbours along the skeleton agree, so that few frames need signs.
+    // Neighbors along the skeleton agree, so that few frames need signs.
     if (parents_[b] >= 0 && motion.row(3).dot(motion_of(parents_[b]).row(3)) < 0) {
       motion.row(3) *= -1;
     }

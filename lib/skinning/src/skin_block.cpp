@@ -72,7 +72,7 @@ PLEAT_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m) {
   for (int p = 0; p < kParameters; ++p) m[p] = *reinterpret_cast<const Sixteen*>(lanes[p]);
 }
 
-// position[axis] += R(q) detail, q the normalised fourth row of `m`.
+// position[axis] += R(q) detail, q the normalized fourth row of `m`.
 PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* position) {
   const Sixteen squared = (m[3] * m[3] + m[7] * m[7]) + (m[11] * m[11] + m[15] * m[15]);
   // R(q) d = d + 2 / |q|^2 (w u + q x u), u = q x d: no root is needed.

@@ -52,8 +52,8 @@ absl::StatusOr<Skeleton> WithEnds(const Skeleton& skeleton,
     if (!skeleton.children(j).empty() || !(sums(3, j) > 0)) continue;
     std::string name = absl::StrCat(skeleton.joint(j).name, "_end");
     while (skeleton.FindJoint(name) >= 0) name += '_';
-    const Eigen::Vector3d centre = sums.col(j).hnormalized();
-    joints.push_back({name, j, 2 * centre - skeleton.rest_position(j)});
+    const Eigen::Vector3d center = sums.col(j).hnormalized();
+    joints.push_back({name, j, 2 * center - skeleton.rest_position(j)});
   }
   if (joints.size() > kMaxUserJoints) {
     return absl::InvalidArgumentError(absl::StrCat("the rig has ", joints.size(),

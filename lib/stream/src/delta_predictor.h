@@ -20,12 +20,12 @@ void PlaceOnGrid(const Eigen::Matrix3Xi& integers, const QuantizationBox& box,
 // FNV-1a over the integers as 32-bit words, x, y, z of vertex 0, of vertex 1, ...
 uint32_t GridChecksum(const Eigen::Matrix3Xi& integers);
 
-// The movement of a vertex is predicted from its neighbours' on a coarser mesh, coarse vertices
+// The movement of a vertex is predicted from its neighbors' on a coarser mesh, coarse vertices
 // first: unlike a parallelogram this interpolates. Integers only, from what the header says, so
 // that client and server agree.
 class DeltaPredictor {
  public:
-  // topology, reference: as a decoder sees them (FrameDecoder), metres.
+  // topology, reference: as a decoder sees them (FrameDecoder), meters.
   DeltaPredictor(const Topology& topology, const Eigen::Matrix3Xf& reference,
                  const QuantizationBox& box);
 

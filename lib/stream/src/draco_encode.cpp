@@ -116,7 +116,7 @@ absl::StatusOr<std::string> EncodeDracoPointCloud(const draco::PointCloud& cloud
                                                   const QuantizationBox& box, int speed) {
   draco::ExpertEncoder encoder(cloud);
   encoder.SetSpeedOptions(speed, speed);
-  // The default for quantised clouds is the kd-tree, which loses the order.
+  // The default for quantized clouds is the kd-tree, which loses the order.
   encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
   encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
   return Run(&encoder);

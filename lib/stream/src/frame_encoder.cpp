@@ -56,7 +56,7 @@ absl::Status CheckPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
     if (((positions.col(v).array() - center).abs() > limit).any()) {
       return absl::OutOfRangeError(absl::StrCat(
           "cannot encode the frame: vertex ", v, " is more than ", limit,
-          " m from the centre of the session's box; start a session nearer to the character"));
+          " m from the center of the session's box; start a session nearer to the character"));
     }
   }
   return absl::OkStatus();

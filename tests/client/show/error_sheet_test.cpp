@@ -25,27 +25,27 @@ MeshSequence Moved(const MeshSequence& sequence, const Eigen::Vector3f& by) {
   return MeshSequence::Create(sequence.topology(), std::move(frames)).value();
 }
 
-TEST(ErrorSheet, AMeshMovedByTenMillimetresHasTheColourOfTenMillimetres) {
+TEST(ErrorSheet, AMeshMovedByTenMillimetersHasTheColorOfTenMillimeters) {
   const MeshSequence truth = MovingTetrahedron(2);
-  const ColourScale scale = ErrorScale(25);
-  const Rgb ten = MapColour(ColourMap::kTurbo, 10. / 25);
+  const ColorScale scale = ErrorScale(25);
+  const Rgb ten = MapColor(ColorMap::kTurbo, 10. / 25);
   for (const Eigen::Vector3f& by :
        {Eigen::Vector3f(.01f, 0, 0), Eigen::Vector3f(0, -.006f, .008f)}) {
     const MeshSequence moved = Moved(truth, by);
-    EXPECT_THAT(ErrorColours(scale, moved.FrameAsDouble(1), truth.FrameAsDouble(1)), Each(ten));
+    EXPECT_THAT(ErrorColors(scale, moved.FrameAsDouble(1), truth.FrameAsDouble(1)), Each(ten));
   }
   // Every vertex its own distance: 0 .. 3 x 8 mm, and 80 mm as the end of the scale.
   Eigen::Matrix3Xd positions = truth.FrameAsDouble(0);
   for (int v = 0; v < 4; ++v) positions(1, v) += v < 3 ? .008 * v : .08;
-  const std::vector<Rgb> colours = ErrorColours(scale, positions, truth.FrameAsDouble(0));
-  EXPECT_EQ(colours[0], scale(0));
-  EXPECT_EQ(colours[1], scale(8));
-  EXPECT_EQ(colours[2], scale(16));
-  EXPECT_EQ(colours[3], scale(25));
+  const std::vector<Rgb> colors = ErrorColors(scale, positions, truth.FrameAsDouble(0));
+  EXPECT_EQ(colors[0], scale(0));
+  EXPECT_EQ(colors[1], scale(8));
+  EXPECT_EQ(colors[2], scale(16));
+  EXPECT_EQ(colors[3], scale(25));
 }
 
-// The most frequent colour of a tile that is not its white background.
-Rgb MainColour(const Image& image) {
+// The most frequent color of a tile that is not its white background.
+Rgb MainColor(const Image& image) {
   std::map<std::tuple<int, int, int>, int> counts;
   for (const Rgb& pixel : image.pixels()) ++counts[{pixel.r, pixel.g, pixel.b}];
   counts.erase({255, 255, 255});
@@ -57,21 +57,21 @@ Rgb MainColour(const Image& image) {
   return {static_cast<uint8_t>(r), static_cast<uint8_t>(g), static_cast<uint8_t>(b)};
 }
 
-TEST(ErrorSheet, ThePictureShowsTheColourOfTheLegend) {
+TEST(ErrorSheet, ThePictureShowsTheColorOfTheLegend) {
   const MeshSequence truth = MovingTetrahedron(1);
-  const ColourScale scale = ErrorScale(25);
+  const ColorScale scale = ErrorScale(25);
   for (const double error_mm : {0., 10., 20., 100.}) {
     const MeshSequence moved =
         Moved(truth, Eigen::Vector3f(0, static_cast<float>(error_mm / 1000), 0));
     SheetTile tile;
     tile.positions = moved.FrameAsDouble(0);
     tile.triangles = &truth.topology().triangles();
-    tile.vertex_colours = ErrorColours(scale, tile.positions, truth.FrameAsDouble(0));
+    tile.vertex_colors = ErrorColors(scale, tile.positions, truth.FrameAsDouble(0));
     tile.shading = 0;
     ContactSheetOptions sheet;
     sheet.floor = false;
     PLEAT_ASSERT_OK_AND_ASSIGN(const Image image, RenderContactSheet({tile}, sheet));
-    const Rgb shown = MainColour(image), expected = scale(std::min(error_mm, 25.));
+    const Rgb shown = MainColor(image), expected = scale(std::min(error_mm, 25.));
     EXPECT_NEAR(shown.r, expected.r, 1) << error_mm;
     EXPECT_NEAR(shown.g, expected.g, 1) << error_mm;
     EXPECT_NEAR(shown.b, expected.b, 1) << error_mm;

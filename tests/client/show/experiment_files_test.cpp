@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Key;
 
-// Two groups over test frames 3, 4 and 8; no frame has both neighbours.
+// Two groups over test frames 3, 4 and 8; no frame has both neighbors.
 ExperimentReport MadeUpReport() {
   ExperimentReport report{.experiment = Experiment::kRepresentations, .rows = {}};
   for (const char* group : {"rotations", "details"}) {

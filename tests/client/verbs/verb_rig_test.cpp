@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A figure that rises by a centimetre per frame, and where its joints are in frame 0.
+// A figure that rises by a centimeter per frame, and where its joints are in frame 0.
 void WriteFigure(const TemporaryFolder& folder, int num_frames) {
   const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .03});
   std::vector<Eigen::Matrix3Xf> frames;

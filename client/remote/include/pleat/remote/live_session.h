@@ -43,7 +43,7 @@ struct LiveTimes {
 
 struct LiveFrame {
   uint64_t number = 0;  // of the pose
-  // 3 x V, metres, the character's vertex order (or that of its control mesh).
+  // 3 x V, meters, the character's vertex order (or that of its control mesh).
   Eigen::Matrix3Xf positions;
   std::optional<FrameParameters> parameters;  // of streams of parameters
   double confidence = 0;

@@ -13,7 +13,7 @@ namespace pleat {
 struct ProgressUpdate {
   std::string stage;                // e.g. "rig", "fit", "learn"
   double fraction = 0;              // of the whole computation, 0..1
-  std::optional<double> objective;  // of the running optimiser, when there is one
+  std::optional<double> objective;  // of the running optimizer, when there is one
 };
 
 // Handed down by value to everything that may run longer than a second. The default token reports

@@ -1,4 +1,4 @@
-// The character: rig, learnt detail and what training recorded. Immutable and shared.
+// The character: rig, learned detail and what training recorded. Immutable and shared.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,7 +42,7 @@ struct TrainingRecord {
   int rest_frame = 0;
   double yaw_degrees = 0;       // facing that was found
   double rig_residual = 0;      // of the embedding; under .03 is trusted
-  double diagonal_m = 0;        // bounding-box diagonal of the first frame, metres
+  double diagonal_m = 0;        // bounding-box diagonal of the first frame, meters
   ErrorSummary fit;             // skinned only against the input; frame_mean_percent not kept
   ErrorSummary reconstruction;  // hybrid against the input; frame_mean_percent not kept
   std::vector<std::string> warnings;

@@ -1,4 +1,5 @@
-// Held-out evaluation of the whole pipeline (method.md, section 6; the paper's Figure 5).
+// Held-out evaluation of the whole pipeline (docs/method/evaluation.md#rules; the paper's Figure
+// 5).
 #pragma once
 
 #include <functional>
@@ -58,7 +59,7 @@ struct EvaluateReport {
   std::vector<int> test_frames;
 };
 
-// Everything that is learnt (rig, control mesh, details, learner and its choice) sees the training
+// Everything that is learned (rig, control mesh, details, learner and its choice) sees the training
 // frames only; poses of test frames are fitted to the test meshes with the rig fixed; then the full
 // mesh is predicted and compared. `test_sequence` is the second clip of protocol cross.
 absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,

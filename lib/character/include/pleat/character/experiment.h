@@ -1,5 +1,5 @@
-// The paper's comparisons: one character learnt in several ways, measured by one protocol (the
-// paper, section V, Figure 5; method.md, sections 1 and 6).
+// The paper's comparisons: one character learned in several ways, measured by one protocol (the
+// paper, section V, Figure 5; docs/method/evaluation.md#experiments-of-the-paper).
 #pragma once
 
 #include <optional>
@@ -29,7 +29,7 @@ struct ExperimentVariant {
   TrainOptions options;
 };
 
-// What is compared, starting from `base`: only what is learnt varies, never rig and poses.
+// What is compared, starting from `base`: only what is learned varies, never rig and poses.
 std::vector<ExperimentVariant> ExperimentVariants(Experiment experiment, const TrainOptions& base);
 
 struct ExperimentRow {

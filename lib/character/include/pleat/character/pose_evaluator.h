@@ -15,14 +15,14 @@
 namespace pleat {
 
 struct EvaluatedFrame {
-  Eigen::Matrix3Xf positions;  // 3 x V, metres, world
+  Eigen::Matrix3Xf positions;  // 3 x V, meters, world
   // How near the pose is to what training has seen: 1 = seen, 0 = unknown, the mean detail shows.
   double confidence = 0;
 };
 
 // What shows a frame to somebody who has the model: hundreds of bytes in place of a mesh.
 struct FrameParameters {
-  Pose pose;                     // normalised; rotations are float32 numbers, as they travel
+  Pose pose;                     // normalized; rotations are float32 numbers, as they travel
   Eigen::VectorXf coefficients;  // of the detail basis, or none: skinned only
   double confidence = 0;
 };
@@ -31,7 +31,7 @@ struct FrameParameters {
 struct PoseQuery {
   const std::vector<const Pose*>* poses = nullptr;   // as for PoseEvaluator::Evaluate
   const std::vector<double>* bone_scales = nullptr;  // null: ones
-  bool skinned_only = false;                         // without the learnt detail
+  bool skinned_only = false;                         // without the learned detail
   EvaluatedFrame* frame = nullptr;
   FrameParameters* parameters = nullptr;  // where given: these are filled in place of the frame
   absl::Status status{};  // set by the evaluation; when it is not OK the frame is untouched
@@ -54,7 +54,7 @@ class PoseEvaluator {
   absl::Status Evaluate(const std::vector<const Pose*>& poses,
                         const std::vector<double>& bone_scales, EvaluatedFrame* frame);
 
-  // The same without the learnt detail (skinned only).
+  // The same without the learned detail (skinned only).
   absl::Status EvaluateSkinned(const Pose& pose, const std::vector<double>& bone_scales,
                                EvaluatedFrame* frame);
 
@@ -63,7 +63,7 @@ class PoseEvaluator {
 
   // Evaluate in two halves, for two machines: what the poses give, then the mesh. `Show` gives the
   // same bits wherever the library runs; they differ from Evaluate's by the rounding of the
-  // rotations, under two micrometres on a person.
+  // rotations, under two micrometers on a person.
   absl::Status Predict(const std::vector<const Pose*>& poses, bool skinned_only,
                        FrameParameters* parameters);
   // kInvalidArgument names what does not fit the model.

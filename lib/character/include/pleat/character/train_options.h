@@ -16,11 +16,12 @@ struct TrainOptions {
   std::string learner = "auto";
   std::string fit = "all-joints";  // "all-joints" (Levenberg-Marquardt) or "walk" (the paper's)
   std::string refine = "full";     // rig on the training frames: "none" (paper), "joints", "full"
-  // What is learnt: "fine" (details, what the mesh does beyond its skinned rig; the paper's choice)
-  // or "full" (all deformation beyond the motion of the root, which the paper compares with).
+  // What is learned: "fine" (details, what the mesh does beyond its skinned rig; the paper's
+  // choice) or "full" (all deformation beyond the motion of the root, which the paper compares
+  // with).
   std::string deformation = "fine";
   std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
-  // "offsets" (paper) or "differential": every control vertex against the mean of its neighbours.
+  // "offsets" (paper) or "differential": every control vertex against the mean of its neighbors.
   std::string detail_coordinates = "offsets";
   std::string rotations = "expmap";  // pose features: "expmap" (paper), "euler", "quaternion"
   int history = 2;                   // poses per feature row, 1..8 (paper: 2)

@@ -1,4 +1,5 @@
-// Details: what the mesh does beyond its skinned rig (method.md, section 4; paper, section III-C).
+// Details: what the mesh does beyond its skinned rig (docs/method/details.md; paper, section
+// III-C).
 //   d_t(v) = B_t(v)^T (p_t(v) - p_S,t(v)),  p_S,t the detail base
 #pragma once
 
@@ -32,7 +33,7 @@ enum class DetailBase {
   kRoot,     // the rest mesh moved by the root alone: details are the full deformation
 };
 
-// 3 x V, metres. No allocation once `positions` has the right size.
+// 3 x V, meters. No allocation once `positions` has the right size.
 void ComputeDetailBase(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
                        Eigen::Matrix3Xd* positions);
 
@@ -42,7 +43,7 @@ struct ComputeDetailsOptions {
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
 
-// Row t: the details of frame t at `vertices` (C indices), metres: x, y, z of the first, of the
+// Row t: the details of frame t at `vertices` (C indices), meters: x, y, z of the first, of the
 // second, ... (T x 3C). kInvalidArgument when the counts of sequence, rig and track differ or a
 // vertex is out of range; kCancelled.
 absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, const Rig& rig,
@@ -52,7 +53,7 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
                                                const Progress& progress = {});
 
 // The inverse for one frame: column c of `positions` = base_c + rotations[c] * details_c.
-// base: 3 x C, metres; rotations: C, of ComputeDetailRotations; details: 3C. `positions` (3 x C)
+// base: 3 x C, meters; rotations: C, of ComputeDetailRotations; details: 3C. `positions` (3 x C)
 // may be the matrix behind `base`. No allocation once it has the right size.
 void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
                   const std::vector<Eigen::Quaterniond>& rotations,

@@ -1,5 +1,6 @@
 // Moments of a rig and of a frame: all that a pose fit needs to know about the vertices
-// (method.md, 3.2). Computed once, they make the cost of a solver iteration independent of V.
+// (docs/method/fit.md#moments). Computed once, they make the cost of a solver iteration independent
+// of V.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,28 +11,28 @@
 
 namespace pleat {
 
-// Once per rig. u_i = [rest position relative to `centre`; 1], W the skinning weights (rows
-// normalised to sum 1). Independent of the joints, so joints can be refined against it.
+// Once per rig. u_i = [rest position relative to `center`; 1], W the skinning weights (rows
+// normalized to sum 1). Independent of the joints, so joints can be refined against it.
 struct RigMoments {
   int num_joints = 0;
   double num_vertices = 0;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean rest position, metres
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // mean rest position, meters
   // U_kl = sum_i W_ik W_il u_i u_i^T at [k * num_joints + l]; blocks of bone 0 are zero.
   std::vector<Eigen::Matrix4d> products;
   // sum_i W_ik u_i u_i^T = sum_l U_kl.
   std::vector<Eigen::Matrix4d> weighted;
 };
 
-// Once per frame, from the only loop over vertices. Positions are relative to `centre`.
+// Once per frame, from the only loop over vertices. Positions are relative to `center`.
 struct FrameMoments {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // mean position of the frame, metres
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  // mean position of the frame, meters
   std::vector<Eigen::Matrix<double, 4, 3>> cross;    // Y_k = sum_i W_ik u_i y_i^T, per bone
   double sum_squares = 0;                            // sum_i |y_i|^2
 };
 
 RigMoments ComputeRigMoments(const Rig& rig);
 
-// `positions`: 3 x V, metres (float32, as sequences hold them); `rig_moments` of the same rig.
+// `positions`: 3 x V, meters (float32, as sequences hold them); `rig_moments` of the same rig.
 FrameMoments ComputeFrameMoments(const Rig& rig, const RigMoments& rig_moments,
                                  const Eigen::Matrix3Xf& positions);
 

@@ -1,5 +1,5 @@
 // The squared distance between a skinned and an observed frame as a function of the pose, with
-// gradient and Gauss-Newton matrix, from moments only (method.md, 3.2).
+// gradient and Gauss-Newton matrix, from moments only (docs/method/fit.md#energy).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 namespace pleat {
 
 // World rotations of all bones side by side, P = [R_0 R_1 ... R_J-1], and the root's position
-// relative to the frame's centre. World rotations make the skinned vertices linear in the pose; the
+// relative to the frame's center. World rotations make the skinned vertices linear in the pose; the
 // chain (one pivot per bone) is inside ChainMoments. R_0 has no influence on the mesh.
 struct ChainPose {
   Eigen::Matrix3Xd rotations;  // 3 x 3J
@@ -21,25 +21,25 @@ struct ChainPose {
   auto rotation(int a) { return rotations.middleCols<3>(3 * a); }
 
   // Moves along a tangent vector (3J + 3: per bone a rotation vector applied from the left,
-  // R_a <- exp(w_a) R_a, then the root translation). Rotations are renormalised.
+  // R_a <- exp(w_a) R_a, then the root translation). Rotations are renormalized.
   void Move(const Eigen::VectorXd& step);
 };
 
-// Between the world rotations of a solver and the local ones of a Pose. `frame_centre`: the
-// centre that root_position is relative to.
+// Between the world rotations of a solver and the local ones of a Pose. `frame_center`: the
+// center that root_position is relative to.
 ChainPose ToChainPose(const Skeleton& skeleton, const Pose& pose,
-                      const Eigen::Vector3d& frame_centre);
+                      const Eigen::Vector3d& frame_center);
 Pose FromChainPose(const Skeleton& skeleton, const ChainPose& chain_pose,
-                   const Eigen::Vector3d& frame_centre);
+                   const Eigen::Vector3d& frame_center);
 
 // E(pose) = sum_i |v_i(pose) - y_i|^2 + bend_stiffness * sum_b |R_b - R_parent(b)|_F^2
-//           + attraction_stiffness * sum_a |R_a - attraction_a|_F^2, square metres.
+//           + attraction_stiffness * sum_a |R_a - attraction_a|_F^2, square meters.
 // The stiffness terms keep the moments' form: they only add to Gram and cross blocks. The bones
 // from the root to leftUpperLeg and rightUpperLeg are one bone of the body, the pelvis: 100 times
 // stiffer.
 class PoseEnergy {
  public:
-  // `chain` and `skeleton` must outlive this object. A tiny bend stiffness (square metres) makes
+  // `chain` and `skeleton` must outlive this object. A tiny bend stiffness (square meters) makes
   // rotations that the data do not determine follow the parent's.
   PoseEnergy(const ChainMoments& chain, const Skeleton& skeleton, double bend_stiffness);
 

@@ -1,4 +1,4 @@
-// The pose of a rig in every frame of a sequence (method.md, section 3; paper, section III-B).
+// The pose of a rig in every frame of a sequence (docs/method/fit.md; paper, section III-B).
 #pragma once
 
 #include <vector>
@@ -23,14 +23,14 @@ struct PoseFitOptions {
   // All joints: stop when a step lowers the energy by less than this share of it. 1e-5 and 1e-9
   // give the same error to four digits on captured sequences.
   double tolerance = 1e-5;
-  // All joints: how often every frame also tries the solutions of its neighbours in time as a
+  // All joints: how often every frame also tries the solutions of its neighbors in time as a
   // start, which frees frames that the closed-form start left in a wrong valley. 0 = never.
-  int neighbour_passes = 2;
+  int neighbor_passes = 2;
   // Pull of every bone towards its parent's rotation, as a share of the mean Gram diagonal per
   // bone. It decides only what the vertices do not: the twist of a thin bone, a bone without
   // vertices. The error of the fit does not change measurably up to 1e-3.
   double bend_stiffness = 1e-6;
-  // All joints: pull towards the neighbours' rotations in time, in the same unit; 1e-2 cuts jitter
+  // All joints: pull towards the neighbors' rotations in time, in the same unit; 1e-2 cuts jitter
   // by a quarter to a half for under .05 % more error. 0 = off, frames are independent.
   double smoothness = 0;
   // First frame of every clip, ascending, first is 0. Starts and smoothness stay inside a clip.
@@ -39,11 +39,11 @@ struct PoseFitOptions {
 };
 
 struct PoseFitSummary {
-  std::vector<double> frame_rms_m;  // per frame: root mean squared vertex distance, metres
+  std::vector<double> frame_rms_m;  // per frame: root mean squared vertex distance, meters
   double rms_m = 0;                 // over all frames
   std::vector<int> worst_frames;    // up to five, largest error first
   double mean_iterations = 0;       // linear systems (or walk sweeps) per frame
-  int num_rescued_frames = 0;       // frames that a neighbour's start improved
+  int num_rescued_frames = 0;       // frames that a neighbor's start improved
   double jitter_rad = 0;            // RotationJitter of the track
   // What smoothing started from; the same as above without it.
   double unsmoothed_rms_m = 0;

@@ -1,4 +1,4 @@
-// Solvers for the pose of one frame, all from moments (method.md, 3.3).
+// Solvers for the pose of one frame, all from moments (docs/method/fit.md#solvers).
 #pragma once
 
 #include "pleat/fitting/moments.h"
@@ -14,7 +14,7 @@ ChainPose ClosedFormWalk(const RigMoments& moments, const FrameMoments& frame,
                          const Skeleton& skeleton);
 
 // One sweep of the paper's fit (section III-B): from the root to the leaves, each joint turns its
-// whole subtree by the rotation that minimises the energy of all vertices with the other joints
+// whole subtree by the rotation that minimizes the energy of all vertices with the other joints
 // held, in closed form. Never raises the energy.
 void WalkSweep(const PoseEnergy& energy, const Skeleton& skeleton, ChainPose* pose);
 
@@ -28,7 +28,7 @@ struct PoseSolverOptions {
 struct PoseSolverSummary {
   int num_iterations = 0;  // linear systems solved
   bool converged = false;  // false: stopped by max_iterations
-  double energy = 0;       // at the end, square metres, stiffness included
+  double energy = 0;       // at the end, square meters, stiffness included
 };
 
 // Levenberg-Marquardt on all rotations and the root position together (Marquardt 1963, damping

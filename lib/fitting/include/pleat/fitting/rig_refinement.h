@@ -1,5 +1,5 @@
-// A rig that explains an animation better than the first one (method.md, 3.3): poses, rest joints,
-// skinning weights and rest mesh in turn, each step with all else held.
+// A rig that explains an animation better than the first one (docs/method/fit.md#rig-refinement):
+// poses, rest joints, skinning weights and rest mesh in turn, each step with all else held.
 #pragma once
 
 #include <vector>
@@ -22,11 +22,11 @@ struct RigRefinementOptions {
   // error per joint. Without it joints that the motion hardly shows run away (knees under a skirt
   // by 26-32 cm); from .3 on known joints come out no worse than they were (docs/performance.md).
   double joint_prior = 0.3;
-  // Pulls of a vertex's weights to the mean of its neighbours' and to the first rig's, in units of
+  // Pulls of a vertex's weights to the mean of its neighbors' and to the first rig's, in units of
   // the body's mean squared size.
   double weight_smoothness = 1e-2;
   double weight_prior = 3e-4;
-  // Pulls of a vertex's displacement to the mean of its neighbours' and to none, as shares of the
+  // Pulls of a vertex's displacement to the mean of its neighbors' and to none, as shares of the
   // pull of the vertex's own observations.
   double rest_smoothness = 1;
   double rest_prior = 0.1;
@@ -53,7 +53,7 @@ struct RigRefinementSummary {
 
 // `track`: the poses of all frames, fitted with `rig` (FitPoses). Returns the refined rig; fit the
 // poses again with it. Leaves of the skeleton have no influence on the mesh and stay. A vertex
-// keeps at most kMaxInfluences bones: those of its own, of its neighbours, or next to its own in
+// keeps at most kMaxInfluences bones: those of its own, of its neighbors, or next to its own in
 // the skeleton. kInvalidArgument when rig, track and sequence do not belong together or an option
 // is out of range; kCancelled. `summary` may be null.
 absl::StatusOr<Rig> RefineRig(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,

@@ -19,7 +19,7 @@ struct RigFile {
   // Per vertex; empty when the file has no weights.
   std::vector<std::vector<JointInfluence>> influences;
   bool influences_are_of_bones = false;  // of Pleat's bones (named by the joint they end in)
-  // GLB: where the weighed vertices are, 3 x N, metres. Empty: they are the clip's, in its order.
+  // GLB: where the weighed vertices are, 3 x N, meters. Empty: they are the clip's, in its order.
   Eigen::Matrix3Xd positions;
   int rest_frame = 0;
   bool is_locked = false;          // all joints, those that are added included
@@ -35,7 +35,7 @@ struct RigFileLimits {
 absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const RigFileLimits& limits = {});
 // The first skin of a binary glTF 2.0 file: its joints in parent-before-child order, rest positions
 // from the inverse bind matrices, and the first four influences of every vertex of the mesh
-// primitives that use it. kUnimplemented for buffers outside the file and sparse or quantised
+// primitives that use it. kUnimplemented for buffers outside the file and sparse or quantized
 // accessors that a skin does not need.
 absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const RigFileLimits& limits = {});
 // By the ending: .glb or .json.

@@ -1,4 +1,5 @@
-// The control mesh: a subset of the vertices, so that it animates by index (method.md, section 4).
+// The control mesh: a subset of the vertices, so that it animates by index
+// (docs/method/details.md#control-mesh).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +11,9 @@
 namespace pleat {
 
 // Chooses round(fraction * V) vertices, ascending, of the mesh in the frame `reference` (3 x V,
-// metres). Half of them are what edge-collapse simplification by meshoptimizer (quadric error
+// meters). Half of them are what edge-collapse simplification by meshoptimizer (quadric error
 // metric, Garland and Heckbert 1997) leaves, which is a subset of the vertices; the other half fill
-// the largest gaps, and all are centred in the cells they serve: the flat places that a
+// the largest gaps, and all are centered in the cells they serve: the flat places that a
 // simplification leaves bare are where cloth folds in other frames. Every connected component keeps
 // at least one vertex, which can raise the count; coincident vertices count as connected. fraction
 // 1 returns all vertices. Deterministic. kInvalidArgument when fraction is not in (0, 1] or the

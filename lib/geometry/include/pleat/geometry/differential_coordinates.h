@@ -1,7 +1,7 @@
 // Differential coordinates of displacements on a subset of the vertices: every displacement against
-// the mean of its neighbours'. The paper (section III-C) tried them for its details.
+// the mean of its neighbors'. The paper (section III-C) tried them for its details.
 //
-//   delta_i = (1 + anchor) d_i - mean of d_j over the neighbours j of i
+//   delta_i = (1 + anchor) d_i - mean of d_j over the neighbors j of i
 //
 // Source: O. Sorkine, "Differential representations for mesh processing", CGF 25(4), 2006, with
 // uniform weights. Differences alone leave a constant open; the anchor, a small share of the
@@ -21,9 +21,9 @@ namespace pleat {
 
 class DifferentialCoordinates {
  public:
-  // Two control vertices are neighbours when an edge joins the cells of vertices that are nearest
+  // Two control vertices are neighbors when an edge joins the cells of vertices that are nearest
   // to them along the surface; with all vertices as control vertices these are the mesh's edges.
-  // reference: 3 x V, metres. kInvalidArgument when the counts of `topology` and `reference`
+  // reference: 3 x V, meters. kInvalidArgument when the counts of `topology` and `reference`
   // differ, a control vertex is out of range or `anchor` is not positive.
   static absl::StatusOr<DifferentialCoordinates> Build(const Topology& topology,
                                                        const Eigen::Matrix3Xd& reference,
@@ -31,7 +31,7 @@ class DifferentialCoordinates {
                                                        double anchor = .01);
 
   int num_control_vertices() const { return static_cast<int>(matrix_.rows()); }  // C
-  const std::vector<int>& num_neighbours() const { return num_neighbours_; }     // C
+  const std::vector<int>& num_neighbors() const { return num_neighbors_; }       // C
 
   // Displacements -> differential coordinates, T x 3C both (xyz of the first vertex, of the
   // second, ...).
@@ -42,8 +42,8 @@ class DifferentialCoordinates {
  private:
   DifferentialCoordinates() = default;
 
-  std::vector<int> num_neighbours_;
-  Eigen::SparseMatrix<double> matrix_;  // C x C, symmetric: the map times the neighbour counts
+  std::vector<int> num_neighbors_;
+  Eigen::SparseMatrix<double> matrix_;  // C x C, symmetric: the map times the neighbor counts
   std::shared_ptr<const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factor_;
 };
 

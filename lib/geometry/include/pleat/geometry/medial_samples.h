@@ -18,7 +18,7 @@ struct MedialSampleOptions {
   double max_cosine = 0;  // the directions to the surface disagree by at least this angle: 90 deg
 };
 
-// Points between two neighbouring grid nodes whose directions to the nearest surface disagree
+// Points between two neighboring grid nodes whose directions to the nearest surface disagree
 // (Baran and Popovic 2007, section 3.1), placed where the two distances meet. In grid order.
 std::vector<MedialSample> FindMedialSamples(const DistanceField& field,
                                             const MedialSampleOptions& options = {});

@@ -1,5 +1,6 @@
 // From displacements of the control vertices to displacements of all vertices, by radial basis
-// functions centred on the control vertices (method.md, section 4; paper, section III-C).
+// functions centered on the control vertices (docs/method/details.md#upsampling; paper, section
+// III-C).
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +18,7 @@ namespace pleat {
 struct RbfUpsamplingOptions {
   // Control vertices per vertex, the nearest along the surface: nothing bleeds from an arm to the
   // body beside it. The error flattens at 16-24.
-  int num_neighbours = 20;
+  int num_neighbors = 20;
   // Length of the kernel in mean spacings of the control vertices. Long kernels approach a
   // polyharmonic spline: best on captured clothes among lengths of 2 to 32.
   double kernel_length = 24;
@@ -43,7 +44,7 @@ class RbfUpsampler {
   using Matrix = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 
   // Local interpolation with the Matern kernel (1 + s) exp(-s), s = sqrt(3) d / length, and a
-  // constant, so rows add up to 1; exact at the control vertices. rest: 3 x V, metres;
+  // constant, so rows add up to 1; exact at the control vertices. rest: 3 x V, meters;
   // control_vertices: C distinct vertex indices. A component without control vertices follows the
   // nearest ones through the air. kInvalidArgument for counts or indices that do not fit;
   // kCancelled.
@@ -62,8 +63,8 @@ class RbfUpsampler {
   // From a whole matrix, with the same checks on its entries.
   static absl::StatusOr<RbfUpsampler> FromMatrix(Matrix matrix);
 
-  // The same neighbours with weights learnt from an animation: per vertex the ridge regression of
-  // its displacements on those of its neighbours, pulled towards the kernel weights. displacements:
+  // The same neighbors with weights learned from an animation: per vertex the ridge regression of
+  // its displacements on those of its neighbors, pulled towards the kernel weights. displacements:
   // T x 3V (x, y, z of vertex 0, of vertex 1, ...), control_vertices as in Build. Stays exact at
   // the control vertices. On held-out frames of captured clothes the error falls to 40 %.
   // kInvalidArgument for sizes that do not fit; kCancelled.

@@ -1,6 +1,6 @@
 // A multiresolution transform of functions on a mesh: second-generation wavelets by lifting
 // (Sweldens 1998; on irregular points Jansen, Nason and Silverman 2009). Vertices are removed level
-// by level as independent sets; each is predicted from its neighbours, which keep its mean.
+// by level as independent sets; each is predicted from its neighbors, which keep its mean.
 // Plain arithmetic in a fixed order: encoder and decoder get the same bits on every machine.
 #pragma once
 
@@ -19,7 +19,7 @@ using FieldMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 class SurfaceHierarchy {
  public:
   // rest: 3 x V, makes the prediction exact for functions that are linear in the rest positions, as
-  // far as that does not amplify noise; null predicts the mean of the neighbours.
+  // far as that does not amplify noise; null predicts the mean of the neighbors.
   SurfaceHierarchy(const Topology& topology, const Eigen::Matrix3Xf* rest);
 
   // Vertices, coarse to fine: an order in which neighbors(v) come before v.

@@ -47,7 +47,7 @@ class TriangleTree {
   int input_triangle(int k) const { return order_[k]; }
 
  private:
-  int32_t Build(std::vector<Eigen::Vector3d>& centres, int32_t first, int32_t count);
+  int32_t Build(std::vector<Eigen::Vector3d>& centers, int32_t first, int32_t count);
 
   std::vector<Node> nodes_;
   std::vector<int32_t> order_;

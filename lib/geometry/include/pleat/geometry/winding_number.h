@@ -1,4 +1,4 @@
-// Generalised winding numbers: inside and outside for open, overlapping and slightly broken meshes.
+// Generalized winding numbers: inside and outside for open, overlapping and slightly broken meshes.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,14 +8,14 @@
 
 namespace pleat {
 
-// The generalised winding number of a triangle soup (Jacobson, Kavan, Sorkine-Hornung 2013),
+// The generalized winding number of a triangle soup (Jacobson, Kavan, Sorkine-Hornung 2013),
 // approximated far from clusters of triangles by one dipole per cluster (Barill, Dickson, Schmidt,
 // Levin, Jacobson 2018, first order). One inside a closed, outward oriented surface, zero outside,
 // smooth across holes.
 class WindingNumber {
  public:
   // `tree` must outlive this object. A cluster is approximated when the point is farther from its
-  // centre than `accuracy` times its radius; 2 keeps the error below about 0.05.
+  // center than `accuracy` times its radius; 2 keeps the error below about 0.05.
   explicit WindingNumber(const TriangleTree& tree, double accuracy = 2);
 
   double operator()(const Eigen::Vector3d& point) const;
@@ -23,7 +23,7 @@ class WindingNumber {
 
  private:
   struct Dipole {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // area weighted
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // area weighted
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // sum of area vectors, m^2
     double squared_reach = 0;                          // (accuracy * radius)^2
   };

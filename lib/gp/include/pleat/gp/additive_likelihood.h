@@ -3,8 +3,8 @@
 //   k = b + sum_e [ a_e exp(-g_e/2 R_e) + c_e S_e ] + (s^2 + floor) [same row]
 //
 // over its logs, in the order log g_1.., log a_1.., log c_1.., log s^2, log b, with a Gaussian
-// prior on every log g around 1 / median distance. Source: method.md 5.2, 5.3; Duvenaud et al.
-// 2011.
+// prior on every log g around 1 / median distance. Source: docs/method/learner.md#gram-term;
+// Duvenaud et al. 2011.
 #pragma once
 
 #include <Eigen/Core>

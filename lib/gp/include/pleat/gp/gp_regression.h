@@ -16,10 +16,10 @@ namespace pleat {
 
 struct GpRegressionOptions {
   KernelOptions kernel{.bias = true, .linear = true};
-  // Inputs are centred and divided by one scalar so that rows have mean squared norm 1; false
+  // Inputs are centered and divided by one scalar so that rows have mean squared norm 1; false
   // takes them as they are (latent points).
-  bool normalise_inputs = true;
-  // Disjoint sets of columns. Each gets a factor on its squared distances that is learnt with the
+  bool normalize_inputs = true;
+  // Disjoint sets of columns. Each gets a factor on its squared distances that is learned with the
   // kernel (automatic relevance determination): joints whose motion says nothing about the output
   // make no two frames look different. Columns in no set keep factor 1.
   std::vector<std::vector<int>> input_groups{};
@@ -28,14 +28,14 @@ struct GpRegressionOptions {
   int max_iterations = 60;  // of L-BFGS on the marginal likelihood
   // Precision, per row and output, of a Gaussian prior on log g around
   // log(1 / (prior_width_factor^2 * median squared distance)); 0: none. Frames of one clip are so
-  // alike that the likelihood alone prefers widths that generalise badly. Chosen on blocks held
+  // alike that the likelihood alone prefers widths that generalize badly. Chosen on blocks held
   // out inside the training frames of captured clips (docs/performance.md, "Choices").
   double prior_precision = .003;
   double prior_width_factor = 1;
-  // Hyperparameters are learnt on at most this many rows, spread evenly: the cost grows with the
+  // Hyperparameters are learned on at most this many rows, spread evenly: the cost grows with the
   // cube.
   int max_hyperparameter_rows = 800;
-  // More rows than this are not kept: all of them are learnt through this many inducing rows,
+  // More rows than this are not kept: all of them are learned through this many inducing rows,
   // spread evenly, at a cost that grows linearly.
   int max_rows = 600;
 };
@@ -49,10 +49,10 @@ struct GpRegressionSummary {
 // Everything a prediction needs; what a model file holds.
 struct GpRegressionParameters {
   KernelOptions kernel_options;
-  KernelLogs kernel;             // in normalised units
+  KernelLogs kernel;             // in normalized units
   Eigen::VectorXd input_mean;    // D
   Eigen::VectorXd input_scales;  // D, units of the inputs
-  Eigen::MatrixXd inputs;        // N x D, normalised: (x - mean) / scale
+  Eigen::MatrixXd inputs;        // N x D, normalized: (x - mean) / scale
   Eigen::VectorXd output_mean;   // r
   double output_scale = 1;       // unit of the outputs
   Eigen::MatrixXd alpha;         // N x r, K^-1 (y - mean) / scale
@@ -66,7 +66,7 @@ class GpRegression {
 
   // What one thread needs for its queries. Sized by the first query, reused without allocation.
   struct Workspace {
-    Eigen::VectorXd row;       // D, normalised
+    Eigen::VectorXd row;       // D, normalized
     Eigen::VectorXd products;  // N
     Eigen::VectorXd rbf;       // N
     Eigen::VectorXd kernel;    // N
@@ -84,7 +84,7 @@ class GpRegression {
                                             GpRegressionSummary* summary = nullptr,
                                             const Progress& progress = {});
 
-  // The same with given hyperparameters (in normalised units).
+  // The same with given hyperparameters (in normalized units).
   static absl::StatusOr<GpRegression> Condition(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                                 const KernelLogs& kernel,
@@ -119,7 +119,7 @@ class GpRegression {
   GpRegressionParameters parameters_;
   KernelValues values_;
   RowMajorMatrix alpha_rows_;      // alpha once more, in the order in which a query reads it
-  Eigen::VectorXd squared_norms_;  // N, of the normalised inputs
+  Eigen::VectorXd squared_norms_;  // N, of the normalized inputs
   double prior_variance_ = 1;
 };
 

@@ -25,7 +25,7 @@ struct GramData {
 };
 
 // The factor of Y Y^T: Y itself when it is narrow, else a Cholesky factor of Y Y^T (with 1e-12 of
-// its mean diagonal added, as it is singular for centred data).
+// its mean diagonal added, as it is singular for centered data).
 absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& outputs);
 
 // The same from the Gram matrix of `num_outputs` outputs (N x N, symmetric; lower triangle read).

@@ -31,7 +31,7 @@ struct InducedWeights {
 };
 
 // The rows come block by block, [begin, begin + count): `cross` gives Kxz (count x M) and `outputs`
-// (N x r) is what is learnt. covariance: M x M, Kzz without noise. noise: s^2. False when a matrix
+// (N x r) is what is learned. covariance: M x M, Kzz without noise. noise: s^2. False when a matrix
 // cannot be factored or `cancelled` says so.
 bool SolveInduced(
     const Eigen::MatrixXd& covariance, double noise, const Eigen::MatrixXd& outputs,

@@ -19,7 +19,8 @@ struct KernelOptions {
   bool linear = false;
   // The noise variance never falls below this share of the RBF amplitude (floor = share * a).
   double relative_noise_floor = 1e-6;
-  // Added to the noise variance as it is; the check values of method.md section 7 use 1e-8.
+  // Added to the noise variance as it is; the check values of docs/method/learner.md#check-values
+  // use 1e-8.
   double absolute_jitter = 0;
 };
 

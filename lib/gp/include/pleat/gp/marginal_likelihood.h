@@ -2,7 +2,7 @@
 // kernel's logs and those of the relevance of groups of inputs.
 //
 // Source: Rasmussen and Williams (2006), chapter 5; automatic relevance determination: D. MacKay,
-// "Bayesian non-linear modelling for the prediction competition", ASHRAE Transactions 100 (1994).
+// "Bayesian non-linear modeling for the prediction competition", ASHRAE Transactions 100 (1994).
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ Eigen::VectorXd RelevanceFactors(const std::vector<std::vector<int>>& groups,
 // The unknowns are those of PackKernelLogs, then one log for each of options.input_groups.
 class MarginalLikelihood : public Objective {
  public:
-  // inputs: N x D, normalised. prior_center: of log g.
+  // inputs: N x D, normalized. prior_center: of log g.
   MarginalLikelihood(Eigen::MatrixXd inputs, GramData data, const GpRegressionOptions& options,
                      double prior_center, Progress progress);
 

@@ -1,4 +1,4 @@
-// Centring and scaling shared by the learners.
+// Centering and scaling shared by the learners.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,8 +9,8 @@ namespace pleat {
 // sqrt(square), or 1 when it is not positive: nothing to scale by.
 double PositiveRoot(double square);
 
-// Divides every column (already centred) by its standard deviation (N - 1); constant ones stay.
-void ScaleColumns(Eigen::MatrixXd* centred);
+// Divides every column (already centered) by its standard deviation (N - 1); constant ones stay.
+void ScaleColumns(Eigen::MatrixXd* centered);
 
 // Median of the entries below the diagonal of a matrix of squared distances (N x N, lower),
 // positive entries only; 1 when there are none.

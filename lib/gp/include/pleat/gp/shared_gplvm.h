@@ -24,10 +24,11 @@ namespace pleat {
 
 enum class Optimizer { kScg, kLbfgs };
 
-// How the columns of a view are scaled before training (they are always centred).
+// How the columns of a view are scaled before training (they are always centered).
 enum class ViewScaling {
   kOneScalar,  // one scalar per view, mean square 1: still vertices stay quiet
-  kPerColumn,  // every column to unit variance (N - 1), as the check values of method.md have it
+  kPerColumn,  // every column to unit variance (N - 1), as the check values of
+               // docs/method/learner.md#check-values have it
 };
 
 struct SharedGplvmOptions {
@@ -66,14 +67,14 @@ struct SharedGplvmSummary {
   double pose_scale = 1, detail_scale = 1;  // what the views were divided by (kOneScalar)
 };
 
-// The result of training. Everything refers to centred and scaled views.
+// The result of training. Everything refers to centered and scaled views.
 struct SharedGplvm {
   Eigen::MatrixXd latents;  // X, N x q
   KernelLogs pose_kernel, detail_kernel, dynamics_kernel;
   KernelOptions pose_options, detail_options, dynamics_options;
   double detail_scale = 1;  // detail_kernel's output unit in the unit of Y_M (kOneScalar)
 
-  // Only with back-constraints: X = K_b A with inputs Y_S as given, centred.
+  // Only with back-constraints: X = K_b A with inputs Y_S as given, centered.
   Eigen::MatrixXd back_weights;       // A, N x q
   double back_log_inverse_width = 0;  // of K_b, 1 / (unit of Y_S)^2
 };
@@ -101,17 +102,17 @@ class SharedGplvmObjective : public Objective {
   std::unique_ptr<State> state_;
 };
 
-// The outputs of one view: Y (N x D), or, when `gram` is given, only Y Y^T of centred outputs
+// The outputs of one view: Y (N x D), or, when `gram` is given, only Y Y^T of centered outputs
 // (N x N) with their number.
 struct DetailView {
-  Eigen::MatrixXd gram;    // N x N, of the centred (not scaled) outputs
+  Eigen::MatrixXd gram;    // N x N, of the centered (not scaled) outputs
   double num_outputs = 0;  // D_M
 };
 
-// Gram matrix of the centred (and with kPerColumn scaled) columns of `outputs` (N x D_M).
+// Gram matrix of the centered (and with kPerColumn scaled) columns of `outputs` (N x D_M).
 DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling);
 // The same of the rows `rows` of `outputs`. What the components leave out is taken to be spread
-// evenly over the rows: without it the noise would be learnt too small.
+// evenly over the rows: without it the noise would be learned too small.
 DetailView MakeDetailView(const PrincipalComponents& outputs, const std::vector<Eigen::Index>& rows,
                           ViewScaling scaling);
 

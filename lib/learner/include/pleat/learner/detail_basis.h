@@ -45,7 +45,7 @@ class DetailBasis {
   // Rounds `basis` (D_M x r): component k gets planes until its step (scale of its last plane) is
   // at most largest_steps[k], at most kMaxPlanes of them. kInvalidArgument when a number of mean or
   // basis is not finite as a float.
-  static absl::StatusOr<DetailBasis> Quantise(
+  static absl::StatusOr<DetailBasis> Quantize(
       const Eigen::Ref<const Eigen::VectorXf>& mean, const Eigen::Ref<const Eigen::MatrixXd>& basis,
       const Eigen::Ref<const Eigen::VectorXd>& largest_steps);
   static constexpr int kMaxPlanes = 3;

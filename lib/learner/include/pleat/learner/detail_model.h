@@ -6,7 +6,7 @@
 //   regional  features -> coefficients, a sum over body regions, mixed with a share of gp
 //   detail  = mean + basis * coefficients
 //
-// Source: the paper, section IV-B (prediction); method.md 5.5, 5.6 (confidence and fading).
+// Source: the paper, section IV-B (prediction); docs/method/prediction.md#confidence.
 #pragma once
 
 #include <Eigen/Core>
@@ -87,7 +87,7 @@ struct DetailModelOptions {
 
 struct DetailModelSummary {
   int num_components = 0;
-  double kept_energy = 1;  // share of the centred details that the components carry
+  double kept_energy = 1;  // share of the centered details that the components carry
   GpRegressionSummary gp;  // of the direct learner or the back-map
   SharedGplvmSummary sgplvm;
   double training_rms = 0;  // over all entries of Y_M, unit of Y_M, of the model's own predictions

@@ -6,7 +6,7 @@
 // The sets of a region are all features, those of the joints near it, those of the nearest: what
 // the near joints explain carries over to poses whose far joints were never seen together with
 // them, and close to the training frames the set of all features explains the rest. Source:
-// method.md 5.7 (regions); D. Duvenaud, H. Nickisch, C. E. Rasmussen, "Additive Gaussian
+// docs/method/learner.md#regions; D. Duvenaud, H. Nickisch, C. E. Rasmussen, "Additive Gaussian
 // Processes", NIPS 2011 (sums of kernels over subsets of the inputs).
 #pragma once
 
@@ -34,7 +34,7 @@ struct RegionalGpOptions {
   int max_hyperparameter_rows = 400;  // as in GpRegressionOptions
   int max_rows = 600;
   // D, what divides every input, so that some count more than others (as a GpRegression on the same
-  // inputs has learnt); empty: one number for all. Only their ratios matter.
+  // inputs has learned); empty: one number for all. Only their ratios matter.
   Eigen::VectorXd input_scales{};
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
@@ -43,8 +43,8 @@ struct RegionalGpOptions {
 struct RegionalGpParameters {
   struct Scale {
     std::vector<int> columns;  // ascending
-    double inverse_width = 1;  // g, 1 / (normalised input unit)^2
-    double amplitude = 1;      // a, (normalised output unit)^2
+    double inverse_width = 1;  // g, 1 / (normalized input unit)^2
+    double amplitude = 1;      // a, (normalized output unit)^2
     double linear = 0;         // c
   };
   struct Region {
@@ -54,7 +54,7 @@ struct RegionalGpParameters {
   };
   Eigen::VectorXd input_mean;    // D
   Eigen::VectorXd input_scales;  // D, units of the inputs
-  Eigen::MatrixXd inputs;        // N x D, normalised: (x - mean) / scale
+  Eigen::MatrixXd inputs;        // N x D, normalized: (x - mean) / scale
   Eigen::VectorXd output_mean;   // r
   std::vector<Region> regions;
 };
@@ -66,7 +66,7 @@ class RegionalGp {
  public:
   // What one thread needs for its queries. Sized by the first query, reused without allocation.
   struct Workspace {
-    Eigen::VectorXd row;      // D, normalised
+    Eigen::VectorXd row;      // D, normalized
     Eigen::VectorXd scratch;  // of RegionalFactors
     Eigen::VectorXf factors;  // R N, all kernels
     Eigen::VectorXf sum;      // r

@@ -9,7 +9,7 @@
 namespace pleat {
 
 struct RidgeOptions {
-  // Penalty on squared weights, as a share of the mean squared norm of the centred inputs times N.
+  // Penalty on squared weights, as a share of the mean squared norm of the centered inputs times N.
   // Chosen on contiguous blocks held out of training clips (lib/gp/README.md).
   double penalty = 1e-3;
 };

@@ -28,7 +28,7 @@ class DecodeSession {
 
   bool done() const { return next_ >= range_.end; }
   int next_frame() const { return next_; }
-  // The frame next_frame() (3 x V, metres), valid until the next call; call while not done.
+  // The frame next_frame() (3 x V, meters), valid until the next call; call while not done.
   absl::StatusOr<const Eigen::Matrix3Xf*> Next();
 
   // The first frame of the range with connectivity, appearance, name and frame rate; before Next.

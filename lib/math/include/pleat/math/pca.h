@@ -10,7 +10,7 @@ struct PrincipalComponents {
   Eigen::VectorXd mean;    // D
   Eigen::MatrixXd basis;   // D x r, orthonormal columns, by falling variance
   Eigen::MatrixXd scores;  // N x r
-  double kept_energy = 1;  // share of the centred sum of squares that r components carry, 0..1
+  double kept_energy = 1;  // share of the centered sum of squares that r components carry, 0..1
 };
 
 struct PcaOptions {

@@ -23,7 +23,7 @@ struct RigidTransform {
   }
 };
 
-// The rigid motion that minimises sum_i weights_i |R source_i + t - target_i|^2 (Kabsch; Procrustes
+// The rigid motion that minimizes sum_i weights_i |R source_i + t - target_i|^2 (Kabsch; Procrustes
 // without scale). source, target: 3 x N; weights: N, or empty for ones. kInvalidArgument when sizes
 // differ or no weight is positive.
 absl::StatusOr<RigidTransform> FitRigidTransform(const Eigen::Ref<const Eigen::Matrix3Xd>& source,

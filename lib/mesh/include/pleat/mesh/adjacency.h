@@ -9,7 +9,7 @@
 
 namespace pleat {
 
-// Neighbours of every vertex along polygon edges, ascending and without repetition.
+// Neighbors of every vertex along polygon edges, ascending and without repetition.
 class VertexAdjacency {
  public:
   explicit VertexAdjacency(const Topology& topology);

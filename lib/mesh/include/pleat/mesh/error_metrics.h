@@ -6,7 +6,8 @@
 
 namespace pleat {
 
-// Percent values are of the bounding-box diagonal of the rest frame (method.md, section 6).
+// Percent values are of the bounding-box diagonal of the rest frame
+// (docs/method/evaluation.md#metrics).
 struct ErrorSummary {
   double mean_percent = 0;
   double rms_percent = 0;  // root of the mean squared vertex distance
@@ -28,10 +29,10 @@ struct ErrorSummary {
 // Collects the distances frame by frame, so that no second animation has to be in memory.
 class ErrorAccumulator {
  public:
-  // diagonal_m: length of the reference diagonal, metres, > 0.
+  // diagonal_m: length of the reference diagonal, meters, > 0.
   explicit ErrorAccumulator(double diagonal_m) : diagonal_m_(diagonal_m) {}
 
-  // predicted, truth: 3 x V, metres. `follows_previous` says that this frame is the successor in
+  // predicted, truth: 3 x V, meters. `follows_previous` says that this frame is the successor in
   // time of the frame added before, which makes the pair count for the motion error.
   void AddFrame(const Eigen::Ref<const Eigen::Matrix3Xd>& predicted,
                 const Eigen::Ref<const Eigen::Matrix3Xd>& truth, bool follows_previous = true);

@@ -23,7 +23,7 @@ struct MeshReport {
   int num_duplicate_vertices = 0;     // at exactly the place of an earlier one
   int num_degenerate_faces = 0;       // a corner twice, or area below 1e-12 diagonal^2
   double signed_volume_m3 = 0;        // > 0: faces outwards; exact for closed meshes only
-  Eigen::AlignedBox3d bounds;         // of all vertices, metres
+  Eigen::AlignedBox3d bounds;         // of all vertices, meters
 
   bool closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
 };

@@ -29,7 +29,7 @@ struct MeshSequenceOptions {
 
 // A sequence that exists has at least one frame, V finite positions in each, a positive frame rate
 // and an appearance whose indices fit the topology; nobody downstream checks again. Positions are
-// metres, Y up, float32 (what captures hold); computations widen to double. Cheap to copy: the data
+// meters, Y up, float32 (what captures hold); computations widen to double. Cheap to copy: the data
 // are shared and immutable.
 class MeshSequence {
  public:

@@ -23,7 +23,7 @@ struct LbfgsOptions {
   double curvature = .9;              // second Wolfe constant
 };
 
-// Minimises `objective` from `start` and returns the best point found: about 1.1 evaluations per
+// Minimizes `objective` from `start` and returns the best point found: about 1.1 evaluations per
 // iteration. Errors as MinimizeScg. `summary` may be null.
 absl::StatusOr<Eigen::VectorXd> MinimizeLbfgs(Objective& objective, const Eigen::VectorXd& start,
                                               const LbfgsOptions& options = {},

@@ -1,4 +1,4 @@
-// What an optimiser minimises, and the one derivative checker for all objectives.
+// What an optimizer minimizes, and the one derivative checker for all objectives.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ class Objective {
   virtual ~Objective() = default;
   virtual int num_unknowns() const = 0;
   // The value at x (n); fills `gradient` (n) when it is not null. A value that is not finite tells
-  // the optimiser that x is outside the domain.
+  // the optimizer that x is outside the domain.
   virtual double Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) = 0;
 };
 

@@ -1,4 +1,4 @@
-// Scaled conjugate gradients, the optimiser of the paper (section IV-B).
+// Scaled conjugate gradients, the optimizer of the paper (section IV-B).
 // Source: M. F. Moller, "A scaled conjugate gradient algorithm for fast supervised learning",
 // Neural Networks 6 (1993).
 #pragma once
@@ -31,7 +31,7 @@ struct ScgOptions {
   double min_lambda = 1e-15, max_lambda = 1e100;
 };
 
-// Minimises `objective` from `start` and returns the best point found: about 1.9 evaluations per
+// Minimizes `objective` from `start` and returns the best point found: about 1.9 evaluations per
 // iteration. Errors: kInvalidArgument when the objective or its gradient is not finite at the
 // start or `start` has the wrong size; kCancelled. `summary` may be null.
 absl::StatusOr<Eigen::VectorXd> MinimizeScg(Objective& objective, const Eigen::VectorXd& start,

@@ -12,7 +12,7 @@ using SimplexQpMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSimplexQpSize, kMaxSimplexQpSize>;
 using SimplexQpVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSimplexQpSize, 1>;
 
-// Minimises 1/2 x^T H x - c^T x over x >= 0, sum x = 1. hessian: n x n, symmetric positive
+// Minimizes 1/2 x^T H x - c^T x over x >= 0, sum x = 1. hessian: n x n, symmetric positive
 // definite, n <= kMaxSimplexQpSize; linear: n; `x`: n, a feasible start, overwritten. No
 // allocation. Exact up to rounding.
 void SolveSimplexQp(const SimplexQpMatrix& hessian, const SimplexQpVector& linear,

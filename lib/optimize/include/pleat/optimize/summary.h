@@ -1,4 +1,4 @@
-// What every optimiser reports about a run.
+// What every optimizer reports about a run.
 #pragma once
 
 #include <string>

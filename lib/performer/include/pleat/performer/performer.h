@@ -39,11 +39,11 @@ struct PerformerTruth {
 };
 
 struct Performer {
-  MeshSequence sequence;  // closed surface of genus 0, triangles oriented outward, metres
+  MeshSequence sequence;  // closed surface of genus 0, triangles oriented outward, meters
   PerformerTruth truth;
 };
 
-// Makes a person in a skirt: an implicit body polygonised and remeshed to the wanted resolution, a
+// Makes a person in a skirt: an implicit body polygonized and remeshed to the wanted resolution, a
 // procedural motion, and a skirt whose swing is integrated as cloth (XPBD) that collides with the
 // legs. Frame 0 stands still with the arms away from the body. The result depends on the options
 // alone. kInvalidArgument names an option out of range; kCancelled.

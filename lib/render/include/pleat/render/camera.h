@@ -20,7 +20,7 @@ struct ViewOptions {
 // Maps world points to pixels (x right, y down) and depth (smaller is nearer).
 class Camera {
  public:
-  // A camera in the direction of `view` that shows all of `points` (3 x N, metres).
+  // A camera in the direction of `view` that shows all of `points` (3 x N, meters).
   static Camera Fit(const ViewOptions& view, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
   const ViewOptions& view() const { return view_; }
@@ -33,9 +33,9 @@ class Camera {
  private:
   ViewOptions view_;
   Eigen::Matrix3d camera_from_world_ = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // world, shown in the middle
-  double distance_ = 1;                               // perspective: viewer to centre, metres
-  double scale_ = 1;                                  // pixels per metre at the centre
+  Eigen::Vector3d center_ = Eigen::Vector3d::Zero();  // world, shown in the middle
+  double distance_ = 1;                               // perspective: viewer to center, meters
+  double scale_ = 1;                                  // pixels per meter at the center
 };
 
 }  // namespace pleat

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "pleat/render/colour_scale.h"
+#include "pleat/render/color_scale.h"
 #include "pleat/render/render_mesh.h"
 
 namespace pleat {
 
 struct SheetTile {
-  Eigen::Matrix3Xd positions;                   // 3 x V, metres
+  Eigen::Matrix3Xd positions;                   // 3 x V, meters
   const Eigen::Matrix3Xi* triangles = nullptr;  // 3 x F, must outlive the call
-  std::vector<Rgb> vertex_colours;              // V, or empty
+  std::vector<Rgb> vertex_colors;               // V, or empty
   double shading = 1;                           // as in RenderOptions
   std::optional<SkeletonOverlay> skeleton;
   std::string label;  // lower left corner, e.g. "frame 12"
@@ -24,13 +24,13 @@ struct SheetTile {
 struct ContactSheetOptions {
   int num_columns = 4;
   ViewOptions view{.width = 256, .height = 320};  // of one tile
-  // Every tile is moved so that its own centre (x and z) is in the middle, which keeps travelling
+  // Every tile is moved so that its own center (x and z) is in the middle, which keeps traveling
   // characters large; the scale stays that of the largest tile.
-  bool centre_tiles = true;
+  bool center_tiles = true;
   bool floor = true;  // grid at the lowest point of all tiles
   std::string title;
   std::vector<std::string> column_titles, row_titles;  // empty, or one per column / row
-  std::optional<ColourScale> legend;
+  std::optional<ColorScale> legend;
 };
 
 // Tiles row by row; the last row may be short. kInvalidArgument when there is no tile, a tile's

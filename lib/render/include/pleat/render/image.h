@@ -32,14 +32,14 @@ class Image {
   const std::vector<Rgb>& pixels() const { return pixels_; }  // rows from the top
 
   // Everything below clips at the borders.
-  void FillRectangle(int left, int top, int width, int height, Rgb colour);
+  void FillRectangle(int left, int top, int width, int height, Rgb color);
   void Paste(const Image& source, int left, int top);
-  // An anti-aliased line from (x0, y0) to (x1, y1), pixel centres at whole numbers.
-  void DrawLine(double x0, double y0, double x1, double y1, double thickness, Rgb colour);
-  void DrawDot(double x, double y, double radius, Rgb colour);
+  // An anti-aliased line from (x0, y0) to (x1, y1), pixel centers at whole numbers.
+  void DrawLine(double x0, double y0, double x1, double y1, double thickness, Rgb color);
+  void DrawDot(double x, double y, double radius, Rgb color);
 
  private:
-  void Blend(int x, int y, double opacity, Rgb colour);
+  void Blend(int x, int y, double opacity, Rgb color);
 
   int width_, height_;
   std::vector<Rgb> pixels_;

@@ -14,23 +14,23 @@ enum class BodySide { kMiddle, kLeft, kRight };
 
 // Bones as lines and joints as dots, drawn over the mesh: left blue, right red, middle dark.
 struct SkeletonOverlay {
-  Eigen::Matrix3Xd joints;      // 3 x J, metres
+  Eigen::Matrix3Xd joints;      // 3 x J, meters
   std::vector<int> parents;     // J, -1 for a root
   std::vector<BodySide> sides;  // J, or empty
 };
 
 struct RenderOptions {
-  Rgb colour{190, 192, 200};       // of the mesh where no vertex colours are given
-  Rgb back_colour{196, 130, 110};  // of faces seen from behind
+  Rgb color{190, 192, 200};       // of the mesh where no vertex colors are given
+  Rgb back_color{196, 130, 110};  // of faces seen from behind
   Rgb background{255, 255, 255};
-  std::vector<Rgb> vertex_colours;  // V, or empty
-  // 1: lit; 0: colours as they are, whose meaning light would change; between: both mixed.
+  std::vector<Rgb> vertex_colors;  // V, or empty
+  // 1: lit; 0: colors as they are, whose meaning light would change; between: both mixed.
   double shading = 1;
-  std::optional<double> floor_y;  // draws a half-metre grid at this height, metres
+  std::optional<double> floor_y;  // draws a half-meter grid at this height, meters
   std::optional<SkeletonOverlay> skeleton;
 };
 
-// positions: 3 x V, metres; triangles: 3 x F, counter-clockwise from outside.
+// positions: 3 x V, meters; triangles: 3 x F, counter-clockwise from outside.
 Image RenderMesh(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                  const Eigen::Ref<const Eigen::Matrix3Xi>& triangles, const Camera& camera,
                  const RenderOptions& options = {});

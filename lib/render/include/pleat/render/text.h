@@ -13,6 +13,6 @@ int TextWidth(std::string_view text, int scale);
 
 // Draws one line with its top left corner at (left, top). Characters outside printable ASCII
 // become '?'.
-void DrawText(Image* image, int left, int top, std::string_view text, int scale, Rgb colour);
+void DrawText(Image* image, int left, int top, std::string_view text, int scale, Rgb color);
 
 }  // namespace pleat

@@ -28,9 +28,9 @@ struct AutoRigOptions {
   // Also try other axes than +y as up when no frame is trusted as it stands (Z up, lying, upside
   // down). The rig stays in the axes of the input.
   bool any_orientation = true;
-  // Residuals of the embedding (method.md, 2.2): below `trusted` the first frame is taken at once,
-  // arms that reach out provided; above it the rig carries a warning, above `refused` there is
-  // none.
+  // Residuals of the embedding (docs/method/rig.md#the-residual): below `trusted` the first frame
+  // is taken at once, arms that reach out provided; above it the rig carries a warning, above
+  // `refused` there is none.
   double trusted_residual = .03;
   double refused_residual = .15;
   // What Embedding::arm_shortfall adds to the residual when frames are compared.

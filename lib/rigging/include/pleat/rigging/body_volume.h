@@ -21,10 +21,10 @@ struct BodyVolumeOptions {
   int num_threads = 1;       // 0 = one per core
 };
 
-// The mesh scaled uniformly so that its longest side is 0.9, centred at 0.5 (Baran and Popovic
+// The mesh scaled uniformly so that its longest side is 0.9, centered at 0.5 (Baran and Popovic
 // 2007, section 3), with its distance field and medial samples. unit = scale * world + offset.
 struct BodyVolume {
-  double scale = 1;  // unit lengths per metre
+  double scale = 1;  // unit lengths per meter
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   SolidSurface surface;  // unit box
   std::unique_ptr<const TriangleTree> tree;

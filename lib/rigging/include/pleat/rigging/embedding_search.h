@@ -20,7 +20,7 @@ struct SearchOptions {
 
 struct SearchResult {
   std::vector<int> spheres;  // per joint of the search tree
-  double penalty = 0;        // the residual of method.md, 2.2
+  double penalty = 0;        // the residual of docs/method/rig.md#the-residual
   int num_states = 0;        // generated
 };
 

@@ -11,7 +11,7 @@ namespace pleat {
 // A placed human skeleton in one frame of a sequence.
 struct FacingHypothesis {
   int frame = 0;
-  Eigen::Matrix3Xd joints;                             // 3 x 18, template order, metres
+  Eigen::Matrix3Xd joints;                             // 3 x 18, template order, meters
   Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();  // where the character is said to face
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();       // unit, perpendicular to `forward`
 };

@@ -19,17 +19,17 @@ struct HeatWeightsOptions {
 };
 
 struct HeatWeightsSummary {
-  int num_hidden_vertices = 0;  // that see no bone and take their heat from their neighbours
+  int num_hidden_vertices = 0;  // that see no bone and take their heat from their neighbors
   int num_cold_components = 0;  // without any visible bone: heated by their nearest bones
 };
 
-// Solves (-L + H) w_b = H p_b for every bone b (Baran and Popovic 2007, section 4; method.md, 2.3):
-// L the cotangent Laplacian, H_i = c / d_i^2 at the nearest visible bone, p_b = 1 where b is that
-// bone. Each equation is scaled by the vertex's area, so that the weights depend neither on unit
-// nor on resolution. A vertex sees a bone when the segment to its nearest point stays inside the
-// body. positions: 3 x V, rest pose; skeleton: rest positions in the same unit. Vertices without
-// triangle follow their nearest bone. At most four influences per vertex. kInvalidArgument when the
-// mesh has no area or the skeleton no bone, kCancelled.
+// Solves (-L + H) w_b = H p_b for every bone b (Baran and Popovic 2007, section 4;
+// docs/method/rig.md#heat-weights): L the cotangent Laplacian, H_i = c / d_i^2 at the nearest
+// visible bone, p_b = 1 where b is that bone. Each equation is scaled by the vertex's area, so that
+// the weights depend neither on unit nor on resolution. A vertex sees a bone when the segment to
+// its nearest point stays inside the body. positions: 3 x V, rest pose; skeleton: rest positions in
+// the same unit. Vertices without triangle follow their nearest bone. At most four influences per
+// vertex. kInvalidArgument when the mesh has no area or the skeleton no bone, kCancelled.
 absl::StatusOr<SkinWeights> ComputeHeatWeights(const Topology& topology,
                                                const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                                const Skeleton& skeleton,

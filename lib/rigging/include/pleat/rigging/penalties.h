@@ -8,8 +8,9 @@
 
 namespace pleat {
 
-// Weights of the nine penalties (method.md, 2.2; the kinds are those of Baran and Popovic 2007,
-// section 3.3, the formulas are our own). A weighted penalty over 1 forbids.
+// Weights of the nine penalties (docs/method/rig.md#the-nine-penalties; the kinds are those of
+// Baran and Popovic 2007, section 3.3, the formulas are our own). A weighted penalty over 1
+// forbids.
 struct PenaltyWeights {
   double length = .027;           // bone chain shorter than the template's
   double direction = .023;        // against parent and siblings
@@ -78,7 +79,7 @@ class PenaltyModel {
   std::vector<std::vector<int>> candidates_;
 };
 
-// Points at the given fractions of the length of the polyline `path` of sphere centres.
+// Points at the given fractions of the length of the polyline `path` of sphere centers.
 Eigen::Matrix3Xd PointsAlongPath(const SphereGraph& graph, const std::vector<int>& path,
                                  const std::vector<double>& fractions);
 

@@ -9,11 +9,11 @@
 
 namespace pleat {
 
-// Weights of method.md, 2.2, step 9 (unit box lengths), and what measuring added to it.
+// Weights of docs/method/rig.md#refinement (unit box lengths), and what measuring added to it.
 struct RefinementOptions {
   // Squared distance of the bone to the medial surface, across the bone and mean over it. Along
   // the bone only leaves are held: a knee may slide to where the leg's proportions want it.
-  double centring = 15000;
+  double centering = 15000;
   // Where the medial surface lies deeper than this (about a limb's radius) its pull falls with the
   // square of the depth: the middle of a skirt says little about a thigh.
   double limb_radius = .03;
@@ -31,7 +31,7 @@ struct RefinementOptions {
   int max_iterations = 60;
 };
 
-// Minimises the weighted sum over the bones of the human template by Levenberg-Marquardt, the
+// Minimizes the weighted sum over the bones of the human template by Levenberg-Marquardt, the
 // nearest medial samples kept fixed within a step (Baran and Popovic 2007, section 3.4). joints:
 // start, 3 x 18 in template order, unit box. template_joints: 3 x 18, turned by the yaw and of the
 // body's size. Returns the refined joints.

@@ -10,11 +10,11 @@
 
 namespace pleat {
 
-// Spheres as nodes, edges where one can walk inside the body from centre to centre.
+// Spheres as nodes, edges where one can walk inside the body from center to center.
 class SphereGraph {
  public:
-  // Overlapping spheres are joined; others when the ball over the segment between their centres
-  // holds no third centre (Gabriel) and the segment stays at least half the smaller radius deep
+  // Overlapping spheres are joined; others when the ball over the segment between their centers
+  // holds no third center (Gabriel) and the segment stays at least half the smaller radius deep
   // (Baran and Popovic 2007, section 3.1).
   SphereGraph(std::vector<Sphere> spheres, const DistanceField& field);
   // The given edges (pairs of indices) instead.
@@ -23,7 +23,7 @@ class SphereGraph {
   int size() const { return static_cast<int>(spheres_.size()); }
   const Sphere& sphere(int i) const { return spheres_[i]; }
   const std::vector<Sphere>& spheres() const { return spheres_; }
-  const std::vector<int>& neighbours(int i) const { return neighbours_[i]; }
+  const std::vector<int>& neighbors(int i) const { return neighbors_[i]; }
 
   // Length of the shortest path, infinite when there is none.
   double PathLength(int from, int to) const { return distances_(to, from); }
@@ -36,7 +36,7 @@ class SphereGraph {
   void ComputeShortestPaths();
 
   std::vector<Sphere> spheres_;
-  std::vector<std::vector<int>> neighbours_;
+  std::vector<std::vector<int>> neighbors_;
   Eigen::MatrixXd distances_;     // N x N, column = start
   Eigen::MatrixXi predecessors_;  // N x N, column = start; -1 = none
 };

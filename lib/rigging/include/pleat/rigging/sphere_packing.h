@@ -8,12 +8,12 @@
 namespace pleat {
 
 struct Sphere {
-  Eigen::Vector3d centre;
+  Eigen::Vector3d center;
   double radius;
 };
 
 // Greedy packing of the inscribed spheres of `samples`, largest first; a sphere is taken when its
-// centre lies outside all taken before (Baran and Popovic 2007, section 3.1). Sorted by falling
+// center lies outside all taken before (Baran and Popovic 2007, section 3.1). Sorted by falling
 // radius.
 std::vector<Sphere> PackSpheres(std::vector<MedialSample> samples, int max_spheres = 1000);
 

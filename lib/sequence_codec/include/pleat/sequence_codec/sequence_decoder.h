@@ -57,14 +57,14 @@ class SequenceDecoder {
 
   using FrameSink = std::function<absl::Status(int t, const Eigen::Matrix3Xf& positions)>;
 
-  // Gives the frames [begin, end) to `sink`, in order (3 x V, metres). Work is proportional to the
+  // Gives the frames [begin, end) to `sink`, in order (3 x V, meters). Work is proportional to the
   // range plus the fields of each segment (up to 512 frames) that it touches. Frames are exactly
   // the ones that the encoder measured: a checksum of every 16 frames says so, else kDataLoss.
   // kInvalidArgument when the range is not inside the sequence; kCancelled; or the sink's error.
   // Not for two threads at once.
   absl::Status Decode(int begin, int end, const FrameSink& sink, const Progress& progress = {});
 
-  // Frame t alone (3 x V, metres), as Decode gives it; valid until the next call. Frames in order
+  // Frame t alone (3 x V, meters), as Decode gives it; valid until the next call. Frames in order
   // cost the same as by Decode: the segment and the group decoded last are kept.
   absl::StatusOr<const Eigen::Matrix3Xf*> DecodeFrame(int t);
 

@@ -55,7 +55,7 @@ struct JobInfo {
   std::string rig_id;               // hex SHA-256 of TrainingRequest::rig, or empty
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1
-  std::optional<double> objective;  // of the running optimiser
+  std::optional<double> objective;  // of the running optimizer
   std::optional<double> eta_seconds;
   std::vector<std::string> warnings;
   absl::Status error;     // why it failed or was cancelled
@@ -101,7 +101,7 @@ struct FrameRange {
 struct DecodedFramesSink {
   // The first frame of the range: connectivity, appearance, name, frame rate.
   std::function<absl::Status(const MeshSequence& shape)> on_shape;
-  // Every frame of the range. positions: 3 x V, metres.
+  // Every frame of the range. positions: 3 x V, meters.
   std::function<absl::Status(int t, const Eigen::Matrix3Xf& positions)> on_frame;
 };
 

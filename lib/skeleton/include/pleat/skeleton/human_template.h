@@ -1,4 +1,4 @@
-// The 18-joint human template of the paper (method.md, 2.1).
+// The 18-joint human template of the paper (docs/method/rig.md#the-template).
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Poses, pose tracks and forward kinematics (method.md, 3.1).
+// Poses, pose tracks and forward kinematics (docs/method/fit.md#bone-model).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,7 @@ namespace pleat {
 
 // One pose of a skeleton with J joints.
 struct Pose {
-  Eigen::Vector3d root_position = Eigen::Vector3d::Zero();  // joint 0 in the world, metres
+  Eigen::Vector3d root_position = Eigen::Vector3d::Zero();  // joint 0 in the world, meters
   // rotations[0]: root, world. rotations[b]: bone b relative to bone parent(b), in the axes of the
   // rest pose (all identity = rest pose). Unit quaternions.
   std::vector<Eigen::Quaterniond> rotations;
@@ -36,7 +36,7 @@ struct BoneTransforms {
   std::vector<Eigen::Matrix3d> linear;       // J: R_b, or R_b S_b with scaled bone lengths
   std::vector<Eigen::Vector3d> translation;  // J
   std::vector<Eigen::Matrix3d> rotation;     // J: R_b without the stretch
-  Eigen::Matrix3Xd joint_positions;          // 3 x J, posed, metres
+  Eigen::Matrix3Xd joint_positions;          // 3 x J, posed, meters
 };
 
 // Fills `transforms`, reusing its memory: no allocation once it has the right size.

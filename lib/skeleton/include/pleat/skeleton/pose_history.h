@@ -13,7 +13,7 @@ namespace pleat {
 Pose SamplePose(const PoseTrack& track, int clip_begin, int clip_end, double position);
 
 // Finds each pose's history at the intervals that a model was trained with, so that velocity means
-// the same at any frame rate (method.md, 5.6). History never crosses a clip boundary.
+// the same at any frame rate (docs/method/fit.md#history). History never crosses a clip boundary.
 class PoseHistory {
  public:
   // track must outlive this; interval_fps: frame rate of the history (the model's); depth >= 1:

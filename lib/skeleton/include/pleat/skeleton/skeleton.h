@@ -12,12 +12,12 @@ namespace pleat {
 struct Joint {
   std::string name;
   int parent = -1;                // index, smaller than the joint's own; -1 only for the root
-  Eigen::Vector3d rest_position;  // metres, world, Y up
+  Eigen::Vector3d rest_position;  // meters, world, Y up
 };
 
 // Joints in parent-before-child order; joint 0 is the root and has no bone. Bone b (b >= 1) is the
-// segment from joint parent(b) to joint b and turns about parent(b) (method.md, 2.1): one rotation
-// per non-root joint, that is per bone.
+// segment from joint parent(b) to joint b and turns about parent(b)
+// (docs/method/rig.md#the-template): one rotation per non-root joint, that is per bone.
 class Skeleton {
  public:
   // kInvalidArgument when the order, a parent, a position or a name (empty, twice) is wrong.
@@ -31,7 +31,7 @@ class Skeleton {
   const std::vector<int>& children(int j) const { return children_[j]; }
   int FindJoint(const std::string& name) const;  // index or -1
 
-  // The same hierarchy with other rest positions (3 x J, metres).
+  // The same hierarchy with other rest positions (3 x J, meters).
   Skeleton WithRestPositions(const Eigen::Matrix3Xd& positions) const;
   Eigen::Matrix3Xd RestPositions() const;  // 3 x J
 

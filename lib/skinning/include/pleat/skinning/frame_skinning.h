@@ -43,7 +43,7 @@ class FrameSkinning {
   // Vertices of the blocks first_block to first_block + num_blocks - 1 (block i: vertices 16 i to
   // 16 i + 15, fewer in the last):
   //   position_v = sum_b w_vb (linear_b rest_v + translation_b) + R(q_v) detail_v
-  // with q_v the normalised mean of the quaternions of its bones, signs aligned with the strongest.
+  // with q_v the normalized mean of the quaternions of its bones, signs aligned with the strongest.
   // details: for each block x of its 16 vertices, y, z; or null for none. positions: 3 x V.
   void SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks, const float* details,
                   Eigen::Matrix3Xf* positions) const;
@@ -53,7 +53,7 @@ class FrameSkinning {
 
   // What 16 vertices need. In the last block the last vertex fills the lanes left over.
   struct alignas(64) Block {
-    float rest[3 * kSkinningLanes];  // x of all, y, z; metres
+    float rest[3 * kSkinningLanes];  // x of all, y, z; meters
     float weights[kMaxInfluences * kSkinningLanes];
     uint16_t bones[kMaxInfluences * kSkinningLanes];  // the strongest of each vertex first
   };

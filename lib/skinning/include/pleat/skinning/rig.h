@@ -13,7 +13,7 @@ namespace pleat {
 struct Rig {
   Skeleton skeleton;
   SkinWeights weights;
-  Eigen::Matrix3Xd rest_positions;  // 3 x V, metres, rest pose
+  Eigen::Matrix3Xd rest_positions;  // 3 x V, meters, rest pose
 };
 
 // Linear blend skinning: column v of `positions` = sum_b w_vb (linear_b rest_v + translation_b).
@@ -23,7 +23,7 @@ void SkinVertices(const SkinWeights& weights, const Eigen::Ref<const Eigen::Matr
 
 // The rotation of every vertex's own blend (unit quaternion: the weighted mean of its bones'
 // rotations, signs aligned with the strongest bone), the axes of "local" details
-// (method.md, section 4). Vertices `vertices` only, in that order.
+// (docs/method/details.md#axes). Vertices `vertices` only, in that order.
 void BlendRotations(const SkinWeights& weights, const std::vector<int>& vertices,
                     const BoneTransforms& transforms, std::vector<Eigen::Quaterniond>* rotations);
 

@@ -16,7 +16,7 @@ struct DracoFileLimits {
 };
 
 struct DracoGeometry {
-  // 3 x N, metres: the position values of a mesh in the order of the file (corners that differ in a
+  // 3 x N, meters: the position values of a mesh in the order of the file (corners that differ in a
   // texture coordinate only share one), or the points of a point cloud.
   Eigen::Matrix3Xf positions;
   Eigen::Matrix3Xi triangles;  // 3 x F, columns of `positions`, checked; none in a point cloud

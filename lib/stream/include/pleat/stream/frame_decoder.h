@@ -36,7 +36,7 @@ class FrameDecoder {
   const Topology& topology() const { return topology_; }
   const Eigen::Matrix3Xf& reference() const { return reference_; }  // 3 x V, decoded
 
-  // Fills `positions` (3 x V, metres, character's vertex order). kDataLoss says what is wrong; then
+  // Fills `positions` (3 x V, meters, character's vertex order). kDataLoss says what is wrong; then
   // `positions` holds nothing useful. Not for two threads at once.
   // `mark` is the frame's own; streams other than kDracoDelta do without. In those a frame that is
   // a difference needs the frame before: after an error only a key frame is decoded again.

@@ -29,7 +29,7 @@ struct FrameEncoderOptions {
 // One per thread: it owns the scratch memory of Draco.
 class FrameEncoder {
  public:
-  // reference: 3 x V, metres, usually the rest pose; it gives the box and the vertex order.
+  // reference: 3 x V, meters, usually the rest pose; it gives the box and the vertex order.
   // control_vertices: of kControlMesh, whose own topology and frames these are; for the header.
   // kInvalidArgument names a wrong option, count or vertex.
   static absl::StatusOr<FrameEncoder> Create(const Topology& topology,
@@ -42,7 +42,7 @@ class FrameEncoder {
 
   const StreamHeader& header() const;
 
-  // positions: 3 x V, metres. The decoded coordinates differ by at most half of box.step_m() (and
+  // positions: 3 x V, meters. The decoded coordinates differ by at most half of box.step_m() (and
   // the rounding of float32). kInvalidArgument names the first vertex that is not finite,
   // kOutOfRange the first that is too far from the box.
   // In a kDracoDelta stream the frame is the cheaper of a key frame and a difference to the frame

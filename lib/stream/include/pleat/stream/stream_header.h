@@ -35,7 +35,7 @@ struct FrameMark {
 };
 
 // One grid for a whole session: a coordinate x of axis a becomes the integer
-// round((x - origin_m[a]) / step_m()). Draco calls this explicit quantisation; it does not clip, so
+// round((x - origin_m[a]) / step_m()). Draco calls this explicit quantization; it does not clip, so
 // positions outside the box only cost more bits.
 struct QuantizationBox {
   Eigen::Vector3f origin_m = Eigen::Vector3f::Zero();  // lowest corner
@@ -46,7 +46,7 @@ struct QuantizationBox {
   // Largest distance from the box that is still encoded, in box edges.
   static constexpr float kMaxEdgesOutside = 16;
 
-  // Distance of two neighbouring grid points; an encoded coordinate is wrong by at most half of it.
+  // Distance of two neighboring grid points; an encoded coordinate is wrong by at most half of it.
   double step_m() const { return static_cast<double>(range_m) / ((1 << bits) - 1); }
   // kInvalidArgument names what is wrong.
   absl::Status Validate() const;
@@ -65,7 +65,7 @@ struct StreamHeader {
   // vertex of the character it is.
   std::string topology;
   // Point k of a point cloud is vertex vertex_order[k]: a permutation of 0..V-1. It is the order in
-  // which the topology mesh first shows the vertices (neighbours follow each other, which codes
+  // which the topology mesh first shows the vertices (neighbors follow each other, which codes
   // samba in 24.5 kB in place of 34.6), then the vertices it does not show.
   std::vector<int32_t> vertex_order;
   // Of kControlMesh, V: vertex i of the control mesh is vertex control_vertices[i] of the

@@ -1,4 +1,4 @@
-#include "surface_neighbours.h"
+#include "surface_neighbors.h"
 
 #include <algorithm>
 #include <array>
@@ -44,31 +44,31 @@ std::vector<std::vector<Edge>> EdgeGraph(const Topology& topology,
 
 }  // namespace
 
-std::vector<std::vector<SurfaceNeighbour>> FindSurfaceNeighbours(const Topology& topology,
-                                                                 const Eigen::Matrix3Xd& positions,
-                                                                 const std::vector<int>& sources,
-                                                                 int count) {
+std::vector<std::vector<SurfaceNeighbor>> FindSurfaceNeighbors(const Topology& topology,
+                                                               const Eigen::Matrix3Xd& positions,
+                                                               const std::vector<int>& sources,
+                                                               int count) {
   const std::vector<std::vector<Edge>> graph = EdgeGraph(topology, positions);
-  std::vector<std::vector<SurfaceNeighbour>> neighbours(graph.size());
+  std::vector<std::vector<SurfaceNeighbor>> neighbors(graph.size());
   using Entry = std::tuple<double, int, int>;  // distance, source, vertex: ties by source
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (size_t s = 0; s < sources.size(); ++s) queue.emplace(0, static_cast<int>(s), sources[s]);
   while (!queue.empty()) {
     const auto [distance, source, vertex] = queue.top();
     queue.pop();
-    std::vector<SurfaceNeighbour>& list = neighbours[vertex];
+    std::vector<SurfaceNeighbor>& list = neighbors[vertex];
     if (static_cast<int>(list.size()) >= count) continue;
     const bool known = std::any_of(list.begin(), list.end(),
                                    [source = source](const auto& n) { return n.source == source; });
     if (known) continue;
     list.push_back({distance, source});
     for (const Edge& edge : graph[vertex]) {
-      if (static_cast<int>(neighbours[edge.vertex].size()) < count) {
+      if (static_cast<int>(neighbors[edge.vertex].size()) < count) {
         queue.emplace(distance + edge.length, source, edge.vertex);
       }
     }
   }
-  return neighbours;
+  return neighbors;
 }
 
 }  // namespace pleat

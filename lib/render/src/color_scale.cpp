@@ -1,5 +1,5 @@
 // Both maps as short piecewise-linear tables sampled from the published ones.
-#include "pleat/render/colour_scale.h"
+#include "pleat/render/color_scale.h"
 
 #include <algorithm>
 #include <array>
@@ -48,20 +48,20 @@ Rgb Lookup(const std::array<Rgb, N>& table, double u) {
 
 }  // namespace
 
-Rgb MapColour(ColourMap map, double u) {
+Rgb MapColor(ColorMap map, double u) {
   if (!(u >= 0)) u = 0;  // NaN included
-  return map == ColourMap::kViridis ? Lookup(kViridisTable, u) : Lookup(kTurboTable, u);
+  return map == ColorMap::kViridis ? Lookup(kViridisTable, u) : Lookup(kTurboTable, u);
 }
 
-std::vector<Rgb> ColourValues(const ColourScale& scale,
-                              const Eigen::Ref<const Eigen::VectorXd>& values) {
-  std::vector<Rgb> colours;
-  colours.reserve(values.size());
-  for (double value : values) colours.push_back(scale(value));
-  return colours;
+std::vector<Rgb> ColorValues(const ColorScale& scale,
+                             const Eigen::Ref<const Eigen::VectorXd>& values) {
+  std::vector<Rgb> colors;
+  colors.reserve(values.size());
+  for (double value : values) colors.push_back(scale(value));
+  return colors;
 }
 
-Image DrawColourLegend(const ColourScale& scale, int width) {
+Image DrawColorLegend(const ColorScale& scale, int width) {
   constexpr int kBarHeight = 14, kMargin = 30, kTop = 14, kHeight = 46;
   const Rgb ink{40, 40, 40};
   Image legend(width, kHeight);
@@ -69,7 +69,7 @@ Image DrawColourLegend(const ColourScale& scale, int width) {
   DrawText(&legend, kMargin, 1, absl::StrCat(scale.title, " (", scale.unit, ")"), 1, ink);
   for (int x = 0; x < bar_width; ++x) {
     legend.FillRectangle(kMargin + x, kTop, 1, kBarHeight,
-                         MapColour(scale.map, (x + .5) / bar_width));
+                         MapColor(scale.map, (x + .5) / bar_width));
   }
   const std::vector<double> ticks = RoundTicks(scale.low, scale.high, 5);
   const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : scale.high - scale.low;
