@@ -65,8 +65,7 @@ TEST(SurfaceNeighborsTest, NothingBleedsAcrossAGapOfAir) {
   // A millimeter between the boxes, but no edge.
   const TriangleMesh boxes =
       JoinMeshes(MakeBox({0, 0, 0}, {1, 1, 1}), MakeBox({1.001, 0, 0}, {2, 1, 1}));
-  const auto neighbors =
-      FindSurfaceNeighbors(MakeTopology(boxes), boxes.positions, {0, 1, 2}, 3);
+  const auto neighbors = FindSurfaceNeighbors(MakeTopology(boxes), boxes.positions, {0, 1, 2}, 3);
   for (int v = 0; v < 8; ++v) EXPECT_EQ(neighbors[v].size(), 3u);
   for (int v = 8; v < 16; ++v) EXPECT_TRUE(neighbors[v].empty());
 }
@@ -78,8 +77,8 @@ TEST(SurfaceNeighborsTest, VerticesAtTheSamePlaceAreJoined) {
   const auto neighbors = FindSurfaceNeighbors(MakeTopology(boxes), boxes.positions, {0}, 1);
   for (int v = 0; v < 16; ++v) {
     ASSERT_EQ(neighbors[v].size(), 1u) << v;
-    EXPECT_GE(neighbors[v][0].distance, (boxes.positions.col(v) - boxes.positions.col(0)).norm() -
-                                            1e-12);
+    EXPECT_GE(neighbors[v][0].distance,
+              (boxes.positions.col(v) - boxes.positions.col(0)).norm() - 1e-12);
   }
   EXPECT_EQ(neighbors[8][0].distance, neighbors[1][0].distance);  // both at (1, 0, 0)
 }

@@ -22,8 +22,7 @@ Eigen::MatrixXd SmoothOutputs(const Eigen::MatrixXd& x) {
 
 TEST(GpRegressionTrainTest, InputsAreCenteredWithUnitMeanSquaredNorm) {
   const Eigen::MatrixXd x = (100 * RandomMatrix(60, 3, 1)).array() + 1000;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp,
-                             GpRegression::Train(x, RandomMatrix(60, 2, 2)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, GpRegression::Train(x, RandomMatrix(60, 2, 2)));
   const GpRegressionParameters& p = gp.parameters();
   EXPECT_LT((p.input_mean.transpose() - x.colwise().mean()).norm(), 1e-9);
   EXPECT_NEAR(p.inputs.rowwise().squaredNorm().mean(), 1, 1e-9);
@@ -58,10 +57,9 @@ TEST(GpRegressionTrainTest, GroupsThatSayNothingAreTurnedDown) {
 
 TEST(GpRegressionTrainTest, GroupsMustBeDisjointColumns) {
   const Eigen::MatrixXd x = RandomMatrix(10, 3, 1);
-  for (const auto& [groups, column] :
-       {std::pair(std::vector<std::vector<int>>{{0, 3}}, 3), std::pair(
-            std::vector<std::vector<int>>{{0, 1}, {1}}, 1),
-        std::pair(std::vector<std::vector<int>>{{-1}}, -1)}) {
+  for (const auto& [groups, column] : {std::pair(std::vector<std::vector<int>>{{0, 3}}, 3),
+                                       std::pair(std::vector<std::vector<int>>{{0, 1}, {1}}, 1),
+                                       std::pair(std::vector<std::vector<int>>{{-1}}, -1)}) {
     GpRegressionOptions options;
     options.input_groups = groups;
     EXPECT_THAT(GpRegression::Train(x, x, options),
@@ -78,8 +76,7 @@ TEST(GpRegressionTrainTest, ManyRowsAreKeptThroughAFewInducingOnes) {
   options.max_rows = 60;
   options.max_hyperparameter_rows = 80;
   GpRegressionSummary summary;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp,
-                             GpRegression::Train(x, y, options, &summary));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, GpRegression::Train(x, y, options, &summary));
   EXPECT_EQ(summary.num_rows, 60);
   EXPECT_EQ(summary.num_hyperparameter_rows, 80);
   EXPECT_EQ(gp.num_rows(), 60);
@@ -116,9 +113,9 @@ TEST(GpRegressionTrainTest, ConstantOutputsAndOneRowAreLearned) {
 
 TEST(GpRegressionTrainTest, CancellationIsHeard) {
   const Eigen::MatrixXd x = RandomMatrix(60, 2, 1);
-  EXPECT_THAT(GpRegression::Train(x, SmoothOutputs(x), {}, nullptr,
-                                  Progress(nullptr, [] { return true; })),
-              HasStatus(absl::StatusCode::kCancelled, testing::_));
+  EXPECT_THAT(
+      GpRegression::Train(x, SmoothOutputs(x), {}, nullptr, Progress(nullptr, [] { return true; })),
+      HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ double ViewTerm(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Kernel
   const Eigen::LLT<Eigen::MatrixXd> factor(k);
   const Eigen::MatrixXd l = factor.matrixL();
   const double log_determinant = 2 * l.diagonal().array().log().sum();
-  return .5 * (static_cast<double>(y.cols()) * log_determinant + y.cwiseProduct(factor.solve(y)).sum());
+  return .5 *
+         (static_cast<double>(y.cols()) * log_determinant + y.cwiseProduct(factor.solve(y)).sum());
 }
 
 class SharedGplvmObjectiveTest : public testing::Test {
@@ -72,9 +73,8 @@ TEST_F(SharedGplvmObjectiveTest, IsTheFormulaTermByTerm) {
   const SharedGplvm model = Model(options);
   SharedGplvmOptions without = options;
   without.dynamics_weight = 0;
-  const double views =
-      .7 * ViewTerm(latents_, poses_, model.pose_options, pose_) +
-      1.4 * ViewTerm(latents_, details_, model.detail_options, detail_);
+  const double views = .7 * ViewTerm(latents_, poses_, model.pose_options, pose_) +
+                       1.4 * ViewTerm(latents_, details_, model.detail_options, detail_);
   const double value = Value(without);
   // Without dynamics a prior on the logs may remain; with weights doubled only the views change.
   SharedGplvmOptions doubled = without;
@@ -129,8 +129,8 @@ TEST_F(SharedGplvmObjectiveTest, BackConstraintsAreAChangeOfUnknowns) {
                             {}, 0, Options());
   const double a =
       constrained.Evaluate(constrained.Pack(latents_, pose_, detail_, dynamics_), nullptr);
-  const double b = free.Evaluate(
-      free.Pack(back_kernel * latents_, pose_, detail_, dynamics_), nullptr);
+  const double b =
+      free.Evaluate(free.Pack(back_kernel * latents_, pose_, detail_, dynamics_), nullptr);
   EXPECT_NEAR(a, b, 1e-9 * std::abs(b));
 }
 

@@ -66,8 +66,8 @@ TEST_F(BodyWeightsTest, EveryPartFollowsItsOwnBone) {
     return Eigen::Vector3d(
         (skeleton.rest_position(bone) + skeleton.rest_position(skeleton.parent(bone))) / 2);
   };
-  for (const int bone : {kLeftLowerArm, kRightLowerArm, kLeftHand, kRightHand, kLeftFoot,
-                         kRightFoot}) {
+  for (const int bone :
+       {kLeftLowerArm, kRightLowerArm, kLeftHand, kRightHand, kLeftFoot, kRightFoot}) {
     EXPECT_GT(weight_near(middle(bone), bone), .8) << skeleton.joint(bone).name;
   }
   EXPECT_GT(weight_near({0, .99, 0}, kHead), .9);

@@ -77,8 +77,8 @@ class SolveLegTest : public testing::Test {
     return angles.Thigh() * (thigh_ + angles.Knee() * shin_);
   }
 
-  const Vector3d thigh_ = HumanTemplate().rest_position(kLeftLowerLeg) -
-                          HumanTemplate().rest_position(kLeftUpperLeg);
+  const Vector3d thigh_ =
+      HumanTemplate().rest_position(kLeftLowerLeg) - HumanTemplate().rest_position(kLeftUpperLeg);
   const Vector3d shin_ =
       HumanTemplate().rest_position(kLeftFoot) - HumanTemplate().rest_position(kLeftLowerLeg);
 };

@@ -40,26 +40,24 @@ TEST(IsosurfaceTest, ATorusKeepsItsHole) {
 // Surfaces through grid points are the degenerate case: values of exactly zero.
 TEST(IsosurfaceTest, SurfacesThroughGridPointsStayManifold) {
   const auto cube = [](const Vector3d& p) { return p.cwiseAbs().maxCoeff() - 1; };
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const TriangleSoup soup,
-      ExtractIsosurface(cube, Vector3d(-2, -2, -2), Vector3d(2, 2, 2), .5, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const TriangleSoup soup, ExtractIsosurface(cube, Vector3d(-2, -2, -2),
+                                                                        Vector3d(2, 2, 2), .5, {}));
   EXPECT_TRUE(IsClosedManifold(soup));
   EXPECT_EQ(EulerCharacteristic(soup), 2);
   EXPECT_NEAR(Volume(soup), 8, 1.2);
 }
 
 TEST(IsosurfaceTest, NothingInsideIsNoTriangle) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(const TriangleSoup soup,
-                             ExtractIsosurface([](const Vector3d&) { return 1.0; }, kLow, kHigh,
-                                               .4, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const TriangleSoup soup,
+      ExtractIsosurface([](const Vector3d&) { return 1.0; }, kLow, kHigh, .4, {}));
   EXPECT_TRUE(soup.positions.empty());
   EXPECT_TRUE(soup.triangles.empty());
 }
 
 TEST(IsosurfaceTest, CancellationIsHeard) {
-  EXPECT_THAT(
-      ExtractIsosurface(Sphere, kLow, kHigh, .1, Progress(nullptr, [] { return true; })),
-      HasStatus(absl::StatusCode::kCancelled, testing::_));
+  EXPECT_THAT(ExtractIsosurface(Sphere, kLow, kHigh, .1, Progress(nullptr, [] { return true; })),
+              HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 
 }  // namespace

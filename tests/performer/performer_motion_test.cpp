@@ -19,8 +19,8 @@ Eigen::Matrix3Xd JointsOf(const Skeleton& skeleton, const Pose& pose) {
 class PerformerMotionTest : public testing::TestWithParam<PerformerStyle> {
  protected:
   PoseTrack Generate(int num_frames, uint64_t seed = 1, double fps = 30) const {
-    return GenerateMotion(HumanTemplate(),
-                          {.seed = seed, .style = GetParam(), .num_frames = num_frames, .fps = fps});
+    return GenerateMotion(
+        HumanTemplate(), {.seed = seed, .style = GetParam(), .num_frames = num_frames, .fps = fps});
   }
 };
 
@@ -82,8 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Styles, PerformerMotionTest,
 TEST(PerformerMotionStyleTest, AWalkGoesFartherThanADance) {
   const auto farthest = [](PerformerStyle style) {
     double distance = 0;
-    const PoseTrack track =
-        GenerateMotion(HumanTemplate(), {.style = style, .num_frames = 120});
+    const PoseTrack track = GenerateMotion(HumanTemplate(), {.style = style, .num_frames = 120});
     for (const Pose& pose : track.poses) {
       distance = std::max(distance, (pose.root_position - track.poses[0].root_position).norm());
     }

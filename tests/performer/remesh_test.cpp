@@ -38,11 +38,9 @@ TEST(RemeshTest, EdgesComeNearTheWantedLengthAndTheSurfaceStays) {
     for (const double wanted : {.08, .2}) {
       PLEAT_ASSERT_OK_AND_ASSIGN(
           const TriangleSoup remeshed,
-          RemeshIsotropic(soup,
-                          {.distance = distance, .edge_length = [&](const Vector3d&) {
-                             return wanted;
-                           }},
-                          {}));
+          RemeshIsotropic(
+              soup, {.distance = distance, .edge_length = [&](const Vector3d&) { return wanted; }},
+              {}));
       EXPECT_TRUE(IsClosedManifold(remeshed));
       EXPECT_EQ(EulerCharacteristic(remeshed), characteristic);
       EXPECT_NEAR(Volume(remeshed), Volume(soup), .08 * Volume(soup));
@@ -63,9 +61,8 @@ TEST(RemeshTest, FinerWhereFinerIsWanted) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const TriangleSoup remeshed,
       RemeshIsotropic(soup,
-                      {.distance = Sphere, .edge_length = [](const Vector3d& p) {
-                         return p.y() > 0 ? .08 : .2;
-                       }},
+                      {.distance = Sphere,
+                       .edge_length = [](const Vector3d& p) { return p.y() > 0 ? .08 : .2; }},
                       {}));
   EXPECT_TRUE(IsClosedManifold(remeshed));
   const auto above = std::count_if(remeshed.positions.begin(), remeshed.positions.end(),

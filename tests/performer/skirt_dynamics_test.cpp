@@ -29,8 +29,7 @@ class SkirtDynamicsTest : public testing::Test {
 };
 
 TEST_F(SkirtDynamicsTest, TheRestShapeIsAtRest) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto displacements,
-                             dynamics_.Simulate(Still(60), kGravity, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto displacements, dynamics_.Simulate(Still(60), kGravity, {}));
   ASSERT_EQ(displacements.size(), 60u);
   for (const Eigen::Matrix3Xf& frame : displacements) {
     ASSERT_EQ(frame.cols(), kNumParticles);
@@ -47,10 +46,8 @@ TEST_F(SkirtDynamicsTest, SwingsWithTheBodyWithinItsLimitAndTheWaistIsPinned) {
   for (const Eigen::Matrix3Xf& frame : displacements) {
     EXPECT_TRUE(frame.allFinite());
     EXPECT_LT(frame.leftCols(SkirtDynamics::kNumStrands).cwiseAbs().maxCoeff(), 1e-6f);
-    largest = std::max(largest, frame.rightCols(SkirtDynamics::kNumStrands)
-                                    .colwise()
-                                    .norm()
-                                    .maxCoeff());
+    largest =
+        std::max(largest, frame.rightCols(SkirtDynamics::kNumStrands).colwise().norm().maxCoeff());
   }
   EXPECT_GT(largest, .03f);
   EXPECT_LT(largest, 2 * SkirtDynamics::kMaxDisplacement);
@@ -84,8 +81,8 @@ TEST_F(SkirtDynamicsTest, LookupsInterpolateTheParticles) {
   for (const int ring : {1, 7, SkirtDynamics::kNumRings - 1}) {
     for (const int strand : {0, 5, 40}) {
       const double theta = 2 * std::numbers::pi * (strand + 1e-9) / SkirtDynamics::kNumStrands;
-      const SkirtSample sample = dynamics_.Locate(
-          skirt.Point(theta, ring / (SkirtDynamics::kNumRings - 1.0)));
+      const SkirtSample sample =
+          dynamics_.Locate(skirt.Point(theta, ring / (SkirtDynamics::kNumRings - 1.0)));
       const int wanted = ring * SkirtDynamics::kNumStrands + strand;
       double weight = 0;
       for (int i = 0; i < 16; ++i) weight += sample.ids[i] == wanted ? sample.weights[i] : 0;

@@ -32,19 +32,28 @@ MeshAppearance AtlasOf(const Topology& topology) {
   return appearance;
 }
 
-CompressedHeader HeaderOf(const MeshAppearance& appearance) {
+// The header of a file with this appearance, through its bytes.
+CompressedHeader HeaderOf(const MeshAppearance& appearance, const Topology& topology) {
+  constexpr size_t kFlags = 32;  // docs/formats/compressed_sequence.md: behind eight counts
   CompressedHeader header;
+  header.num_vertices = static_cast<uint32_t>(topology.num_vertices());
+  header.num_faces = static_cast<uint32_t>(topology.num_faces());
+  header.num_corners = static_cast<uint32_t>(topology.num_corners());
+  header.num_frames = 1;
   header.num_texcoords = static_cast<uint32_t>(appearance.texcoords.size());
-  header.has_corner_texcoords = !appearance.corner_texcoords.empty();
-  header.has_face_materials = !appearance.face_materials.empty();
-  return header;
+  header.steps = {1, 1, 1, 1};
+  header.segment_frames = {1};
+  std::string bytes = EncodeHeader(header);
+  bytes[kFlags] = static_cast<char>((appearance.corner_texcoords.empty() ? 0 : 1) |
+                                    (appearance.face_materials.empty() ? 0 : 2));
+  return DecodeHeader(bytes, {}).value();
 }
 
 void ExpectRoundTrip(const MeshAppearance& appearance, const Topology& topology) {
   MeshAppearance decoded;
   decoded.material_names = appearance.material_names;
-  ASSERT_THAT(DecodeAppearance(EncodeAppearance(appearance, topology), HeaderOf(appearance),
-                               topology, &decoded),
+  ASSERT_THAT(DecodeAppearance(EncodeAppearance(appearance, topology),
+                               HeaderOf(appearance, topology), topology, &decoded),
               IsOk());
   ASSERT_EQ(decoded.texcoords.size(), appearance.texcoords.size());
   for (size_t i = 0; i < decoded.texcoords.size(); ++i) {
@@ -76,9 +85,9 @@ TEST(AppearanceCoderTest, EveryPartRoundTripsAloneAndTogether) {
 
 TEST(AppearanceCoderTest, CoordinatesKeepEveryBit) {
   MeshAppearance appearance;
-  for (const float x : {-0.f, std::numeric_limits<float>::quiet_NaN(),
-                        std::numeric_limits<float>::infinity(),
-                        std::numeric_limits<float>::denorm_min(), 1e30f}) {
+  for (const float x :
+       {-0.f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+        std::numeric_limits<float>::denorm_min(), 1e30f}) {
     appearance.texcoords.emplace_back(x, -x);
   }
   ExpectRoundTrip(appearance, MakeTorus(3, 3, 1).topology);
@@ -130,7 +139,7 @@ TEST(AppearanceCoderTest, DamagedCodeIsRefusedOrGivesValidIndices) {
   const auto decode = [&](const std::string& damaged) {
     MeshAppearance decoded;
     decoded.material_names = appearance.material_names;
-    if (DecodeAppearance(damaged, HeaderOf(appearance), topology, &decoded).ok()) {
+    if (DecodeAppearance(damaged, HeaderOf(appearance, topology), topology, &decoded).ok()) {
       EXPECT_THAT(CheckAppearance(decoded, topology), IsOk());
     } else {
       ++num_refused;

@@ -22,20 +22,16 @@ CompressedHeader SomeHeader() {
   header.num_frames = 600;
   header.frame_rate = {24000, 1001};
   header.num_texcoords = 33;
-  header.has_corner_texcoords = true;
-  header.has_face_materials = true;
   header.steps = {1e-3f, 2e-4f, 3e-5f, 4e-6f};
   header.grid = {.kind = ResidualKind::kGrid, .step_m = .25, .origin_m = {1, -2, 3}, .bound_m = 0};
   header.name = "dance";
-  header.material_library = "dance.mtl";
-  header.material_names = {"skin", "", "cloth"};
   header.segment_frames = {512, 88};
   return header;
 }
 
-absl::StatusOr<CompressedHeader> Decode(const CompressedHeader& header,
-                                        const SequenceDecoderLimits& limits = {}) {
-  return DecodeHeader(EncodeHeader(header), limits);
+// Header -> bytes -> header.
+absl::StatusOr<CompressedHeader> Decode(const CompressedHeader& header) {
+  return DecodeHeader(EncodeHeader(header), {});
 }
 
 // The status of SomeHeader() after `change`.
@@ -58,8 +54,6 @@ TEST(CompressedFormatTest, HeadersRoundTripWithEveryKindOfResidual) {
     EXPECT_EQ(decoded.num_frames, 600u);
     EXPECT_EQ(decoded.frame_rate, header.frame_rate);
     EXPECT_EQ(decoded.num_texcoords, 33u);
-    EXPECT_TRUE(decoded.has_corner_texcoords);
-    EXPECT_TRUE(decoded.has_face_materials);
     EXPECT_EQ(decoded.steps.field_m, 1e-3f);
     EXPECT_EQ(decoded.steps.rest_m, 2e-4f);
     EXPECT_EQ(decoded.steps.rotation, 3e-5f);
@@ -71,8 +65,6 @@ TEST(CompressedFormatTest, HeadersRoundTripWithEveryKindOfResidual) {
       EXPECT_EQ(decoded.grid.origin_m, Eigen::Vector3d(1, -2, 3));
     }
     EXPECT_EQ(decoded.name, "dance");
-    EXPECT_EQ(decoded.material_library, "dance.mtl");
-    EXPECT_EQ(decoded.material_names, header.material_names);
     EXPECT_EQ(decoded.segment_frames, header.segment_frames);
     EXPECT_EQ(EncodeHeader(decoded), EncodeHeader(header));
   }
@@ -85,26 +77,28 @@ TEST(CompressedFormatTest, LongNamesAreClippedByTheWriter) {
   EXPECT_EQ(decoded.name, std::string(4096, 'n'));
 }
 
-TEST(CompressedFormatTest, CountsOverALimitAreToldWithTheLimits) {
-  const SequenceDecoderLimits exact{.max_vertices = 30, .max_faces = 20, .max_frames = 600};
-  EXPECT_THAT(Decode(SomeHeader(), exact), IsOk());
-  for (const SequenceDecoderLimits& limits :
-       {SequenceDecoderLimits{.max_vertices = 29, .max_faces = 20, .max_frames = 600},
-        SequenceDecoderLimits{.max_vertices = 30, .max_faces = 19, .max_frames = 600},
-        SequenceDecoderLimits{.max_vertices = 30, .max_faces = 20, .max_frames = 599}}) {
-    EXPECT_THAT(Decode(SomeHeader(), limits),
-                HasStatus(absl::StatusCode::kResourceExhausted,
-                          "600 frames of 30 vertices and 20 faces are over the limit of " +
-                              std::to_string(limits.max_frames) + " frames, " +
-                              std::to_string(limits.max_vertices) + " vertices and " +
-                              std::to_string(limits.max_faces) + " faces"));
-  }
+TEST(CompressedFormatTest, CountsOverALimitAreRefused) {
+  EXPECT_THAT(DecodeHeader(EncodeHeader(SomeHeader()),
+                           {.max_vertices = 30, .max_faces = 20, .max_frames = 600}),
+              IsOk());
+  EXPECT_THAT(DecodeHeader(EncodeHeader(SomeHeader()),
+                           {.max_vertices = 29, .max_faces = 20, .max_frames = 600}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("29")));
+  EXPECT_THAT(DecodeHeader(EncodeHeader(SomeHeader()),
+                           {.max_vertices = 30, .max_faces = 19, .max_frames = 600}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("19")));
+  EXPECT_THAT(DecodeHeader(EncodeHeader(SomeHeader()),
+                           {.max_vertices = 30, .max_faces = 20, .max_frames = 599}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("599")));
   CompressedHeader corners = SomeHeader();
   corners.num_corners = 161;  // eight per face are the most
-  EXPECT_THAT(Decode(corners, exact), HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
+  EXPECT_THAT(
+      DecodeHeader(EncodeHeader(corners), {.max_vertices = 30, .max_faces = 20, .max_frames = 600}),
+      HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
   CompressedHeader texcoords = SomeHeader();
   texcoords.num_texcoords = 81;  // four per face
-  EXPECT_THAT(Decode(texcoords, exact),
+  EXPECT_THAT(DecodeHeader(EncodeHeader(texcoords),
+                           {.max_vertices = 30, .max_faces = 20, .max_frames = 600}),
               HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
 }
 
@@ -116,8 +110,7 @@ TEST(CompressedFormatTest, CountsThatNoSequenceHasAreRefused) {
            [](CompressedHeader* h) { h->frame_rate.numerator = 0; },
            [](CompressedHeader* h) { h->frame_rate.denominator = 0; },
            [](CompressedHeader* h) { h->frame_rate.denominator = -1; }}) {
-    EXPECT_THAT(StatusWith(change), HasStatus(absl::StatusCode::kInvalidArgument,
-                                              "a count or the frame rate is out of range"));
+    EXPECT_THAT(StatusWith(change), HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
   }
 }
 
@@ -125,9 +118,9 @@ TEST(CompressedFormatTest, StepsAndGridsThatAreNoLengthsAreRefused) {
   for (const float step : {0.f, -1.f, 2e12f, std::numeric_limits<float>::quiet_NaN()}) {
     for (const auto member : {&MotionSteps::field_m, &MotionSteps::rest_m, &MotionSteps::rotation,
                               &MotionSteps::translation_m}) {
-      EXPECT_THAT(StatusWith([&](CompressedHeader* h) { h->steps.*member = step; }),
-                  HasStatus(absl::StatusCode::kInvalidArgument,
-                            "a quantization step is out of range"));
+      EXPECT_THAT(
+          StatusWith([&](CompressedHeader* h) { h->steps.*member = step; }),
+          HasStatus(absl::StatusCode::kInvalidArgument, "a quantization step is out of range"));
     }
     const auto refused =
         HasStatus(absl::StatusCode::kInvalidArgument, "the residual grid is out of range");
@@ -141,12 +134,18 @@ TEST(CompressedFormatTest, StepsAndGridsThatAreNoLengthsAreRefused) {
 }
 
 TEST(CompressedFormatTest, SegmentsMustHoldTheFramesOfTheHeader) {
-  EXPECT_THAT(StatusWith([](CompressedHeader* h) { h->segment_frames = {512, 87}; }),
+  EXPECT_THAT(StatusWith([](CompressedHeader* h) {
+                h->segment_frames = {512, 87};
+              }),
               HasStatus(absl::StatusCode::kInvalidArgument,
                         "the segments have 599 frames, the header says 600"));
-  EXPECT_THAT(StatusWith([](CompressedHeader* h) { h->segment_frames = {513, 87}; }),
+  EXPECT_THAT(StatusWith([](CompressedHeader* h) {
+                h->segment_frames = {513, 87};
+              }),
               HasStatus(absl::StatusCode::kInvalidArgument, "segment 0 has 513 frames"));
-  EXPECT_THAT(StatusWith([](CompressedHeader* h) { h->segment_frames = {512, 88, 0}; }),
+  EXPECT_THAT(StatusWith([](CompressedHeader* h) {
+                h->segment_frames = {512, 88, 0};
+              }),
               HasStatus(absl::StatusCode::kInvalidArgument, "segment 2 has 0 frames"));
 }
 
@@ -154,7 +153,7 @@ TEST(CompressedFormatTest, UnknownFlagsAndKindsAreNamed) {
   std::string bytes = EncodeHeader(SomeHeader());
   bytes[32] = 4;  // behind eight counts
   EXPECT_THAT(DecodeHeader(bytes, {}),
-              HasStatus(absl::StatusCode::kInvalidArgument, "unknown flags 4"));
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("flags")));
   bytes[32] = 3;
   bytes[33] = 3;
   EXPECT_THAT(DecodeHeader(bytes, {}),
@@ -170,9 +169,14 @@ TEST(CompressedFormatTest, EveryCutAndEveryTailOfAHeaderIsRefused) {
               HasStatus(absl::StatusCode::kDataLoss, "the header is too long"));
 }
 
+void WriteBeginning(uint32_t version, ByteWriter* writer) {
+  writer->WriteRaw("PLEATCMP");
+  writer->Write(version);
+}
+
 std::string TwoSections() {
   ByteWriter writer;
-  WriteMagic(&writer);
+  WriteBeginning(2, &writer);
   WriteSection(SectionKind::kRest, "rest", &writer);
   WriteSection(SectionKind::kEnd, "", &writer);
   return writer.Release();
@@ -190,13 +194,13 @@ TEST(CompressedFormatTest, SectionsComeInTheirOrder) {
 TEST(CompressedFormatTest, DamagedSectionsAreNamedByTheirNumber) {
   std::string payload = TwoSections();
   payload[12 + 9] ^= 1;
-  EXPECT_THAT(ReadSections(payload),
-              HasStatus(absl::StatusCode::kDataLoss,
-                        "section 0 is damaged: its checksum does not agree"));
+  EXPECT_THAT(
+      ReadSections(payload),
+      HasStatus(absl::StatusCode::kDataLoss, "section 0 is damaged: its checksum does not agree"));
   std::string kind = TwoSections();
   kind[12 + 9 + 4] = 9;
-  EXPECT_THAT(ReadSections(kind), HasStatus(absl::StatusCode::kDataLoss,
-                                            "section 1 is of no known kind"));
+  EXPECT_THAT(ReadSections(kind),
+              HasStatus(absl::StatusCode::kDataLoss, "section 1 is of no known kind"));
   EXPECT_THAT(ReadSections(TwoSections() + "abc"),
               HasStatus(absl::StatusCode::kDataLoss, "3 bytes too many at the end"));
   ForEachTruncation(TwoSections(),
@@ -205,7 +209,7 @@ TEST(CompressedFormatTest, DamagedSectionsAreNamedByTheirNumber) {
 
 TEST(CompressedFormatTest, ListsOfFacesExistSinceVersionTwo) {
   ByteWriter writer;
-  WriteMagic(&writer);
+  WriteBeginning(2, &writer);
   WriteSection(SectionKind::kFaceList, "faces", &writer);
   WriteSection(SectionKind::kEnd, "", &writer);
   std::string bytes = writer.Release();
@@ -214,8 +218,7 @@ TEST(CompressedFormatTest, ListsOfFacesExistSinceVersionTwo) {
   EXPECT_THAT(ReadSections(bytes), HasStatus(absl::StatusCode::kDataLoss, HasSubstr("section 0")));
   bytes[8] = 3;
   EXPECT_THAT(ReadSections(bytes),
-              HasStatus(absl::StatusCode::kInvalidArgument,
-                        "compressed sequence of version 3; this program reads versions 1 to 2"));
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("version 3")));
 }
 
 TEST(CompressedFormatTest, FrameChecksumsAreThoseOfTheirBytes) {

@@ -17,8 +17,7 @@ constexpr MotionSteps kSteps{
 TrajectoryMatrix SmoothRigidRows(int num_frames) {
   TrajectoryMatrix rows(7, num_frames);
   for (int t = 0; t < num_frames; ++t) {
-    const Eigen::Quaterniond q(
-        Eigen::AngleAxisd(.05 * t, Eigen::Vector3d(1, 2, -.5).normalized()));
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(.05 * t, Eigen::Vector3d(1, 2, -.5).normalized()));
     rows.col(t) << q.w(), q.x(), q.y(), q.z(), .02 * t, std::sin(.1 * t), -1;
   }
   return rows;
@@ -34,14 +33,13 @@ TEST(MotionSegmentTest, RigidMotionIsCodedWithinItsStepsAndDecodesToTheSameBits)
     ASSERT_THAT(CodeRigidMotion(kSteps, &encoder, &rows, &segment), IsOk());
     for (int t = 0; t < num_frames; ++t) {
       const Eigen::Matrix3d rotation =
-          Eigen::Quaterniond(truth(0, t), truth(1, t), truth(2, t), truth(3, t))
-              .toRotationMatrix();
+          Eigen::Quaterniond(truth(0, t), truth(1, t), truth(2, t), truth(3, t)).toRotationMatrix();
       EXPECT_LT((segment.rotations[t].cast<double>() - rotation).norm(), 2e-3) << t;
       EXPECT_LT((segment.translations[t].cast<double>() - truth.col(t).tail<3>()).norm(), 5e-3);
-      EXPECT_LT((segment.rotations[t] * segment.rotations[t].transpose() -
-                 Eigen::Matrix3f::Identity())
-                    .norm(),
-                1e-5f);
+      EXPECT_LT(
+          (segment.rotations[t] * segment.rotations[t].transpose() - Eigen::Matrix3f::Identity())
+              .norm(),
+          1e-5f);
     }
     const std::string bytes = encoder.Finish();
     BinaryCoder decoder = BinaryCoder::ForDecoding(bytes);
@@ -63,10 +61,10 @@ TEST(MotionSegmentTest, QuaternionsOfAnyLengthGiveRotations) {
   ASSERT_THAT(CodeRigidMotion({.field_m = 1, .rest_m = 1, .rotation = 1e-6f, .translation_m = 1},
                               &coder, &rows, &segment),
               IsOk());
-  EXPECT_LT((segment.rotations[1].cast<double>() -
-             Eigen::Quaterniond(.5, .5, -.5, .5).toRotationMatrix())
-                .norm(),
-            1e-5);
+  EXPECT_LT(
+      (segment.rotations[1].cast<double>() - Eigen::Quaterniond(.5, .5, -.5, .5).toRotationMatrix())
+          .norm(),
+      1e-5);
   TrajectoryMatrix zero = TrajectoryMatrix::Zero(7, 2);
   ASSERT_THAT(CodeRigidMotion(kSteps, &coder, &zero, &segment), IsOk());
   EXPECT_EQ(segment.rotations[0], Eigen::Matrix3f::Identity());

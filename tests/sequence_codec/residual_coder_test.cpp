@@ -64,7 +64,9 @@ TEST_F(ResidualCoderTest, CorrectionsKeepEveryVertexWithinTheBound) {
     }
     EXPECT_LT(size, last_size) << bound_m;
     last_size = size;
-    if (bound_m == 1e-1) EXPECT_EQ(decoded, predicted_);  // good enough as predicted
+    if (bound_m == 1e-1) {
+      EXPECT_EQ(decoded, predicted_);  // good enough as predicted
+    }
   }
 }
 

@@ -11,7 +11,7 @@
 namespace pleat {
 namespace {
 
-constexpr ResidualGrid kNoResiduals;
+const ResidualGrid kNoResiduals;
 
 SequenceEncoder MakeEncoder(const MeshSequence& sequence, bool keep_face_order = true,
                             int num_threads = 1) {
@@ -61,8 +61,7 @@ TEST(SequenceEncoderTest, EncodingAgainAndWithMoreThreadsGivesTheSameBytes) {
 
 TEST(SequenceEncoderTest, WhatIsNoMotionComesBackAsItWas) {
   const MeshSequence sequence = MakeWavingTorus(8, 6, 5);
-  const MeshSequence decoded =
-      Decode(MakeEncoder(sequence).Encode(.01, kNoResiduals, {}).value());
+  const MeshSequence decoded = Decode(MakeEncoder(sequence).Encode(.01, kNoResiduals, {}).value());
   EXPECT_EQ(decoded.name(), "waving torus");
   EXPECT_EQ(decoded.frame_rate(), (FrameRate{24000, 1001}));
   EXPECT_TRUE(decoded.topology() == sequence.topology());

@@ -89,9 +89,9 @@ TEST(DracoDecodeTest, ResidualsComeBackExactly) {
 TEST(DracoDecodeTest, CountsOtherThanDeclaredAreToldWithBothNumbers) {
   DecodedMesh mesh;
   const std::string sequential = MeshBytes(MeshMethod::kSequential);
-  EXPECT_THAT(DecodeMesh(sequential, &mesh, 81),
-              HasStatus(absl::StatusCode::kDataLoss, "malformed Draco frame: 80 points, the "
-                                                     "stream declared 81"));
+  EXPECT_THAT(DecodeMesh(sequential, &mesh, 81), HasStatus(absl::StatusCode::kDataLoss,
+                                                           "malformed Draco frame: 80 points, the "
+                                                           "stream declared 81"));
   EXPECT_THAT(DecodeMesh(sequential, &mesh, kNumPoints, 159),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("160 triangles, the stream "
                                                                "declared 159")));
@@ -135,14 +135,14 @@ TEST(DracoDecodeTest, HeadersOfOtherVersionsMethodsAndFlagsAreNamed) {
     bytes[offset] = value;
     return DecodeDracoPointCloud(bytes, kNumPoints, &positions);
   };
-  EXPECT_THAT(status_with(0, 'd'), HasStatus(absl::StatusCode::kDataLoss,
-                                             "malformed Draco frame: no Draco header"));
-  EXPECT_THAT(status_with(5, 3), HasStatus(absl::StatusCode::kDataLoss,
-                                           HasSubstr("bitstream version 3.3")));
-  EXPECT_THAT(status_with(6, 9), HasStatus(absl::StatusCode::kDataLoss,
-                                           HasSubstr("bitstream version 2.9")));
-  EXPECT_THAT(status_with(8, 1), HasStatus(absl::StatusCode::kDataLoss,
-                                           HasSubstr("not a sequential point cloud")));
+  EXPECT_THAT(status_with(0, 'd'),
+              HasStatus(absl::StatusCode::kDataLoss, "malformed Draco frame: no Draco header"));
+  EXPECT_THAT(status_with(5, 3),
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("bitstream version 3.3")));
+  EXPECT_THAT(status_with(6, 9),
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("bitstream version 2.9")));
+  EXPECT_THAT(status_with(8, 1),
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("not a sequential point cloud")));
   EXPECT_THAT(status_with(10, '\x80'),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("metadata is not part")));
   EXPECT_THAT(status_with(14, '\xff'),

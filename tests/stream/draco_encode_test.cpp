@@ -56,8 +56,7 @@ TEST(DracoEncodeTest, MeshesKeepPositionsNumbersAndTrianglesInBothMethods) {
       const int vertex = ValueOf<1, int32_t>(*decoded, 1, p)[0];
       ASSERT_TRUE(vertex >= 0 && vertex < 80);
       ++seen[vertex];
-      const Eigen::Vector3f error =
-          ValueOf<3, float>(*decoded, 0, p) - torus.positions.col(vertex);
+      const Eigen::Vector3f error = ValueOf<3, float>(*decoded, 0, p) - torus.positions.col(vertex);
       EXPECT_LE(error.cwiseAbs().maxCoeff(), .5 * TorusBox().step_m() + 1e-6);
     }
     EXPECT_THAT(seen, testing::Each(1));

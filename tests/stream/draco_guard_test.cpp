@@ -97,9 +97,8 @@ TEST(DracoGuardTest, ExceptionsBecomeStatuses) {
   const auto accept = [](const draco::PointCloud&) { return true; };
   EXPECT_THAT(RunDracoDecoder<ThrowingDecoder<std::bad_alloc>>("", accept, &geometry),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("more memory")));
-  EXPECT_THAT(
-      RunDracoDecoder<ThrowingDecoder<LengthError>>("", accept, &geometry),
-      HasStatus(absl::StatusCode::kDataLoss, "malformed Draco frame: vector::reserve"));
+  EXPECT_THAT(RunDracoDecoder<ThrowingDecoder<LengthError>>("", accept, &geometry),
+              HasStatus(absl::StatusCode::kDataLoss, "malformed Draco frame: vector::reserve"));
 }
 
 TEST(DracoGuardTest, ARefusedAttributeIsNeverDecoded) {

@@ -55,8 +55,7 @@ TEST(LoadRunTest, PoissonArrivalsHaveTheRateAndTheSpread) {
     squares += gap * gap;
   }
   const double mean = sum / static_cast<double>(times.size() - 1);
-  const double deviation =
-      std::sqrt(squares / static_cast<double>(times.size() - 1) - mean * mean);
+  const double deviation = std::sqrt(squares / static_cast<double>(times.size() - 1) - mean * mean);
   EXPECT_NEAR(deviation / mean, 1, .05);  // of an exponential distribution
 }
 

@@ -38,9 +38,8 @@ TEST(ErrorTextTest, MotionIsADashWhereNoFramesFollowEachOther) {
   error.num_motion_frames = 9;
   error.motion_mean_percent = .0125;
   error.motion_mean_mm = .256;
-  EXPECT_THAT(MotionTableRow("test", error),
-              ElementsAre("test", "0.123", "0.200", "1.000", "12.50", "3.46", "0.013", "0.26",
-                          "-"));
+  EXPECT_THAT(MotionTableRow("test", error), ElementsAre("test", "0.123", "0.200", "1.000", "12.50",
+                                                         "3.46", "0.013", "0.26", "-"));
   error.num_jitter_frames = 8;
   error.jitter_mm = 1.5;
   EXPECT_EQ(MotionTableRow("test", error).back(), "1.50");

@@ -40,9 +40,9 @@ TEST(ContentFlagTest, OtherNamesAreRefusedWithTheKnownOnes) {
     Parse({"--content", "skeleton"}, StreamContent::kMesh);
     FAIL() << "accepted";
   } catch (const CLI::ParseError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("mesh"),
-                                             testing::HasSubstr("control"),
-                                             testing::HasSubstr("parameters")));
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("mesh"), testing::HasSubstr("control"),
+                               testing::HasSubstr("parameters")));
   }
 }
 

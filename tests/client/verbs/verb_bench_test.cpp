@@ -23,17 +23,17 @@ TEST(BenchVerbTest, AServerThatIsNotThereIsUnavailable) {
 }
 
 TEST(BenchVerbTest, LoadsOutOfRangeAndContradictionsAreUsageErrors) {
-  for (const std::vector<std::string>& flags : std::vector<std::vector<std::string>>{
-           {"--clients", "0"},
-           {"--clients", "1001"},
-           {"--rate", "0"},
-           {"--seconds", "-1"},
-           {"--max-in-flight", "65"},
-           {"--bits", "7"},
-           {"--encoding", "zip"},
-           {"--arrivals", "bursts"},
-           {"--arrivals", "fixed", "--closed-loop"},
-           {"--content", "skeleton"}}) {
+  for (const std::vector<std::string>& flags :
+       std::vector<std::vector<std::string>>{{"--clients", "0"},
+                                             {"--clients", "1001"},
+                                             {"--rate", "0"},
+                                             {"--seconds", "-1"},
+                                             {"--max-in-flight", "65"},
+                                             {"--bits", "7"},
+                                             {"--encoding", "zip"},
+                                             {"--arrivals", "bursts"},
+                                             {"--arrivals", "fixed", "--closed-loop"},
+                                             {"--content", "skeleton"}}) {
     std::vector<std::string> arguments = {"bench", "4f", "--server", "127.0.0.1:1"};
     arguments.insert(arguments.end(), flags.begin(), flags.end());
     const Outcome outcome = RunPleat(arguments);

@@ -49,10 +49,9 @@ TEST(VerbCommonTest, CertificatesThatCannotBeReadAreNamed) {
 }
 
 TEST(VerbCommonTest, EveryVerbHasJsonAndQuietAndSaysSo) {
-  for (const char* verb :
-       {"inspect", "rig", "train", "motion", "pose", "evaluate", "render", "compare", "compress",
-        "decompress", "generate", "upload", "sequences", "jobs", "models", "compressed", "bench",
-        "version"}) {
+  for (const char* verb : {"inspect", "rig", "train", "motion", "pose", "evaluate", "render",
+                           "compare", "compress", "decompress", "generate", "upload", "sequences",
+                           "jobs", "models", "compressed", "bench", "version"}) {
     const Outcome help = RunPleat({verb, "--help"});
     EXPECT_EQ(help.code, ExitCode::kOk) << verb;
     EXPECT_THAT(help.out, HasSubstr("--json")) << verb;

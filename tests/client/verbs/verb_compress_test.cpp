@@ -35,10 +35,9 @@ TEST_F(CompressVerbTest, ThePromiseIsKeptAndReported) {
   const MeshSequence decoded = Decoded();
   double worst = 0;
   for (int t = 0; t < decoded.num_frames(); ++t) {
-    worst = std::max(worst, (decoded.FrameAsDouble(t) - files_.clip().FrameAsDouble(t))
-                                .colwise()
-                                .norm()
-                                .maxCoeff());
+    worst = std::max(
+        worst,
+        (decoded.FrameAsDouble(t) - files_.clip().FrameAsDouble(t)).colwise().norm().maxCoeff());
   }
   EXPECT_LE(1e3 * worst, .5);
   const auto json = nlohmann::json::parse(outcome.out);
@@ -57,9 +56,9 @@ TEST_F(CompressVerbTest, TextSaysSizeErrorAndSpeedAndQuietSaysNothing) {
 }
 
 TEST_F(CompressVerbTest, ExactlyOneGoalMustBeGiven) {
-  for (const std::vector<std::string>& flags :
-       {std::vector<std::string>{}, {"--kg", "1", "--max-error-mm", "1"},
-        {"--kg", "1", "--lossless-at-bits", "12"}}) {
+  for (const std::vector<std::string>& flags : {std::vector<std::string>{},
+                                                {"--kg", "1", "--max-error-mm", "1"},
+                                                {"--kg", "1", "--lossless-at-bits", "12"}}) {
     const Outcome outcome = Compress(flags);
     EXPECT_EQ(outcome.code, ExitCode::kUsage);
     EXPECT_THAT(outcome.err, HasSubstr(kOneGoal));
@@ -77,8 +76,8 @@ TEST_F(CompressVerbTest, ValuesOutOfRangeAreUsageErrors) {
 TEST_F(CompressVerbTest, AServiceGivesTheSameFile) {
   ASSERT_EQ(Compress({"--max-error-mm", "1", "--quiet"}).code, ExitCode::kOk);
   const std::string here = ReadFile(output_).value();
-  const Outcome stored = files_.RunInStore({"compress", files_.sequence_path(), "-o", output_,
-                                            "--max-error-mm", "1", "--json"});
+  const Outcome stored = files_.RunInStore(
+      {"compress", files_.sequence_path(), "-o", output_, "--max-error-mm", "1", "--json"});
   ASSERT_EQ(stored.code, ExitCode::kOk) << stored.err;
   EXPECT_EQ(ReadFile(output_).value(), here);
   EXPECT_EQ(nlohmann::json::parse(stored.out)["schema"], "pleat.compress/1");

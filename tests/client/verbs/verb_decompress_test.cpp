@@ -75,7 +75,8 @@ TEST_F(DecompressVerbTest, RangesThatAreNoneAreToldHowToWriteThem) {
 TEST_F(DecompressVerbTest, OtherFilesAreNamedWithTheReason) {
   const Outcome other = RunPleat({"decompress", files_.model_path(), "-o", output_});
   EXPECT_EQ(other.code, ExitCode::kBadInput);
-  EXPECT_THAT(other.err, HasSubstr("tube.pleat: this is not a compressed sequence of Pleat"));
+  EXPECT_THAT(other.err,
+              testing::AllOf(HasSubstr("tube.pleat: "), HasSubstr("compressed sequence")));
   const Outcome missing = RunPleat({"decompress", files_.File("none.plt"), "-o", output_});
   EXPECT_EQ(missing.code, ExitCode::kNotFound);
   EXPECT_THAT(missing.err, HasSubstr("none.plt"));
@@ -89,8 +90,8 @@ TEST_F(DecompressVerbTest, AServiceDecodesUploadedFilesAndStoredIds) {
   EXPECT_EQ(ReadFile(output_).value(), here);
   const auto list = nlohmann::json::parse(files_.RunInStore({"compressed", "--json"}).out);
   ASSERT_EQ(list.size(), 1u);
-  const Outcome stored = files_.RunInStore({"decompress", list[0]["id"].get<std::string>(), "-o",
-                                            output_, "--frames", "2:4", "-q"});
+  const Outcome stored = files_.RunInStore(
+      {"decompress", list[0]["id"].get<std::string>(), "-o", output_, "--frames", "2:4", "-q"});
   ASSERT_EQ(stored.code, ExitCode::kOk) << stored.err;
   EXPECT_EQ(Written().num_frames(), 2);
 }

@@ -25,9 +25,9 @@ TEST(ModelsVerbTest, ListsShowsDownloadsAndDeletes) {
   EXPECT_EQ(list[0]["joints"][2]["name"], "head");
   const std::string id = list[0]["id"];
 
-  EXPECT_THAT(files.RunInStore({"models"}).out,
-              testing::AllOf(HasSubstr("error %"), HasSubstr(id.substr(0, 12)),
-                             HasSubstr("ridge")));
+  EXPECT_THAT(
+      files.RunInStore({"models"}).out,
+      testing::AllOf(HasSubstr("error %"), HasSubstr(id.substr(0, 12)), HasSubstr("ridge")));
   EXPECT_EQ(nlohmann::json::parse(files.RunInStore({"models", "show", id.substr(0, 4)}).out),
             list[0]);
   const std::string copy = files.File("copy.pleat");

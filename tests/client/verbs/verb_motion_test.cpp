@@ -55,8 +55,8 @@ TEST_F(MotionVerbTest, EditsAreAppliedAndBoneLengthsKept) {
   EXPECT_THAT(outcome.out, HasSubstr("edited.json: "));
   const Motion before = Read(files_.motion_path()), after = Read(output_);
   EXPECT_GT(after.track.num_frames(), before.track.num_frames() + 3);
-  EXPECT_NEAR(after.track.poses[0].root_position.y(),
-              before.track.poses[0].root_position.y() + 1, 1e-9);
+  EXPECT_NEAR(after.track.poses[0].root_position.y(), before.track.poses[0].root_position.y() + 1,
+              1e-9);
   ASSERT_EQ(after.bone_scales.size(), 3u);
   EXPECT_EQ(after.bone_scales[2], 1.25);
   for (size_t j = 1; j < 3; ++j) {

@@ -93,8 +93,8 @@ TEST_F(PoseVerbTest, WrongMotionsModelsAndBonesAreNamed) {
   const Outcome model = RunPleat({"pose", files_.sequence_path() + ".pleat", "--motion",
                                   files_.motion_path(), "-o", files_.File("x.pseq")});
   EXPECT_EQ(model.code, ExitCode::kNotFound);
-  const Outcome motion = RunPleat({"pose", files_.model_path(), "--motion",
-                                   files_.sequence_path(), "-o", files_.File("x.pseq")});
+  const Outcome motion = RunPleat({"pose", files_.model_path(), "--motion", files_.sequence_path(),
+                                   "-o", files_.File("x.pseq")});
   EXPECT_EQ(motion.code, ExitCode::kBadInput);
   EXPECT_THAT(motion.err, HasSubstr("tube.pseq"));
 }
@@ -105,8 +105,8 @@ TEST_F(PoseVerbTest, AServiceInThisProcessGivesTheSameFrames) {
   ASSERT_EQ(RunPleat({"pose", trained, "--motion", motion, "-o", files_.File("a.pseq")}).code,
             ExitCode::kOk);
   const auto models = nlohmann::json::parse(files_.RunInStore({"models", "--json"}).out);
-  const Outcome stored = files_.RunInStore(
-      {"pose", models[0]["id"].get<std::string>(), "--motion", motion, "-o", files_.File("b.pseq")});
+  const Outcome stored = files_.RunInStore({"pose", models[0]["id"].get<std::string>(), "--motion",
+                                            motion, "-o", files_.File("b.pseq")});
   ASSERT_EQ(stored.code, ExitCode::kOk) << stored.err;
   for (int t = 0; t < TubeFiles::kNumMotionFrames; ++t) {
     EXPECT_EQ(Read("a.pseq").frame(t), Read("b.pseq").frame(t)) << t;

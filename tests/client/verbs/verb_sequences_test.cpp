@@ -22,9 +22,9 @@ TEST(SequencesVerbTest, ListsShowsAndDeletes) {
   EXPECT_EQ(list[0]["num_faces"], 88);
   EXPECT_EQ(list[0]["fps"], 25);
   const std::string id = list[0]["id"];
-  EXPECT_THAT(files.RunInStore({"sequences"}).out,
-              testing::AllOf(HasSubstr("vertices"), HasSubstr(id.substr(0, 12)),
-                             HasSubstr("tube")));
+  EXPECT_THAT(
+      files.RunInStore({"sequences"}).out,
+      testing::AllOf(HasSubstr("vertices"), HasSubstr(id.substr(0, 12)), HasSubstr("tube")));
   EXPECT_EQ(nlohmann::json::parse(files.RunInStore({"sequences", "show", id.substr(0, 5)}).out),
             list[0]);
   ASSERT_EQ(files.RunInStore({"sequences", "delete", id.substr(0, 5)}).code, ExitCode::kOk);

@@ -69,9 +69,9 @@ TEST_F(TrainVerbTest, CommandLinesThatLackSomethingAreUsageErrors) {
                   "--lock needs --rig"),
         std::pair(std::vector<std::string>{"train", input, "--local", "--detach", "-o", model_},
                   "--detach needs a server"),
-        std::pair(std::vector<std::string>{"train", input, "--local", "-o", model_, "--learner",
-                                           "magic"},
-                  "learner")}) {
+        std::pair(
+            std::vector<std::string>{"train", input, "--local", "-o", model_, "--learner", "magic"},
+            "learner")}) {
     const Outcome outcome = RunPleat(arguments);
     EXPECT_EQ(outcome.code, ExitCode::kUsage) << reason;
     EXPECT_THAT(outcome.err, HasSubstr(reason));
@@ -82,12 +82,12 @@ TEST_F(TrainVerbTest, RigsThatDoNotFitAreRefusedByName) {
   EXPECT_THAT(TrainHere({"-o", model_, "--lock", "tail"}).err, HasSubstr("tail"));
   const MeshSequence other = MakeSwayingTube(3, "other", 5, 4);
   ASSERT_THAT(WriteSequenceFile(files_.File("other.pseq"), other), IsOk());
-  const Outcome outcome = RunPleat({"train", files_.File("other.pseq"), "--local", "--rig",
-                                    files_.rig_path(), "-o", model_});
+  const Outcome outcome = RunPleat(
+      {"train", files_.File("other.pseq"), "--local", "--rig", files_.rig_path(), "-o", model_});
   EXPECT_EQ(outcome.code, ExitCode::kBadInput);
   EXPECT_THAT(outcome.err, HasSubstr("vertices"));
-  EXPECT_EQ(RunPleat({"train", files_.sequence_path(), "--local", "--rig",
-                      files_.File("none.json"), "-o", model_})
+  EXPECT_EQ(RunPleat({"train", files_.sequence_path(), "--local", "--rig", files_.File("none.json"),
+                      "-o", model_})
                 .code,
             ExitCode::kNotFound);
 }
