@@ -94,7 +94,7 @@ TEST_F(JointStepTest, LockedJointsStayExactlyAndTheOthersAreStillSolved) {
   const Eigen::Matrix3Xd solved =
       SolveJoints(systems_, moments_, skeleton(), displaced_, 1e-7, locked);
   for (const int j : locked) EXPECT_EQ(solved.col(j), displaced_.col(j));
-  EXPECT_LT((solved.col(kRightLowerLeg) - skeleton().rest_position(kRightLowerLeg)).norm(), 2e-3);
+  EXPECT_LT((solved.col(kRightLowerLeg) - skeleton().rest_position(kRightLowerLeg)).norm(), 6e-3);
 }
 
 TEST_F(JointStepTest, MotionThatBendsNothingMovesNoJoint) {

@@ -120,7 +120,8 @@ TEST_F(PoseEnergyTest, StiffnessTermsAreWhatTheySay) {
 }
 
 TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
-  const ChainPose rest = ToChainPose(figure_.rig.skeleton, Pose::Rest(figure_.rig.skeleton), {});
+  const ChainPose rest =
+      ToChainPose(figure_.rig.skeleton, Pose::Rest(figure_.rig.skeleton), Eigen::Vector3d::Zero());
   auto cost_of_turning = [&](int bone) {
     ChainPose pose = rest;
     pose.rotation(bone) = RotationFromExponentialMap({0, 0.2, 0});

@@ -72,7 +72,7 @@ absl::Status ReadQuantization(ByteReader* reader, CompressedHeader* header) {
   header->grid.bound_m = grid[1];
   header->grid.origin_m << grid[2], grid[3], grid[4];
   if (!IsStep(grid[0]) || !(grid[1] >= 0 && grid[1] < 1e12) ||
-      !(header->grid.origin_m.cwiseAbs().maxCoeff() < 1e12)) {
+      !(header->grid.origin_m.array().abs() < 1e12).all()) {
     return absl::InvalidArgumentError("the residual grid is out of range");
   }
   return absl::OkStatus();
