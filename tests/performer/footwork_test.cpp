@@ -88,7 +88,7 @@ TEST_F(SolveLegTest, TheAnkleArrivesWhereItCan) {
   for (int round = 0; round < 300; ++round) {
     const LegAngles truth{.flexion = random.Uniform(-.5, 1.2),
                           .abduction = random.Uniform(-.4, .4),
-                          .knee = random.Uniform(.05, 2)};
+                          .knee = random.Uniform(.2, 2)};
     const Vector3d ankle = Reach(truth);
     const LegAngles solved = SolveLeg(thigh_, shin_, ankle);
     EXPECT_LT((Reach(solved) - ankle).norm(), 1e-9) << round;

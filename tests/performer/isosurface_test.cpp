@@ -44,7 +44,7 @@ TEST(IsosurfaceTest, SurfacesThroughGridPointsStayManifold) {
                                                                         Vector3d(2, 2, 2), .5, {}));
   EXPECT_TRUE(IsClosedManifold(soup));
   EXPECT_EQ(EulerCharacteristic(soup), 2);
-  EXPECT_NEAR(Volume(soup), 8, 1.2);
+  EXPECT_NEAR(Volume(soup), 8, 2);  // cells of half a unit cut the edges off
 }
 
 TEST(IsosurfaceTest, NothingInsideIsNoTriangle) {
