@@ -25,7 +25,7 @@ json Valid() {
                {"root_translation": [0, 1, 3], "rotations": [[0.6, 0, 0.8, 0], [1, 0, 0, 0]]}]})");
 }
 
-absl::StatusOr<Motion> Decode(const json& motion, const MotionLimits& limits = {}) {
+absl::StatusOr<Motion> Decode(const json& motion, const MeshLimits& limits = {}) {
   return DecodeMotion(motion.dump(), HumanTemplate(), limits);
 }
 
@@ -151,7 +151,7 @@ TEST(MotionFileTest, TextThatIsNotJsonSaysWhere) {
 TEST(MotionFileTest, LimitsAndUnknownFields) {
   EXPECT_THAT(Decode(Valid(), {.max_frames = 1}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("2 frames")));
-  EXPECT_THAT(Decode(Valid(), {.max_bytes = 50}),
+  EXPECT_THAT(Decode(Valid(), {.max_document_bytes = 50}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit is 50")));
   json motion = Valid();
   motion["unit"] = "cm";

@@ -54,7 +54,7 @@ absl::Status ReadNumbers(const json& value, const std::string& where, std::span<
 
 class MotionParser {
  public:
-  MotionParser(const json& root, const Skeleton& skeleton, const MotionLimits& limits)
+  MotionParser(const json& root, const Skeleton& skeleton, const MeshLimits& limits)
       : root_(root), skeleton_(skeleton), limits_(limits) {}
 
   absl::StatusOr<Motion> Parse() {
@@ -226,7 +226,7 @@ class MotionParser {
 
   const json& root_;
   const Skeleton& skeleton_;
-  const MotionLimits& limits_;
+  const MeshLimits& limits_;
   std::vector<int> columns_;          // skeleton joint of every rotation in a frame
   std::vector<std::string> resting_;  // joints that the file does not name
   int64_t num_rescaled_ = 0;
@@ -236,11 +236,11 @@ class MotionParser {
 }  // namespace
 
 absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skeleton,
-                                    const MotionLimits& limits) {
+                                    const MeshLimits& limits) {
   if (text.empty()) return Fault("the motion file is empty");
-  if (text.size() > limits.max_bytes) {
-    return absl::ResourceExhaustedError(absl::StrCat("the motion file has ", text.size(),
-                                                     " bytes, the limit is ", limits.max_bytes));
+  if (text.size() > limits.max_document_bytes) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "the motion file has ", text.size(), " bytes, the limit is ", limits.max_document_bytes));
   }
   json root;
   try {  // the parser says line and column only through its exception
@@ -252,11 +252,9 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
 }
 
 absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
-                                  const MotionLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, limits.max_bytes));
-  absl::StatusOr<Motion> motion = DecodeMotion(text, skeleton, limits);
-  if (motion.ok()) return motion;
-  return absl::Status(motion.status().code(), absl::StrCat(path, ": ", motion.status().message()));
+                                  const MeshLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, limits.max_document_bytes));
+  return WithContext(path, DecodeMotion(text, skeleton, limits));
 }
 
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,

@@ -194,9 +194,7 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
     PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(begin + size) / num_regions));
   }
   for (int i = 0; i < num_regions; ++i) {
-    if (statuses[i].ok()) continue;
-    return absl::Status(statuses[i].code(),
-                        absl::StrCat("region ", i, ": ", statuses[i].message()));
+    PLEAT_RETURN_IF_ERROR(WithContext(absl::StrCat("region ", i), statuses[i]));
   }
   p.inputs = normalized(rows, Eigen::all);
   return RegionalGp(std::move(p));

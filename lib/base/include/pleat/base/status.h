@@ -1,8 +1,24 @@
 // Status helpers shared by every module: absl::Status carries what, where, why and what to do.
 #pragma once
 
+#include <utility>
+
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace pleat {
+
+// The same error with "where: " in front of its message; OK stays OK.
+absl::Status WithContext(absl::string_view where, absl::Status status);
+
+template <typename T>
+absl::StatusOr<T> WithContext(absl::string_view where, absl::StatusOr<T> value) {
+  if (value.ok()) return value;
+  return WithContext(where, std::move(value).status());
+}
+
+}  // namespace pleat
 
 // Returns from the enclosing function when `expression` (an absl::Status) is not OK.
 #define PLEAT_RETURN_IF_ERROR(expression)                                                  \

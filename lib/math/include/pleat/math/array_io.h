@@ -1,4 +1,4 @@
-// Arrays and matrices in Pleat's own files; sizes are checked before memory is taken.
+// Arrays and matrices in binary files. Sizes are checked before memory is taken.
 #pragma once
 
 #include <Eigen/Core>
