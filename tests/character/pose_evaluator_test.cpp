@@ -197,6 +197,22 @@ TEST(PoseEvaluatorTest, DoublingTheFrameRateKeepsTheFrames) {
   EXPECT_LT(worst, 1e-4f);
 }
 
+TEST(PoseEvaluatorTest, ASkinnedClipIsItsFramesWithoutDetail) {
+  PoseEvaluator evaluator(SmallCharacter());
+  std::vector<Eigen::Matrix3Xf> frames;
+  ASSERT_THAT(evaluator.EvaluateSkinnedClip(TrainingTrack(), {},
+                                            [&](int t, const EvaluatedFrame& frame) {
+                                              EXPECT_EQ(t, static_cast<int>(frames.size()));
+                                              frames.push_back(frame.positions);
+                                              return absl::OkStatus();
+                                            }),
+              IsOk());
+  ASSERT_EQ(static_cast<int>(frames.size()), TrainingTrack().num_frames());
+  EvaluatedFrame expected;
+  ASSERT_THAT(evaluator.EvaluateSkinned(TrainingTrack().poses[3], {}, &expected), IsOk());
+  EXPECT_EQ(frames[3], expected.positions);
+}
+
 TEST(PoseEvaluatorTest, BoneScalesGiveNewProportions) {
   std::vector<double> scales(kNumHumanJoints, 1.0);
   scales[kLeftLowerLeg] = 1.5;

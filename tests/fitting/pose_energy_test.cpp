@@ -123,7 +123,7 @@ TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
   const ChainPose rest = ToChainPose(figure_.rig.skeleton, Pose::Rest(figure_.rig.skeleton), {});
   auto cost_of_turning = [&](int bone) {
     ChainPose pose = rest;
-    pose.rotation(bone) = RotationFromExponentialMap({0, 0.2, 0});
+    pose.rotation(bone) = QuaternionFromExponentialMap({0, 0.2, 0}).toRotationMatrix();
     const PoseEnergy energy = MakeEnergy(1, 0.5, 0);
     return energy.Value(pose) - energy.DataValue(pose);
   };

@@ -7,7 +7,7 @@
 
 #include "pleat/base/random.h"
 #include "pleat/character/character_model.h"
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 
 namespace pleat {
 
@@ -69,13 +69,18 @@ class SmallModelBuilder {
       return;
     }
     parts->control_vertices = {1, 3, 4, 6};
-    RbfUpsampler::Matrix matrix(8, 4);
+    std::vector<int32_t> row_starts = {0}, columns;
+    std::vector<float> values;
     for (int v = 0; v < 8; ++v) {
-      matrix.insert(v, v / 2) = 0.75f;
-      if (v < 6) matrix.insert(v, v / 2 + 1) = 0.25f;
+      columns.push_back(v / 2);
+      values.push_back(0.75f);
+      if (v < 6) {
+        columns.push_back(v / 2 + 1);
+        values.push_back(0.25f);
+      }
+      row_starts.push_back(static_cast<int32_t>(columns.size()));
     }
-    matrix.makeCompressed();
-    parts->upsampler = *RbfUpsampler::FromMatrix(matrix);
+    parts->upsampler = *RbfUpsampler::FromRows(4, row_starts, columns, values);
   }
 
   GpRegressionParameters Stage(int num_inputs, int num_outputs) {

@@ -335,4 +335,18 @@ absl::Status PoseEvaluator::EvaluateClip(
   return absl::OkStatus();
 }
 
+absl::Status PoseEvaluator::EvaluateSkinnedClip(
+    const PoseTrack& track, const std::vector<double>& bone_scales,
+    const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
+    const Progress& progress) {
+  EvaluatedFrame frame;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    PLEAT_RETURN_IF_ERROR(WithContext(absl::StrCat("frame ", t),
+                                      EvaluateSkinned(track.poses[t], bone_scales, &frame)));
+    PLEAT_RETURN_IF_ERROR(consume(t, frame));
+    PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / track.num_frames()));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace pleat

@@ -36,19 +36,6 @@ MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vec
   return bones;
 }
 
-// Runs body(v) for every vertex, in parallel pieces that end early when cancelled.
-template <typename Body>
-absl::Status ForVertices(int num_vertices, int num_threads, const Progress& progress,
-                         const Body& body) {
-  const int num_items = (num_vertices + kVerticesPerItem - 1) / kVerticesPerItem;
-  ParallelFor(num_items, num_threads, [&](int item) {
-    if (progress.cancelled()) return;
-    const int end = std::min(num_vertices, (item + 1) * kVerticesPerItem);
-    for (int v = item * kVerticesPerItem; v < end; ++v) body(v);
-  });
-  return progress.Report(1);
-}
-
 // Bones that a vertex may take, ascending.
 class Candidates {
  public:
@@ -203,11 +190,11 @@ absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Ri
   for (int sweep = 0; sweep < options.num_sweeps; ++sweep) {
     const double count = options.num_sweeps;
     PLEAT_RETURN_IF_ERROR(
-        ForVertices(rig.weights.num_vertices(), options.num_threads,
-                    progress.Stage("refine", sweep / count, (sweep + 1) / count), [&](int v) {
-                      next[v] = SolveVertexWeights(moments, rig, first.vertex(v), current,
-                                                   adjacency.neighbors(v), options, unit, v);
-                    }));
+        ParallelForPieces(rig.weights.num_vertices(), kVerticesPerItem, options.num_threads,
+                          progress.Stage("refine", sweep / count, (sweep + 1) / count), [&](int v) {
+                            next[v] = SolveVertexWeights(moments, rig, first.vertex(v), current,
+                                                         adjacency.neighbors(v), options, unit, v);
+                          }));
     current.swap(next);
   }
   return SkinWeights::Create(rig.skeleton.num_joints(), std::move(current));
@@ -221,8 +208,8 @@ absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moment
   Eigen::Matrix3Xd current = rig.rest_positions, next(3, current.cols());
   for (int sweep = 0; sweep < options.num_sweeps; ++sweep) {
     const double count = options.num_sweeps;
-    PLEAT_RETURN_IF_ERROR(ForVertices(
-        rig.weights.num_vertices(), options.num_threads,
+    PLEAT_RETURN_IF_ERROR(ParallelForPieces(
+        rig.weights.num_vertices(), kVerticesPerItem, options.num_threads,
         progress.Stage("refine", sweep / count, (sweep + 1) / count), [&](int v) {
           // v_it = L_t u + l_t with [L_t l_t] = sum_b W_ib T_bt.
           const VertexInfluences& influences = rig.weights.vertex(v);

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "point_index.h"
+#include "pleat/geometry/point_index.h"
 #include "surface_neighbors.h"
 
 namespace pleat {
@@ -113,7 +113,7 @@ void Thin(const Matrix3Xd& reference, const std::vector<char>& is_required, int 
     };
     std::vector<Pair> pairs;
     for (int i = 0; i < count; ++i) {
-      for (const auto& [other, squared] : index.Nearest(reference.col((*kept)[i]), 2)) {
+      for (const auto& [other, squared] : index.NearestFew(reference.col((*kept)[i]), 2)) {
         if (other != i && !is_required[(*kept)[i]]) pairs.push_back({squared, i, other});
       }
     }
@@ -146,7 +146,7 @@ void FillGaps(const Matrix3Xd& reference, int target, std::vector<int>* kept) {
   if (!kept->empty()) {
     const PointIndex index(Columns(reference, *kept));
     for (int v = 0; v < num_vertices; ++v) {
-      squared[v] = index.Nearest(reference.col(v), 1)[0].second;
+      index.Nearest(reference.col(v), &squared[v]);
     }
   }
   // A vertex at the place of a kept one has distance 0 but may still be needed for the count.

@@ -9,7 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
-#include "point_index.h"
+#include "pleat/geometry/point_index.h"
 #include "surface_neighbors.h"
 
 namespace pleat {
@@ -81,7 +81,7 @@ double MeanSpacing(const Eigen::Matrix3Xd& controls, const PointIndex& index) {
   if (controls.cols() < 2) return 1;
   double sum = 0;
   for (Eigen::Index c = 0; c < controls.cols(); ++c) {
-    const auto nearest = index.Nearest(controls.col(c), 2);
+    const auto nearest = index.NearestFew(controls.col(c), 2);
     sum += std::sqrt(nearest[1].second);
   }
   const double mean = sum / static_cast<double>(controls.cols());
@@ -138,17 +138,6 @@ std::vector<int> ControlOfVertex(int num_vertices, const std::vector<int>& contr
   return control_of;
 }
 
-absl::Status ForVertices(int num_vertices, int num_threads, const Progress& progress,
-                         const std::function<void(int)>& body) {
-  const int num_batches = (num_vertices + kBatch - 1) / kBatch;
-  ParallelFor(num_batches, num_threads, [&](int batch) {
-    if (progress.cancelled()) return;
-    const int end = std::min(num_vertices, (batch + 1) * kBatch);
-    for (int v = batch * kBatch; v < end; ++v) body(v);
-  });
-  return progress.Report(1);
-}
-
 }  // namespace
 
 absl::StatusOr<RbfUpsampler> RbfUpsampler::Build(const Topology& topology,
@@ -169,20 +158,22 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Build(const Topology& topology,
   const MatrixXd coordinates = KernelCoordinates(rest, options);
   const std::vector<int> control_of = ControlOfVertex(num_vertices, control_vertices);
   std::vector<Row> rows(num_vertices);
-  PLEAT_RETURN_IF_ERROR(ForVertices(num_vertices, options.num_threads, progress, [&](int v) {
-    if (control_of[v] >= 0) {
-      rows[v] = {{control_of[v], 1.0}};
-      return;
-    }
-    std::vector<int> controls;
-    for (const SurfaceNeighbor& neighbor : neighbors[v]) controls.push_back(neighbor.source);
-    if (controls.empty()) {
-      for (const auto& [control, squared] : index.Nearest(rest.col(v), options.num_neighbors)) {
-        controls.push_back(control);
-      }
-    }
-    rows[v] = KernelRow(coordinates, control_vertices, controls, v, length);
-  }));
+  PLEAT_RETURN_IF_ERROR(
+      ParallelForPieces(num_vertices, kBatch, options.num_threads, progress, [&](int v) {
+        if (control_of[v] >= 0) {
+          rows[v] = {{control_of[v], 1.0}};
+          return;
+        }
+        std::vector<int> controls;
+        for (const SurfaceNeighbor& neighbor : neighbors[v]) controls.push_back(neighbor.source);
+        if (controls.empty()) {
+          for (const auto& [control, squared] :
+               index.NearestFew(rest.col(v), options.num_neighbors)) {
+            controls.push_back(control);
+          }
+        }
+        rows[v] = KernelRow(coordinates, control_vertices, controls, v, length);
+      }));
   return RbfUpsampler(ToMatrix(rows, static_cast<int>(control_vertices.size())));
 }
 
@@ -215,15 +206,6 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::FromRows(int num_controls,
   return RbfUpsampler(std::move(matrix));
 }
 
-absl::StatusOr<RbfUpsampler> RbfUpsampler::FromMatrix(Matrix matrix) {
-  matrix.makeCompressed();
-  const auto starts = matrix.outerIndexPtr();
-  const auto columns = matrix.innerIndexPtr();
-  return FromRows(static_cast<int>(matrix.cols()), {starts, starts + matrix.rows() + 1},
-                  {columns, columns + matrix.nonZeros()},
-                  {matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros()});
-}
-
 absl::StatusOr<RbfUpsampler> RbfUpsampler::Refine(const Eigen::Ref<const MatrixXd>& displacements,
                                                   const std::vector<int>& control_vertices,
                                                   const UpsamplingRefinementOptions& options,
@@ -252,24 +234,25 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Refine(const Eigen::Ref<const MatrixX
   const double ridge = options.ridge * samples.squaredNorm() / static_cast<double>(matrix_.rows());
   const std::vector<int> control_of = ControlOfVertex(num_vertices(), control_vertices);
   Matrix refined = matrix_;
-  PLEAT_RETURN_IF_ERROR(ForVertices(num_vertices(), options.num_threads, progress, [&](int v) {
-    if (control_of[v] >= 0 || !(ridge > 0)) return;
-    const int begin = refined.outerIndexPtr()[v];
-    const int m = refined.outerIndexPtr()[v + 1] - begin;
-    MatrixXd inputs(samples.rows(), m);
-    for (int i = 0; i < m; ++i) {
-      inputs.col(i) = samples.col(control_vertices[refined.innerIndexPtr()[begin + i]]);
-    }
-    Eigen::Map<Eigen::VectorXf> weights(refined.valuePtr() + begin, m);
-    const VectorXd prior = weights.cast<double>();
-    MatrixXd gram = MatrixXd::Zero(m, m);
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(inputs.transpose());
-    gram.diagonal().array() += ridge;
-    const VectorXd residual = samples.col(v) - inputs * prior;
-    const VectorXd change =
-        gram.selfadjointView<Eigen::Lower>().llt().solve(inputs.transpose() * residual);
-    weights = (prior + change).cast<float>();
-  }));
+  PLEAT_RETURN_IF_ERROR(
+      ParallelForPieces(num_vertices(), kBatch, options.num_threads, progress, [&](int v) {
+        if (control_of[v] >= 0 || !(ridge > 0)) return;
+        const int begin = refined.outerIndexPtr()[v];
+        const int m = refined.outerIndexPtr()[v + 1] - begin;
+        MatrixXd inputs(samples.rows(), m);
+        for (int i = 0; i < m; ++i) {
+          inputs.col(i) = samples.col(control_vertices[refined.innerIndexPtr()[begin + i]]);
+        }
+        Eigen::Map<Eigen::VectorXf> weights(refined.valuePtr() + begin, m);
+        const VectorXd prior = weights.cast<double>();
+        MatrixXd gram = MatrixXd::Zero(m, m);
+        gram.selfadjointView<Eigen::Lower>().rankUpdate(inputs.transpose());
+        gram.diagonal().array() += ridge;
+        const VectorXd residual = samples.col(v) - inputs * prior;
+        const VectorXd change =
+            gram.selfadjointView<Eigen::Lower>().llt().solve(inputs.transpose() * residual);
+        weights = (prior + change).cast<float>();
+      }));
   return RbfUpsampler(std::move(refined));
 }
 

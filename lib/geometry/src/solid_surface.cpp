@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/mesh/bounds.h"
+#include "pleat/mesh/edge_sides.h"
 
 namespace pleat {
 namespace {
@@ -86,29 +86,6 @@ void KeepUsableTriangles(const Topology& topology,
   }
 }
 
-// One side of an edge: triangle and whether it runs from the lower to the higher vertex.
-struct EdgeSide {
-  std::array<int, 2> edge;
-  int triangle;
-  bool forward;
-  friend bool operator<(const EdgeSide& a, const EdgeSide& b) {
-    return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
-  }
-};
-
-std::vector<EdgeSide> SortedEdgeSides(const Eigen::Matrix3Xi& triangles) {
-  std::vector<EdgeSide> sides;
-  sides.reserve(3 * triangles.cols());
-  for (int f = 0; f < triangles.cols(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = triangles(k, f), b = triangles((k + 1) % 3, f);
-      sides.push_back({{std::min(a, b), std::max(a, b)}, f, a < b});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
-
 struct Neighbor {
   int triangle;
   bool same_orientation;
@@ -118,18 +95,16 @@ struct Neighbor {
 std::vector<std::vector<Neighbor>> TriangleNeighbors(const std::vector<EdgeSide>& sides,
                                                      int num_triangles, SurfaceReport* report) {
   std::vector<std::vector<Neighbor>> neighbors(num_triangles);
-  for (size_t start = 0; start < sides.size();) {
-    size_t end = start;
-    while (end < sides.size() && sides[end].edge == sides[start].edge) ++end;
+  for (size_t start = 0, end = 0; start < sides.size(); start = end) {
+    end = EndOfEdge(sides, start);
     report->num_boundary_edges += end - start == 1;
-    report->num_nonmanifold_edges += end - start > 2;
+    report->num_non_manifold_edges += end - start > 2;
     for (size_t i = start; i + 1 < end; ++i) {
       const EdgeSide &a = sides[i], &b = sides[i + 1];
       const bool same = a.forward != b.forward;
-      neighbors[a.triangle].push_back({b.triangle, same, end - start == 2});
-      neighbors[b.triangle].push_back({a.triangle, same, end - start == 2});
+      neighbors[a.face].push_back({b.face, same, end - start == 2});
+      neighbors[b.face].push_back({a.face, same, end - start == 2});
     }
-    start = end;
   }
   return neighbors;
 }

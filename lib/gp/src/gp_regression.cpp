@@ -155,17 +155,4 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
   *variance = v * p.output_scale * p.output_scale;
 }
 
-void GpRegression::PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows,
-                                Eigen::MatrixXd* means, Eigen::VectorXd* variances) const {
-  means->resize(rows.rows(), num_outputs());
-  if (variances) variances->resize(rows.rows());
-  Workspace workspace;
-  Eigen::VectorXd row(rows.cols()), mean(num_outputs());
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    row = rows.row(i).transpose();
-    Predict(row, 0, &workspace, mean, variances ? &(*variances)[i] : nullptr);
-    means->row(i) = mean.transpose();
-  }
-}
-
 }  // namespace pleat

@@ -24,10 +24,6 @@ Quaterniond QuaternionFromExponentialMap(const Vector3d& w) {
   return Quaterniond(std::cos(half), scale * w.x(), scale * w.y(), scale * w.z());
 }
 
-Matrix3d RotationFromExponentialMap(const Vector3d& w) {
-  return QuaternionFromExponentialMap(w).normalized().toRotationMatrix();
-}
-
 Vector3d ExponentialMapFromQuaternion(const Quaterniond& rotation) {
   Quaterniond q = rotation.normalized();
   if (q.w() < 0) q.coeffs() = -q.coeffs();
@@ -36,30 +32,12 @@ Vector3d ExponentialMapFromQuaternion(const Quaterniond& rotation) {
   return (2 * std::atan2(sine, q.w()) / sine) * q.vec();
 }
 
-Vector3d ExponentialMapFromRotation(const Matrix3d& rotation) {
-  return ExponentialMapFromQuaternion(Quaterniond(rotation));
-}
-
 Vector3d UnwrapExponentialMap(const Vector3d& w, const Vector3d& reference) {
   const double angle = w.norm();
   if (angle < 1e-9) return w;
   const Vector3d axis = w / angle;
   const double turns = std::round((axis.dot(reference) - angle) / (2 * std::numbers::pi));
   return w + 2 * std::numbers::pi * turns * axis;
-}
-
-Matrix3d RightJacobian(const Vector3d& w) {
-  const double angle = w.norm();
-  const Matrix3d cross = CrossMatrix(w);
-  double a, b;  // J_r = I - a [w] + b [w]^2
-  if (angle < 1e-4) {
-    a = 0.5 - angle * angle / 24;
-    b = 1.0 / 6 - angle * angle / 120;
-  } else {
-    a = (1 - std::cos(angle)) / (angle * angle);
-    b = (angle - std::sin(angle)) / (angle * angle * angle);
-  }
-  return Matrix3d::Identity() - a * cross + b * cross * cross;
 }
 
 Vector3d EulerXyzFromRotation(const Matrix3d& rotation) {
@@ -84,7 +62,5 @@ Matrix3d NearestRotation(const Matrix3d& matrix) {
   Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
-
-Quaterniond MeanRotation(const Quaterniond& a, const Quaterniond& b) { return a.slerp(0.5, b); }
 
 }  // namespace pleat

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <tuple>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/mesh/bounds.h"
+#include "pleat/mesh/edge_sides.h"
 
 namespace pleat {
 namespace {
@@ -34,27 +34,14 @@ class DisjointSets {
 };
 
 void CountEdges(const Topology& topology, MeshReport* report) {
-  // low vertex, high vertex, direction; equal edges are neighbors after sorting.
-  std::vector<std::tuple<int32_t, int32_t, bool>> edges;
-  edges.reserve(static_cast<size_t>(topology.num_corners()));
-  for (int f = 0; f < topology.num_faces(); ++f) {
-    const std::span<const int32_t> corners = topology.face(f);
-    for (size_t c = 0; c < corners.size(); ++c) {
-      const int32_t a = corners[c], b = corners[(c + 1) % corners.size()];
-      if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b), a < b);
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    const auto [low, high, direction] = edges[begin];
-    while (end < edges.size() && std::get<0>(edges[end]) == low &&
-           std::get<1>(edges[end]) == high) {
-      ++end;
-    }
+  const std::vector<EdgeSide> sides = SortedEdgeSides(topology);
+  for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    end = EndOfEdge(sides, begin);
     const size_t num_faces = end - begin;
     report->num_boundary_edges += num_faces == 1;
     report->num_non_manifold_edges += num_faces > 2;
-    report->num_inconsistent_edges += num_faces == 2 && std::get<2>(edges[end - 1]) == direction;
+    report->num_inconsistent_edges +=
+        num_faces == 2 && sides[begin].forward == sides[end - 1].forward;
   }
 }
 

@@ -55,10 +55,4 @@ Eigen::Vector3d Camera::Project(const Eigen::Vector3d& world) const {
   return {view_.width / 2. + scale * local.x(), view_.height / 2. - scale * local.y(), depth};
 }
 
-Eigen::Vector3d Camera::ToViewer(const Eigen::Vector3d& world) const {
-  const Eigen::Vector3d back = camera_from_world_.row(2).transpose();
-  if (view_.projection == Projection::kOrthographic) return back;
-  return (center_ + distance_ * back - world).normalized();
-}
-
 }  // namespace pleat

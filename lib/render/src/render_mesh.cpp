@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pleat/mesh/normals.h"
+
 namespace pleat {
 namespace {
 
@@ -20,20 +22,6 @@ struct ProjectedVertex {
   Vector3f normal;  // camera axes
   Vector3f color;   // 0..255
 };
-
-// Area-weighted vertex normals, camera axes.
-Eigen::Matrix3Xf VertexNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
-                               const Eigen::Ref<const Eigen::Matrix3Xi>& triangles,
-                               const Eigen::Matrix3d& camera_from_world) {
-  Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, positions.cols());
-  for (int f = 0; f < triangles.cols(); ++f) {
-    const Vector3d a = positions.col(triangles(0, f));
-    const Vector3d area =
-        (positions.col(triangles(1, f)) - a).cross(positions.col(triangles(2, f)) - a);
-    for (int c = 0; c < 3; ++c) normals.col(triangles(c, f)) += area;
-  }
-  return (camera_from_world * normals).colwise().normalized().cast<float>();
-}
 
 Rgb Shade(const Vector3f& color, const Vector3f& normal, float shading) {
   static const Vector3f kKey = Vector3f(-.45f, .60f, .66f).normalized();
@@ -181,7 +169,11 @@ Image RenderMesh(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
   assert(options.vertex_colors.empty() ||
          static_cast<int>(options.vertex_colors.size()) == num_vertices);
   const auto to_vector = [](Rgb c) { return Vector3f(c.r, c.g, c.b); };
-  const Eigen::Matrix3Xf normals = VertexNormals(positions, triangles, camera.camera_from_world());
+  const Eigen::Matrix3Xf normals =
+      (camera.camera_from_world() * SumTriangleNormals(positions, triangles))
+          .colwise()
+          .normalized()
+          .cast<float>();
   std::vector<ProjectedVertex> vertices(num_vertices);
   for (int v = 0; v < num_vertices; ++v) {
     const Vector3d p = camera.Project(positions.col(v));

@@ -102,15 +102,12 @@ void WarnOfFacing(const Embedding& embedding, const AutoRigOptions& options,
 }
 
 void WarnOfSurface(const SurfaceReport& surface, AutoRigSummary* summary) {
-  if (surface.num_boundary_edges == 0 && surface.num_nonmanifold_edges == 0 &&
-      surface.num_components <= 1 && surface.num_flipped_triangles == 0) {
-    return;
-  }
+  if (surface.closed() && surface.num_components <= 1 && surface.num_flipped_triangles == 0) return;
   summary->warnings.push_back(absl::StrFormat(
       "the mesh is not one clean closed surface: %d components, %d boundary edges, %d "
       "non-manifold edges, %d triangles oriented inward, %d degenerate triangles, %d "
       "unreferenced vertices",
-      surface.num_components, surface.num_boundary_edges, surface.num_nonmanifold_edges,
+      surface.num_components, surface.num_boundary_edges, surface.num_non_manifold_edges,
       surface.num_flipped_triangles, surface.num_degenerate_triangles,
       surface.num_unreferenced_vertices));
 }

@@ -2,30 +2,26 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <nanoflann.hpp>
 
+#include "pleat/geometry/point_index.h"
 #include "pleat/skeleton/human_template.h"
 
 namespace pleat {
 namespace {
 
+constexpr int kSamplesPerLeaf = 10;  // of the search tree
+
 // Body segments as shares of stature: R. Drillis, R. Contini, "Body segment parameters", 1966
 // (as tabulated in D. Winter, "Biomechanics and Motor Control of Human Movement").
 constexpr double kThigh = .245, kLowerLeg = .246, kTrunk = .818 - .530;  // shoulders above hips
 
-struct SampleCloud {
-  const std::vector<MedialSample>& samples;
-  size_t kdtree_get_point_count() const { return samples.size(); }
-  double kdtree_get_pt(size_t i, size_t axis) const { return samples[i].position[axis]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
+Eigen::Matrix3Xd PositionsOf(const std::vector<MedialSample>& samples) {
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(samples.size()));
+  for (size_t i = 0; i < samples.size(); ++i) {
+    positions.col(static_cast<Eigen::Index>(i)) = samples[i].position;
   }
-};
-
-using SampleTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, SampleCloud>,
-                                        SampleCloud, 3>;
+  return positions;
+}
 
 class RefinementObjective {
  public:
@@ -34,8 +30,8 @@ class RefinementObjective {
                       const RefinementOptions& options)
       : options_(options),
         template_joints_(template_joints),
-        cloud_{medial_samples},
-        tree_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+        samples_(medial_samples),
+        places_(PositionsOf(medial_samples), kSamplesPerLeaf) {}
 
   // The energy at `joints`; fills the Gauss-Newton system when `hessian` is not null.
   double Evaluate(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
@@ -68,12 +64,7 @@ class RefinementObjective {
     for (int k = 1; k <= options_.samples_per_bone; ++k) {
       const double share = static_cast<double>(k) / options_.samples_per_bone;
       const Eigen::Vector3d point = (1 - share) * joints.col(Parent(b)) + share * joints.col(b);
-      size_t nearest = 0;
-      double squared_distance = 0;
-      nanoflann::KNNResultSet<double> result(1);
-      result.init(&nearest, &squared_distance);
-      tree_.findNeighbors(result, point.data(), nanoflann::SearchParams());
-      const MedialSample& sample = cloud_.samples[nearest];
+      const MedialSample& sample = samples_[places_.Nearest(point, nullptr)];
       const double clarity = std::min(1.0, options_.limb_radius / sample.depth);
       const Eigen::Matrix3d metric =
           options_.centering / options_.samples_per_bone * clarity * clarity * across;
@@ -186,8 +177,8 @@ class RefinementObjective {
 
   const RefinementOptions& options_;
   const Eigen::Matrix3Xd& template_joints_;
-  SampleCloud cloud_;
-  SampleTree tree_;
+  const std::vector<MedialSample>& samples_;
+  PointIndex places_;
 };
 
 }  // namespace

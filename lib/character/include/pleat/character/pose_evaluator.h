@@ -76,6 +76,11 @@ class PoseEvaluator {
       const PoseTrack& track, const std::vector<double>& bone_scales,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
       const Progress& progress = {});
+  // The same without the learned detail.
+  absl::Status EvaluateSkinnedClip(
+      const PoseTrack& track, const std::vector<double>& bone_scales,
+      const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
+      const Progress& progress = {});
 
  private:
   struct Scratch;  // of one query

@@ -60,8 +60,6 @@ class RbfUpsampler {
                                                const std::vector<int32_t>& row_starts,
                                                const std::vector<int32_t>& columns,
                                                const std::vector<float>& values);
-  // From a whole matrix, with the same checks on its entries.
-  static absl::StatusOr<RbfUpsampler> FromMatrix(Matrix matrix);
 
   // The same neighbors with weights learned from an animation: per vertex the ridge regression of
   // its displacements on those of its neighbors, pulled towards the kernel weights. displacements:

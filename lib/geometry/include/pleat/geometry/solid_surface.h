@@ -9,15 +9,18 @@
 
 namespace pleat {
 
-// What is unclean about a mesh, for reports.
+// What was unclean about the mesh, counted on the welded triangles; MeshReport (mesh_report.h)
+// counts the same on the mesh as it is.
 struct SurfaceReport {
   int num_welded_vertices = 0;  // share their position with an earlier vertex
   int num_unreferenced_vertices = 0;
   int num_degenerate_triangles = 0;  // two equal corners after welding, or no area
   int num_flipped_triangles = 0;     // turned so that their component is oriented outward
   int num_boundary_edges = 0;        // one triangle
-  int num_nonmanifold_edges = 0;     // three triangles or more
+  int num_non_manifold_edges = 0;    // three triangles or more
   int num_components = 0;            // connected by edges
+
+  bool closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
 };
 
 // A copy of the mesh, welded and oriented. The user's own mesh and vertex order are untouched.

@@ -42,9 +42,8 @@ class TriangleTree {
 
   int num_triangles() const { return static_cast<int>(corners_.size()); }
   const std::vector<Node>& nodes() const { return nodes_; }  // depth first, root first
-  // Corners of the triangle at position `k` of the tree order, and its index in the input.
+  // Corners of the triangle at position `k` of the tree order.
   const std::array<Eigen::Vector3d, 3>& corners(int k) const { return corners_[k]; }
-  int input_triangle(int k) const { return order_[k]; }
 
  private:
   int32_t Build(std::vector<Eigen::Vector3d>& centers, int32_t first, int32_t count);

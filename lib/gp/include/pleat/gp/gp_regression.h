@@ -105,10 +105,6 @@ class GpRegression {
   void Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double input_variance,
                Workspace* workspace, Eigen::Ref<Eigen::VectorXd> mean, double* variance) const;
 
-  // M rows at once: means (M x r) and, when not null, variances (M).
-  void PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::MatrixXd* means,
-                    Eigen::VectorXd* variances) const;
-
   // Variance of the function before any data, at a typical training input, (output unit)^2. The
   // bias is left out: any data fix it, so that far from all of them the variance is a, not a + b.
   double prior_variance() const { return prior_variance_; }

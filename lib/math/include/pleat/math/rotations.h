@@ -10,19 +10,14 @@ namespace pleat {
 Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v);
 
 // Exponential map (radians * unit axis) -> rotation (Rodrigues), exact near zero.
-Eigen::Matrix3d RotationFromExponentialMap(const Eigen::Vector3d& w);
 Eigen::Quaterniond QuaternionFromExponentialMap(const Eigen::Vector3d& w);
 
 // Rotation -> exponential map of angle in [0, pi].
-Eigen::Vector3d ExponentialMapFromRotation(const Eigen::Matrix3d& rotation);
 Eigen::Vector3d ExponentialMapFromQuaternion(const Eigen::Quaterniond& rotation);
 
 // Of all exponential maps w + 2 pi k w/|w| of the same rotation, the one nearest to `reference`.
 // Chained along time it removes the wraps at 2 pi.
 Eigen::Vector3d UnwrapExponentialMap(const Eigen::Vector3d& w, const Eigen::Vector3d& reference);
-
-// J_r(w) of exp(w + d) ~ exp(w) exp(J_r(w) d) (3 x 3).
-Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& w);
 
 // Intrinsic X-Y-Z Euler angles, radians: R = Rx(a) Ry(b) Rz(c), b in [-pi/2, pi/2].
 Eigen::Vector3d EulerXyzFromRotation(const Eigen::Matrix3d& rotation);
@@ -30,8 +25,5 @@ Eigen::Matrix3d RotationFromEulerXyz(const Eigen::Vector3d& angles);
 
 // The rotation nearest to `matrix` in the Frobenius norm (SVD, determinant +1).
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& matrix);
-
-// The rotation "half way" between two rotations (geodesic midpoint).
-Eigen::Quaterniond MeanRotation(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 
 }  // namespace pleat

@@ -1,8 +1,6 @@
 // What every optimizer reports about a run.
 #pragma once
 
-#include <string>
-
 namespace pleat {
 
 enum class StopReason {
@@ -20,8 +18,5 @@ struct OptimizationSummary {
   double final_gradient = 0;  // largest absolute entry
   StopReason stop_reason = StopReason::kMaxIterations;
 };
-
-// E.g. "gradient tolerance".
-std::string StopReasonName(StopReason reason);
 
 }  // namespace pleat

@@ -27,8 +27,6 @@ class Camera {
   Eigen::Vector3d Project(const Eigen::Vector3d& world) const;
   // World direction -> camera axes (x right, y up, z towards the viewer).
   const Eigen::Matrix3d& camera_from_world() const { return camera_from_world_; }
-  // Unit vector from `world` to the viewer, world axes.
-  Eigen::Vector3d ToViewer(const Eigen::Vector3d& world) const;
 
  private:
   ViewOptions view_;

@@ -31,13 +31,6 @@ struct BodyVolume {
   std::unique_ptr<const WindingNumber> winding_number;
   DistanceField field;
   std::vector<MedialSample> medial_samples;
-
-  Eigen::Vector3d UnitFromWorld(const Eigen::Vector3d& point) const {
-    return scale * point + offset;
-  }
-  Eigen::Vector3d WorldFromUnit(const Eigen::Vector3d& point) const {
-    return (point - offset) / scale;
-  }
 };
 
 // positions: 3 x V, any unit. kInvalidArgument when the mesh has no area; kFailedPrecondition when

@@ -1,4 +1,4 @@
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Simple meshes for tests and generators. Closed ones face outwards.
+// Simple meshes. Closed ones face outwards.
 #pragma once
 
 #include <Eigen/Core>
