@@ -21,7 +21,7 @@ struct OptimizationSummary {
   StopReason stop_reason = StopReason::kMaxIterations;
 };
 
-// E.g. "gradient tolerance".
+// Returns words for reports, such as "gradient tolerance".
 std::string StopReasonName(StopReason reason);
 
 }  // namespace pleat
