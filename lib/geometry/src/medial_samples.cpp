@@ -24,7 +24,7 @@ std::vector<MedialSample> FindMedialSamples(const DistanceField& field,
           const double next_depth = -field.node_distance(next_node);
           const Eigen::Vector3f& next_direction = field.node_direction(next_node);
           if (next_depth <= 0 || direction.dot(next_direction) > options.max_cosine) continue;
-          // Depth grows from both ends as if both nearest surfaces were planes; it is largest
+          // The depth grows from both ends as if both nearest surfaces were planes; it is largest
           // where the two lines meet.
           const double slope = -direction[axis], next_slope = next_direction[axis];
           const double sum = slope + next_slope;

@@ -1,4 +1,5 @@
-// Pre-flight of a user's mesh: what a volume method needs, made from whatever the file holds.
+// The pre-flight of a user's mesh: what a volume method needs, made from whatever the file holds
+// (docs/method/rig.md#solid-surface).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +10,7 @@
 
 namespace pleat {
 
-// What is unclean about a mesh, for reports.
+// Counts what is unclean about a mesh, for reports.
 struct SurfaceReport {
   int num_welded_vertices = 0;  // share their position with an earlier vertex
   int num_unreferenced_vertices = 0;
@@ -29,9 +30,10 @@ struct SolidSurface {
   SurfaceReport report;
 };
 
-// Vertices closer than 1e-6 of the box diagonal count as one. Patches connected through edges of
-// two triangles are oriented consistently and then outward by their signed volume. positions:
-// 3 x V. kInvalidArgument when no triangle with area is left.
+// Makes the copy. Vertices that fall into one cell of a grid of 1e-6 of the box diagonal count as
+// one. Patches connected through edges of two triangles are oriented consistently and then outward
+// by their signed volume. positions: 3 x V. The error is kInvalidArgument when the counts differ or
+// no triangle with area is left.
 absl::StatusOr<SolidSurface> PrepareSolidSurface(
     const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 

@@ -36,12 +36,12 @@ struct KernelLogs {
 
 inline constexpr double kMaxKernelLog = 14;
 
-// exp of clamped logs.
+// The exponentials of the clamped logs.
 struct KernelValues {
   double g, a, b, s2, c;  // b and c are zero when their term is off
 };
 
-// The logs as a vector of unknowns: log g, log a, [log b], log s^2, [log c].
+// The logs as a vector of unknowns in the order log g, log a, [log b], log s^2, [log c].
 int NumKernelUnknowns(const KernelOptions& options);
 void PackKernelLogs(const KernelOptions& options, const KernelLogs& logs,
                     Eigen::Ref<Eigen::VectorXd> unknowns);
@@ -50,7 +50,7 @@ KernelLogs UnpackKernelLogs(const KernelOptions& options,
 
 KernelValues KernelValuesOf(const KernelOptions& options, const KernelLogs& logs);
 
-// kInvalidArgument naming `what` when an active log is not finite.
+// Returns kInvalidArgument naming `what` when an active log is not finite.
 absl::Status CheckKernelLogs(const KernelOptions& options, const KernelLogs& logs,
                              const std::string& what);
 
