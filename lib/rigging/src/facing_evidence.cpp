@@ -31,7 +31,7 @@ std::vector<int> BonesOfVertices(const Eigen::Matrix3Xd& positions,
   return bones;
 }
 
-// Area-weighted mean of points.
+// An area-weighted mean of points.
 struct Centroid {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double area = 0;
@@ -42,7 +42,8 @@ struct Centroid {
   Eigen::Vector3d mean() const { return sum / area; }
 };
 
-// How far the foot's center lies before the line of its lower leg, meters; 0 without a foot.
+// Returns how far the foot's center lies before the line of its lower leg, in meters; 0 without a
+// foot.
 double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
                   const std::vector<int>& bones, const FacingHypothesis& hypothesis,
                   const Leg& leg) {
@@ -78,7 +79,7 @@ double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
   return forward.dot(foot.mean() - below);
 }
 
-// Columns of the vertices whose bone is `bone`.
+// Returns the columns of the vertices whose bone is `bone`.
 std::vector<int> VerticesOf(const std::vector<int>& bones, int bone) {
   std::vector<int> vertices;
   for (size_t v = 0; v < bones.size(); ++v) {
@@ -94,7 +95,8 @@ Eigen::Matrix3d RotationOf(const Eigen::Matrix3Xd& rest, const Eigen::Matrix3Xd&
   return motion.ok() ? motion->rotation : Eigen::Matrix3d::Identity();
 }
 
-// Mean sine of the bend of both knees, positive where the lower leg goes back as a knee's does.
+// Returns the mean sine of the bend of both knees, positive where the lower leg goes back as a
+// knee's does.
 double MeanKneeBend(const MeshSequence& sequence, const Eigen::Matrix3Xd& rest,
                     const std::vector<int>& bones, const FacingHypothesis& hypothesis,
                     int max_frames) {

@@ -14,7 +14,7 @@ constexpr double kMaxTipShare = .35;    // of the arm: more than a hand is somet
 constexpr double kTipRadius = .05;      // of the body's size, around the axis of the forearm
 constexpr double kMinForearmLeft = .5;  // of the forearm as it was found
 
-// How far the surface that is nearest to the forearm reaches beyond its hand.
+// Returns how far the surface that is nearest to the forearm reaches beyond its hand.
 double ReachBeyondHand(const SolidSurface& surface, const MainBody& body, double body_size,
                        const Eigen::Matrix3Xd& joints, int elbow, int hand) {
   const Eigen::Vector3d direction = (joints.col(hand) - joints.col(elbow)).normalized();

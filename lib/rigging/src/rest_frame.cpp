@@ -17,12 +17,12 @@ namespace {
 
 constexpr int kMaxFullFrames = 1;    // of the probed ones, looked at again on the full grid
 constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
-// Of the trusted residual: a frame that fits so well as it stands is not lying.
+// A multiple of the trusted residual: a frame that fits so well as it stands is not lying.
 constexpr double kStandingRatio = 1.5;
 constexpr double kDoubtfulResidual = .1;
 
-// The frames to look at, evenly spaced: the first one first, then each far from those before it, so
-// that a search that ends early has seen different poses.
+// Returns the frames to look at, evenly spaced: the first one first, then each far from those
+// before it, so that a search that ends early has seen different poses.
 std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
   if (options.rest_frame >= 0) return {options.rest_frame};
   const int count = std::clamp(options.max_frames_tried, 1, num_frames);
@@ -40,7 +40,8 @@ Eigen::Matrix3d TurnToY(const Eigen::Vector3d& up) {
   return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitY()).toRotationMatrix();
 }
 
-// The other coordinate axes (Z up is common), then the principal axes of the surface, both ways.
+// Returns the turns that stand up the other coordinate axes (Z up is common), then the principal
+// axes of the surface, both ways.
 std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
   std::vector<Eigen::Matrix3d> turns;
   for (const Eigen::Vector3d& up :
@@ -82,7 +83,7 @@ class RestFrameSearch {
   }
 
  private:
-  // Frames with the least of this are rigged best.
+  // Frames with the least score are rigged best.
   double Score(const Embedding& embedding) const {
     return embedding.residual + options_.arm_shortfall_weight * embedding.arm_shortfall;
   }
@@ -124,7 +125,7 @@ class RestFrameSearch {
     return TryAt(frame, options_.probe_resolution, upright);
   }
 
-  // The same for a frame whose coarse grid was looked at already.
+  // Does the same for a frame whose coarse grid was looked at already.
   absl::Status TryProbed(FrameEmbedding probe) {
     PLEAT_RETURN_IF_ERROR(TryAt(probe.frame, options_.volume.resolution, probe.upright_from_input));
     if (!IsTrusted()) Offer(std::move(probe));
@@ -135,7 +136,8 @@ class RestFrameSearch {
     if (Score(tried.embedding) < Score(best_.embedding)) best_ = std::move(tried);
   }
 
-  // Only kCancelled is an error.
+  // Embeds one frame on one grid and offers the result. Only kCancelled is an error; the first
+  // failure is kept for the message, should no frame fit.
   absl::Status TryAt(int frame, int resolution, const Eigen::Matrix3d& upright) {
     absl::StatusOr<FrameEmbedding> tried = Embed(frame, resolution, upright);
     if (absl::IsCancelled(tried.status())) return tried.status();
@@ -147,7 +149,8 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // Ends with the first frame that is trusted; else the best of all are looked at again.
+  // Probes the other frames on the coarse grid. Ends with the first one that is trusted; otherwise
+  // the best of all are looked at again.
   absl::Status ProbeOthers(const std::vector<int>& frames) {
     std::vector<FrameEmbedding> probes;
     for (size_t k = 1; k < frames.size(); ++k) {
@@ -173,8 +176,8 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // Other orientations of the first and of the best probed frame; one is taken only when it is
-  // trusted, since a beast on its hind legs comes near to a human.
+  // Tries other orientations of the first and of the best probed frame. One is taken only when it
+  // is trusted, since a beast on its hind legs comes near to a human.
   absl::Status TurnOver(int first_frame) {
     std::vector<int> frames = {first_frame};
     if (!probed_.empty()) frames.push_back(probed_[0]);
@@ -195,8 +198,9 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // The orientation with the least residual under twice the trusted one, made exact by what the
-  // skeleton itself says about up; none when there is no such.
+  // Returns the orientation with the least residual under twice the trusted one, made exact by what
+  // the skeleton itself says about up; none when there is no such. Each bound is the best residual
+  // so far, so hopeless orientations are cheap.
   absl::StatusOr<std::optional<Eigen::Matrix3d>> FindOrientation(const BodyVolume& volume) const {
     std::optional<Eigen::Matrix3d> best;
     Eigen::Matrix3Xd joints;
