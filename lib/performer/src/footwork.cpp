@@ -18,7 +18,7 @@ int Ankle(int side) { return side == 0 ? kLeftFoot : kRightFoot; }
 
 double Wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
-// A bump of height 1 at `center` of a cycle, zero from `width` away.
+// Returns a bump of height 1 at `center` of a cycle, zero from `width` away.
 double CycleBump(double cycle_part, double center, double width) {
   const double away = std::abs(std::remainder(cycle_part - center, 1.0)) / width;
   return away < 1 ? std::pow(std::cos(away * std::numbers::pi / 2), 2) : 0;

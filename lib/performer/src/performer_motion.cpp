@@ -67,6 +67,8 @@ class MotionGenerator {
   Random random_;
   const double tempo_ = random_.Uniform(.92, 1.08);
   const double jump_offset_s_ = random_.Uniform(0, 5);
+  // Members are initialized in this order, and each draws from random_: the order is part of what a
+  // seed means.
   const SmoothNoise tempo_noise_{&random_, 5}, turn_{&random_, 4}, spin_{&random_, 5};
   const SmoothNoise energy_{&random_, 6}, crouch_{&random_, 3.5}, twist_{&random_, 4.5};
   const SmoothNoise sway_{&random_, 3.8}, lean_{&random_, 5}, look_{&random_, 3};
@@ -78,7 +80,7 @@ class MotionGenerator {
   const std::array<SmoothNoise, 2> bend_{SmoothNoise{&random_, 3}, SmoothNoise{&random_, 3}};
 };
 
-// phase: 0 where the left heel meets the floor.
+// One instant of a walk. phase: 0 where the left heel meets the floor.
 Bearing MotionGenerator::Walk(double time_s, double phase) const {
   const double standing = phase - kTwoPi * Footwork::kStance / 2;  // 0: left foot below the hips
   Bearing b;
@@ -102,6 +104,7 @@ Bearing MotionGenerator::Walk(double time_s, double phase) const {
   return b;
 }
 
+// One instant of a dance: the same cycle of steps, with larger and less regular movements above it.
 Bearing MotionGenerator::Dance(double time_s, double phase) const {
   const double standing = phase - kTwoPi * Footwork::kStance / 2;
   const double energy = 1 + .30 * energy_(time_s);

@@ -1,5 +1,10 @@
-// M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, section 4;
-// wanted lengths vary over the surface, and relaxed vertices return to the implicit surface.
+// Source: M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004,
+// section 4. Here wanted lengths vary over the surface, and relaxed vertices return to the implicit
+// surface.
+//
+// Removed triangles stay in the list as holes (first entry -1) and removed vertices without
+// triangles, so indices hold through a pass; Compact() drops both at the end. A pass goes over the
+// edges as they were when it began, so each operation first checks that its edge is still there.
 #include "remesh.h"
 
 #include <algorithm>
@@ -71,7 +76,8 @@ class Remesher {
     return std::any_of(vertex_triangles_[a].begin(), vertex_triangles_[a].end(),
                        [&](int t) { return Has(triangles_[t], b); });
   }
-  // The two triangles on the edge a-b: the one that runs a -> b first.
+  // Returns the two triangles on the edge a-b, the one that runs a -> b first; -1 where there is
+  // none.
   std::array<int, 2> EdgeTriangles(int a, int b) const {
     std::array<int, 2> found{-1, -1};
     for (int t : vertex_triangles_[a]) {

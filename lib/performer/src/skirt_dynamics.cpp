@@ -1,7 +1,8 @@
 // Extended position-based dynamics: M. Macklin, M. Mueller, N. Chentanez, "XPBD: position-based
 // simulation of compliant constrained dynamics", MIG 2016, with small steps of one iteration
-// (Macklin et al., "Small steps in physics simulation", SCA 2019). Unit masses, so a compliance is
-// 1 / (angular frequency squared).
+// (Macklin et al., "Small steps in physics simulation", SCA 2019). Masses are 1, so a compliance is
+// 1 / (angular frequency squared). Constraints are solved one after the other in the order of
+// links_, on one thread: the order shows in the result.
 #include "skirt_dynamics.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr double kAirDrag = .6;           // 1/s, against still air
 constexpr double kLegMargin = .015;       // cloth over skin, body heights
 constexpr double kStep_s = 1. / 400;      // longest substep
 
-// Catmull-Rom weights of four neighbors at fraction u.
+// Returns the Catmull-Rom weights of four neighbors at fraction u.
 std::array<double, 4> CubicWeights(double u) {
   return {((-.5 * u + 1) * u - .5) * u, (1.5 * u - 2.5) * u * u + 1, ((-1.5 * u + 2) * u + .5) * u,
           (.5 * u - .5) * u * u};

@@ -21,7 +21,7 @@ struct ProjectedVertex {
   Vector3f color;   // 0..255
 };
 
-// Area-weighted vertex normals, camera axes.
+// Returns area-weighted vertex normals in camera axes.
 Eigen::Matrix3Xf VertexNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                const Eigen::Ref<const Eigen::Matrix3Xi>& triangles,
                                const Eigen::Matrix3d& camera_from_world) {
@@ -55,7 +55,7 @@ class Rasterizer {
 
   void DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c,
                     const Vector3f& back_color, float shading);
-  // A line hidden where the mesh is nearer; ends in samples with depth.
+  // Draws a line that is hidden where the mesh is nearer; its ends are in samples, with depth.
   void DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb color);
   Image Downsample() const;
 

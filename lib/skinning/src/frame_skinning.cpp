@@ -51,7 +51,8 @@ void FrameSkinning::SetMotions(const BoneTransforms& transforms,
     motion.topLeftCorner<3, 3>() = transforms.linear[b].cast<float>();
     motion.topRightCorner<3, 1>() = transforms.translation[b].cast<float>();
     motion.row(3) = Eigen::Quaterniond(axes[b]).coeffs().transpose().cast<float>();
-    // Neighbors along the skeleton agree, so that few frames need signs.
+    // Of q and -q the one nearer to the parent's is taken. Neighbors along the skeleton then agree,
+    // so that few frames need signs.
     if (parents_[b] >= 0 && motion.row(3).dot(motion_of(parents_[b]).row(3)) < 0) {
       motion.row(3) *= -1;
     }
@@ -84,6 +85,8 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
   constexpr int kLanes = kSkinningLanes;
   assert(positions->cols() == num_vertices_ && first_block >= 0 &&
          first_block + num_blocks <= this->num_blocks());
+  // The kernels write whole blocks, but the last one may reach beyond the matrix: it goes here
+  // first.
   float last[3 * kLanes];
   float signed_weights[kMaxInfluences * kLanes];
   SkinBlockInputs inputs{.columns = motions.columns.data(),

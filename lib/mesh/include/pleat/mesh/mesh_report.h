@@ -1,4 +1,5 @@
-// Pre-flight: what is unclean about a mesh, before it is rigged. Nothing is repaired or reordered.
+// The pre-flight: what is unclean about a mesh, before it is rigged. Nothing is repaired or
+// reordered (docs/method/rig.md#pre-flight).
 #pragma once
 
 #include <Eigen/Core>
@@ -28,11 +29,11 @@ struct MeshReport {
   bool closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
 };
 
-// positions: 3 x V, finite.
+// Inspects a mesh in one frame. positions: 3 x V, finite.
 MeshReport InspectMesh(const Topology& topology,
                        const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 
-// One sentence for each thing that is unclean; empty for a clean closed mesh of one part.
+// Returns one sentence for each thing that is unclean; nothing for a clean closed mesh of one part.
 std::vector<std::string> DescribeFaults(const MeshReport& report);
 
 }  // namespace pleat

@@ -7,7 +7,7 @@
 
 namespace pleat {
 
-// Height of a line of text and width of `text`, pixels, at a whole-number `scale`.
+// The height of a line of text and the width of `text`, in pixels, at a whole-number `scale`.
 int TextHeight(int scale);
 int TextWidth(std::string_view text, int scale);
 
