@@ -77,6 +77,7 @@ JointSystem ComputeJointSystem(const RigMoments& moments, const SubtreeMoments& 
       if (d < c) system.matrix.block<3, 3>(3 * k, 3 * j) += block.transpose();
     }
   }
+  // The Schur complement of the translations: each frame has V times the identity for its own.
   system.matrix -= to_translation * to_translation.transpose() / moments.num_vertices;
   system.right -= to_translation * total / moments.num_vertices;
   return system;

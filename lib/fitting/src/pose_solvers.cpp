@@ -47,6 +47,7 @@ void FitRoot(const RigMoments& moments, const FrameMoments& frame, const Skeleto
   }
   *rotation = Matrix3d::Identity();
   *root_position = skeleton.rest_position(0) - moments.center;
+  // Nothing hangs on the root, so it stays where the rest pose has it relative to the center.
   if (!(weight > 1e-9)) return;
   covariance -= rest_sum * sum.transpose() / weight;
   *rotation = NearestRotation(covariance.transpose());

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr int kVerticesPerItem = 128;  // of the parallel loops: enough for a matrix product
+constexpr int kVerticesPerItem = 128;  // grain of the parallel loops
 
 // Returns T_b of all bones of one frame, transposed: 4J x 3.
 MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vector3d& center) {
@@ -244,7 +244,7 @@ absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moment
             }
           }
           const auto neighbors = adjacency.neighbors(v);
-          Vector3d mean = Vector3d::Zero();  // of the neighbors' displacements
+          Vector3d mean = Vector3d::Zero();  // mean displacement of the neighbors
           for (const int32_t n : neighbors) mean += current.col(n) - first.col(n);
           if (!neighbors.empty()) mean /= static_cast<double>(neighbors.size());
           const double prior = moments.num_frames * options.prior;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMinResolution = 8, kMaxResolution = 512;
 constexpr double kBandCells = 2;
 constexpr int kBlockNodes = 16;             // side of a work item of the parallel loop
-constexpr double kWindingTolerance = 0.05;  // of the winding number's approximation
+constexpr double kWindingTolerance = 0.05;  // error of the dipoles
 
 // The side on which a ball lies that is free of surface.
 enum class Side { kUnknown, kInside, kOutside };

@@ -15,6 +15,7 @@ std::vector<MedialSample> FindMedialSamples(const DistanceField& field,
       for (int x = 0; x < num.x(); ++x) {
         const int node = field.NodeIndex(x, y, z);
         const double depth = -field.node_distance(node);
+        // A sample between two nodes can be deeper than either by at most the spacing.
         if (depth <= 0 || depth < options.min_depth - spacing) continue;
         const Eigen::Vector3f& direction = field.node_direction(node);
         for (int axis = 0; axis < 3; ++axis) {

@@ -185,6 +185,8 @@ absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::Matr
   }
   DenseSolver solver;
   Eigen::MatrixXd unused;
+  // Centered data make the Gram matrix singular. The ridge is the least that lets it be factored,
+  // far below any noise that is learned.
   for (double ridge = 1e-12; ridge < 1e-5; ridge *= 10) {
     data.factor = gram;
     data.factor.diagonal().array() += ridge * scale;
@@ -196,6 +198,7 @@ absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::Matr
 }
 
 absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& outputs) {
+  // A narrow Y is its own factor, with fewer columns than a Cholesky factor has.
   if (outputs.cols() < outputs.rows()) return GramData{outputs, false, double(outputs.cols())};
   const Eigen::Index n = outputs.rows();
   DenseSolver solver;

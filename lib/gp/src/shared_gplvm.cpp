@@ -189,6 +189,7 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
     if (!solver.FactorAndInvert(ridged, whitener)) {
       return absl::InvalidArgumentError("the back-constraint kernel cannot be factored");
     }
+    // The back weights that give the start, (K_b + back_noise I) A = X_0.
     solver.MultiplyByFactor(whitener, false, start, whitened);
     solver.MultiplyByFactor(whitener, true, whitened, points);
   }

@@ -83,7 +83,7 @@ struct SharedGplvmObjective::State {
 
   Eigen::MatrixXd latents, latent_gradient;  // N x q
   Eigen::MatrixXd inputs;                    // N_d x order q
-  Eigen::MatrixXd term_gradient;             // of one term
+  Eigen::MatrixXd term_gradient;             // gradient of one term
 
   State(GramData pose_data, GramData detail_data, DynamicsRows dynamics_rows,
         const SharedGplvmOptions& o)

@@ -54,6 +54,7 @@ absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index n
   return absl::OkStatus();
 }
 
+// The parameters may come from a damaged file. The bounds of 1e30 refuse what no training writes.
 absl::Status CheckParameters(const RegionalGpParameters& p) {
   const Eigen::Index n = p.inputs.rows(), r = p.output_mean.size();
   if (n < 1 || p.inputs.cols() < 1 || r < 1 || p.regions.empty()) {

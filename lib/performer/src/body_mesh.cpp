@@ -73,6 +73,8 @@ absl::StatusOr<TriangleSoup> BuildBodyMesh(const CharacterShape& shape, int num_
   PLEAT_ASSIGN_OR_RETURN(TriangleSoup soup,
                          ExtractIsosurface(options.distance, low, high, kGridSpacing,
                                            progress.Stage("polygonize", 0, .3)));
+  // The isosurface is much finer than the wanted mesh and its triangles are slivers; remeshing
+  // makes the mesh, the isosurface only gives it the right topology.
   double edge_length = EdgeLengthFor(shape, soup, num_vertices);
   options.edge_length = [&](const Vector3d& p) {
     return edge_length * shape.RelativeEdgeLength(p);

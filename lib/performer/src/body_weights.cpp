@@ -21,6 +21,7 @@ double SegmentDistance(const Vector3d& p, const Vector3d& a, const Vector3d& b) 
   return (p - a - t * axis).norm();
 }
 
+// A vertex may only follow bones of its own region: the hand beside the hip must not stick to it.
 std::span<const int> RegionBones(BodyRegion region) {
   static constexpr int kTorso[] = {kSpine,         kChest,        kHead,         kLeftUpperArm,
                                    kRightUpperArm, kLeftUpperLeg, kRightUpperLeg};

@@ -49,6 +49,8 @@ ShapePart Ellipsoid(const Vector3d& center, const Vector3d& radii, double blend,
   return part;
 }
 
+// Parts join one after the other, each with its own width, so their order in a list matters a
+// little.
 double UnionDistance(const std::vector<ShapePart>& parts, const Vector3d& p) {
   double distance = parts[0].Distance(p);
   for (size_t i = 1; i < parts.size(); ++i) {
@@ -106,6 +108,8 @@ Vector3d SkirtShape::Point(double theta, double s) const {
           center_z + radius * std::cos(theta)};
 }
 
+// Negative inside of the bell, which is a solid with a hollow underside. Radial distances are
+// reduced by the slope of the flare to be about true distances.
 double SkirtShape::Distance(const Vector3d& p) const {
   const double above = p.y() - waist_y, below = hem_y - p.y();
   const double radial = std::hypot(p.x(), p.z() - center_z);

@@ -12,9 +12,9 @@ namespace pleat {
 
 // The course that the steps follow, sampled at every frame. A cycle is one step of each foot.
 struct Course {
-  std::vector<double> cycles;         // of the left foot, counted from the start, rising
+  std::vector<double> cycles;         // cycles of the left foot since the start, rising
   std::vector<double> liveliness;     // 0 standing with both feet .. 1 stepping
-  std::vector<Eigen::Vector3d> path;  // of the hips, body heights; y is not used
+  std::vector<Eigen::Vector3d> path;  // way of the hips, body heights; y is not used
   std::vector<double> heading;        // radians about y
   std::vector<double> lift;           // height of the swinging foot, body heights
   // The wanted place of each foot besides its place below the hips, in axes of the heading.

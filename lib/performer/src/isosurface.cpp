@@ -109,6 +109,8 @@ class Marcher {
     soup_.triangles.push_back(triangle);
   }
 
+  // An edge is named by its lower grid point and the bits of the offset to the other one, so that
+  // all tetrahedra around it share one vertex. That is what makes the surface closed.
   int EdgeVertex(const Vector3i& cell, const std::array<int, 2>& edge) {
     const int low = std::min(edge[0], edge[1]), high = std::max(edge[0], edge[1]);
     const Vector3i origin = cell + Corner(low);

@@ -18,7 +18,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
-constexpr double kEaseIn_s = .8;    // from standing still to moving
+constexpr double kEaseIn_s = .8;    // time from standing still to moving
 constexpr double kLookAhead_s = 3;  // planned beyond the end: steps aim at where the hips will be
 
 Quaterniond About(double angle, const Vector3d& axis) {
@@ -34,7 +34,7 @@ Vector3d Leftward(double heading) { return {std::cos(heading), 0, -std::sin(head
 // Angles of the body above the legs and height of the hips at one instant, radians and body
 // heights; index 0 left, 1 right. Zero is the rest pose.
 struct Bearing {
-  double drop = 0, sway = 0;  // of the hips: down, to the left
+  double drop = 0, sway = 0;  // movement of the hips: down, to the left
   double pelvis_pitch = 0, pelvis_yaw = 0, pelvis_roll = 0;
   double chest_pitch = 0, chest_yaw = 0, chest_roll = 0;
   double head_pitch = 0, head_yaw = 0;
@@ -154,6 +154,8 @@ double MotionGenerator::JumpHeight(double time_s) const {
   return 4 * kTop * u * (1 - u) * Smoothstep(kEaseIn_s, 2 * kEaseIn_s, time_s);
 }
 
+// Integrates heading and path over time. Steps are taken faster in a turn, and everything eases in
+// from standing still, so that frame 0 is the rest pose.
 Course MotionGenerator::PlanCourse(int num_frames) const {
   const double cycles_per_s = (walk_ ? .90 : .74) * tempo_;
   Course course;
@@ -205,6 +207,8 @@ void MotionGenerator::PoseUpperBody(const Bearing& b, double ease, Pose* pose) c
   }
 }
 
+// The legs follow the feet: two-bone inverse kinematics in the axes of the pelvis, then the foot's
+// own turn against that of the leg.
 void MotionGenerator::PoseLegs(const std::array<FootTarget, 2>& feet, double ease,
                                Pose* pose) const {
   const Quaterniond& pelvis = pose->rotations[kHips];

@@ -61,6 +61,7 @@ std::vector<LegendPlace> PlaceLegend(const std::vector<PlotSeries>& series, int 
   return places;
 }
 
+// Draws one plot: the frame with its axes first, then the curves over the grid, the legend last.
 class Plot {
  public:
   Plot(const LinePlotOptions& options, std::vector<LegendPlace> legend, Range x, Range y)

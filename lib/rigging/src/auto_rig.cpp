@@ -20,7 +20,7 @@ constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left a
 // says that the front is unknown, and from kClearEvidence on the residuals of other facings are no
 // reason for doubt.
 constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
-constexpr double kShortArm = .05;  // of a leg under half a leg
+constexpr double kShortArm = .05;  // share of a leg that is missing to half a leg
 constexpr double kUpCosine = .9;   // 26 degrees: a character that leans is no reason for a warning
 
 FacingEvidence EvidenceOf(const MeshSequence& sequence, const FrameEmbedding& found) {

@@ -27,7 +27,7 @@ constexpr double kArmShare = .5;
 // Shares of the template's way from chest to hand: shorter arms may go on, longer ones are
 // something else.
 constexpr double kWholeArm = .85, kLongestArm = 1.3;
-constexpr double kSharedArm = .6;  // of the way to the end that the search found
+constexpr double kSharedArm = .6;  // share of the way to the end that the search found
 
 // Returns the share of the area of the body's components that lies farther than `reach` from every
 // bone.

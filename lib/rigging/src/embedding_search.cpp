@@ -46,10 +46,10 @@ namespace pleat {
 namespace {
 
 struct State {
-  double cost = 0;  // of the joints placed
+  double cost = 0;  // cost of the joints placed
   int num_placed = 0;
   int previous = -1;   // state without the last joint
-  int candidate = -1;  // of the last joint placed
+  int candidate = -1;  // candidate of the last joint placed
 };
 
 }  // namespace
@@ -64,7 +64,7 @@ class EmbeddingSearch::PairTable {
     const int num_joints = static_cast<int>(tree.size());
     costs_.resize(num_joints);
     remainders_.resize(num_joints);
-    std::vector<Eigen::VectorXd> subtree(num_joints);  // of the children, per own candidate
+    std::vector<Eigen::VectorXd> subtree(num_joints);  // sum of the children's, per own candidate
     for (int j = 0; j < num_joints; ++j) subtree[j].setZero(model.candidates(j).size());
     for (int j = num_joints - 1; j > 0; --j) {
       const std::vector<int>& own = model.candidates(j);

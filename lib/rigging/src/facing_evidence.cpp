@@ -55,6 +55,7 @@ double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
   for (int f = 0; f < topology.num_triangles(); ++f) {
     const Eigen::Vector3i corners = topology.triangles().col(f);
     const int bone = bones[corners[0]];
+    // Bones are named after the joint in which they end: the bone of the ankle is the lower leg.
     if (bone != leg.ankle && bone != leg.toes) continue;
     const Eigen::Vector3d a = positions.col(corners[0]);
     const Eigen::Vector3d b = positions.col(corners[1]), c = positions.col(corners[2]);

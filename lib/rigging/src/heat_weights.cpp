@@ -15,8 +15,8 @@
 namespace pleat {
 namespace {
 
-constexpr double kToleranceFraction = 0.002;   // of the box diagonal: visibility, about 4 mm
-constexpr double kMinDistanceFraction = 1e-4;  // of the box diagonal: keeps c / d^2 finite
+constexpr double kToleranceFraction = 0.002;   // share of the diagonal: visibility, about 4 mm
+constexpr double kMinDistanceFraction = 1e-4;  // share of the diagonal: keeps c / d^2 finite
 
 // Returns a third of the area of the triangles around each vertex, W.
 Eigen::VectorXd VertexAreas(const SolidSurface& surface) {
@@ -121,6 +121,7 @@ absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
   }
   Eigen::SparseMatrix<double> system(num_vertices, num_vertices);
   system.setFromTriplets(triplets.begin(), triplets.end());
+  // One factorization serves all bones: they differ in the right side only.
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
   if (solver.info() != Eigen::Success) {
     return absl::InternalError("the heat equilibrium of the surface could not be solved");

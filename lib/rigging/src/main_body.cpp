@@ -25,6 +25,8 @@ SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) 
       best_group = seed;
     }
   }
+  // The spheres that stay are numbered anew in their old order; an edge is listed from its higher
+  // end, when both ends have their numbers.
   std::vector<int> index(graph.size(), -1);
   std::vector<Sphere> spheres;
   std::vector<std::pair<int, int>> edges;

@@ -16,7 +16,7 @@ struct MainBody {
   std::vector<MedialSample> medial_samples;
   Eigen::Matrix3Xd positions;  // 3 x W, of volume.surface
   std::vector<char> is_body;   // per mesh component: false for what floats beside the character
-  Eigen::AlignedBox3d bounds;  // of the components that are body
+  Eigen::AlignedBox3d bounds;  // box of the components that are body
 };
 
 // Packs the spheres, connects them and keeps the group of spheres with the largest volume. The

@@ -187,6 +187,7 @@ double PenaltyModel::ContextPenalty(const PlacementContext& context, int sphere)
   }
   if (length > 0) {
     double shared = 0;
+    // Walks back along the shortest path. Each step belongs to the sphere that it arrives at.
     for (int i = sphere; i != context.parent_sphere;) {
       const int before = graph_.Predecessor(context.parent_sphere, i);
       if (context.is_used[i]) {

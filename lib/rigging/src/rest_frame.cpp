@@ -15,7 +15,7 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxFullFrames = 1;    // of the probed ones, looked at again on the full grid
+constexpr int kMaxFullFrames = 1;    // probed frames that are looked at again on the full grid
 constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
 // A multiple of the trusted residual: a frame that fits so well as it stands is not lying.
 constexpr double kStandingRatio = 1.5;
@@ -26,7 +26,7 @@ constexpr double kDoubtfulResidual = .1;
 std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
   if (options.rest_frame >= 0) return {options.rest_frame};
   const int count = std::clamp(options.max_frames_tried, 1, num_frames);
-  std::vector<int> order;  // of k in [0, count): odd multiples of halves, quarters, ...
+  std::vector<int> order;  // k in [0, count): multiples of halves, quarters, ...
   for (unsigned step = std::bit_ceil(static_cast<unsigned>(count)); step >= 1; step /= 2) {
     for (unsigned k = order.empty() ? 0 : step; k < static_cast<unsigned>(count); k += 2 * step) {
       order.push_back(static_cast<int>(k));
@@ -59,6 +59,9 @@ std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
   return turns;
 }
 
+// The search for the frame. Probes are cheap because of their coarse grid, the full grid is exact,
+// and either may succeed where the other fails; `best_` is the best of all that was seen on any
+// grid. It holds the volume as well, which the heat weights need again.
 class RestFrameSearch {
  public:
   RestFrameSearch(const MeshSequence& sequence, const AutoRigOptions& options,
@@ -262,10 +265,10 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  double least_residual_ = std::numeric_limits<double>::infinity();  // of all frames looked at
+  double least_residual_ = std::numeric_limits<double>::infinity();  // over all frames tried
   std::vector<int> probed_;                                          // best first
   std::vector<double> probe_residuals_;                              // infinite where nothing fits
-  absl::Status failure_;  // of the first frame that could not be embedded
+  absl::Status failure_;  // what kept the first failed frame from a rig
 };
 
 }  // namespace

@@ -133,6 +133,8 @@ class ConnectivityWalk {
     return found;
   }
 
+  // Codes the number of corners of a face and takes them off what is left, before anything of that
+  // size is allocated.
   absl::Status CodeSize(int* size) {
     *size = sizes_.CodeUnsigned(coder_, *size - 3, {0}, 0) + 3;
     num_corners_ -= *size;
@@ -206,6 +208,8 @@ class ConnectivityWalk {
              : *vertex == previous ? kBeforeFrom
                                    : kOtherVertex;
     }
+    // What the two border guesses are like: which exist, and whether they meet in one vertex, where
+    // the gap is about to close.
     const int situation = (next >= 0) + 2 * (previous >= 0) + 4 * (next >= 0 && next == previous);
     const int valence_before = std::min<int>(valence_[before], 9);
     const int valence_after = after < 0 ? 10 : std::min<int>(valence_[after], 9);
@@ -231,6 +235,7 @@ class ConnectivityWalk {
     return kind == kNewVertex ? CodeNewVertex(before, after, opposite, vertex) : absl::OkStatus();
   }
 
+  // Codes the number of a vertex that the walk meets for the first time.
   absl::Status CodeNewVertex(int before, int after, int opposite, int32_t* vertex) {
     if (free_vertices_.num_free() == 0) return Damaged();
     if (after < 0) after = before;

@@ -13,6 +13,7 @@ namespace pleat {
 FrameSkinning::FrameSkinning(const Rig& rig) : num_vertices_(rig.weights.num_vertices()) {
   for (const Joint& joint : rig.skeleton.joints()) parents_.push_back(joint.parent);
   blocks_.resize((num_vertices_ + kSkinningLanes - 1) / kSkinningLanes);
+  // Most pairs of bones never share a vertex, so SetMotions() compares the signs of few.
   std::set<std::pair<int, int>> pairs;
   for (size_t i = 0; i < blocks_.size() * kSkinningLanes; ++i) {
     const int v = std::min(static_cast<int>(i), num_vertices_ - 1);
@@ -96,6 +97,8 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
     const Block& block = blocks_[i];
     inputs.block = &block;
     inputs.quaternion_weights = block.weights;
+    // The slow way, for the few frames in which the quaternions of two bones of a vertex disagree
+    // although neighbors along the skeleton agree.
     if (!motions.signs.empty() && details != nullptr) {
       for (int place = 0; place < kMaxInfluences * kLanes; ++place) {
         const size_t strongest = block.bones[place % kLanes];

@@ -7,7 +7,7 @@
 
 namespace pleat {
 
-inline constexpr int kMotionParameters = 16;  // of a bone
+inline constexpr int kMotionParameters = 16;  // numbers of a bone
 
 // The processor can look up numbers of up to this many bones in registers.
 inline constexpr int kLookupBones = 32;

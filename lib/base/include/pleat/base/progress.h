@@ -12,8 +12,8 @@ namespace pleat {
 // One report of where a computation stands.
 struct ProgressUpdate {
   std::string stage;                // e.g. "rig", "fit", "learn"
-  double fraction = 0;              // of the whole computation, 0..1
-  std::optional<double> objective;  // of the running optimizer, when there is one
+  double fraction = 0;              // share of the whole computation, 0..1
+  std::optional<double> objective;  // value of the running optimizer, if any
 };
 
 // A token that is handed down by value to everything that may run longer than a second. The default

@@ -34,8 +34,8 @@ struct RigRefinementOptions {
 
   int num_rounds = 5;
   int max_frames = 400;          // evenly spaced ones are used of a longer sequence
-  int max_iterations = 20;       // of the pose solver, per frame and step
-  double bend_stiffness = 1e-6;  // of the pose solver, see PoseFitOptions
+  int max_iterations = 20;       // limit of the pose solver, per frame and step
+  double bend_stiffness = 1e-6;  // as in PoseFitOptions
   int num_threads = 0;           // 0 = one per core; the result does not depend on it
 
   // Options for joints alone, which are held harder, since they are all that can follow cloth.

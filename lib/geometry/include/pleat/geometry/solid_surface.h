@@ -12,12 +12,12 @@ namespace pleat {
 
 // Counts what is unclean about a mesh, for reports.
 struct SurfaceReport {
-  int num_welded_vertices = 0;  // share their position with an earlier vertex
+  int num_welded_vertices = 0;  // vertices at the place of an earlier one
   int num_unreferenced_vertices = 0;
-  int num_degenerate_triangles = 0;  // two equal corners after welding, or no area
-  int num_flipped_triangles = 0;     // turned so that their component is oriented outward
-  int num_boundary_edges = 0;        // one triangle
-  int num_nonmanifold_edges = 0;     // three triangles or more
+  int num_degenerate_triangles = 0;  // triangles without area, after welding
+  int num_flipped_triangles = 0;     // triangles turned so that their patch faces outward
+  int num_boundary_edges = 0;        // edges of one triangle
+  int num_nonmanifold_edges = 0;     // edges of three triangles or more
   int num_components = 0;            // connected by edges
 };
 

@@ -47,7 +47,7 @@ class AdditiveLikelihood : public Objective {
   DenseSolver solver_;
   Eigen::Index n_;
   std::vector<Eigen::MatrixXd> distances_, products_, rbf_;  // N x N each, lower
-  Eigen::VectorXd prior_center_;                             // of log g
+  Eigen::VectorXd prior_center_;                             // center of the prior on log g
   double precision_;
   Eigen::MatrixXd kernel_, whitener_, solution_, outer_;
 };

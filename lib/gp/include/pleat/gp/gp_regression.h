@@ -25,7 +25,7 @@ struct GpRegressionOptions {
   std::vector<std::vector<int>> input_groups{};
   // The precision, per row and output, of a Gaussian prior around 0 on the logs of those factors.
   double relevance_precision = .003;
-  int max_iterations = 60;  // of L-BFGS on the marginal likelihood
+  int max_iterations = 60;  // limit of L-BFGS on the marginal likelihood
   // The precision, per row and output, of a Gaussian prior on log g around log(1 /
   // (prior_width_factor^2 * median squared distance)); 0: none. Frames of one clip are so alike
   // that the likelihood alone prefers widths that generalize badly. Chosen on blocks held out
@@ -42,7 +42,7 @@ struct GpRegressionOptions {
 
 struct GpRegressionSummary {
   OptimizationSummary optimization;
-  int num_rows = 0;  // that predictions are made from: all, or the inducing ones
+  int num_rows = 0;  // rows that predictions are made from: all, or the inducing ones
   int num_hyperparameter_rows = 0;
 };
 

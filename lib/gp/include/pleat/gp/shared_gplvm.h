@@ -51,7 +51,7 @@ struct SharedGplvmOptions {
   // median squared distance at the start) and on log a around 0; 0: no prior.
   double prior_precision = 0;
 
-  double relative_noise_floor = 1e-6;  // of all kernels, see KernelOptions
+  double relative_noise_floor = 1e-6;  // for all kernels, see KernelOptions
   double absolute_jitter = 0;
 
   ViewScaling scaling = ViewScaling::kOneScalar;
@@ -77,7 +77,7 @@ struct SharedGplvm {
 
   // Filled only with back-constraints: X = K_b A with inputs Y_S as given, centered.
   Eigen::MatrixXd back_weights;       // A, N x q
-  double back_log_inverse_width = 0;  // of K_b, 1 / (unit of Y_S)^2
+  double back_log_inverse_width = 0;  // log g of K_b, 1 / (unit of Y_S)^2
 };
 
 // L and its gradient over [X or A (column-major), pose logs, detail logs, dynamics logs]. It keeps

@@ -28,7 +28,7 @@ struct GpRegion {
 };
 
 struct RegionalGpOptions {
-  int max_iterations = 60;  // of L-BFGS on the marginal likelihood, per region
+  int max_iterations = 60;  // limit of L-BFGS on the marginal likelihood, per region
   // As in GpRegressionOptions, for every set of features.
   double prior_precision = .003;
   int max_hyperparameter_rows = 400;  // as in GpRegressionOptions
@@ -68,7 +68,7 @@ class RegionalGp {
   // without allocation.
   struct Workspace {
     Eigen::VectorXd row;      // D, normalized
-    Eigen::VectorXd scratch;  // of RegionalFactors
+    Eigen::VectorXd scratch;  // memory of RegionalFactors
     Eigen::VectorXf factors;  // R N, all kernels
     Eigen::VectorXf sum;      // r
   };

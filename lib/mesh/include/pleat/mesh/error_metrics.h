@@ -19,9 +19,9 @@ struct ErrorSummary {
 
   // How the motion looks. These values are not kept in model files. A count of zero means that
   // nothing was measured.
-  int num_motion_frames = 0;  // whose predecessor was there
+  int num_motion_frames = 0;  // frames whose predecessor was there
   double motion_mean_mm = 0;
-  int num_jitter_frames = 0;  // whose predecessor and successor were there
+  int num_jitter_frames = 0;  // frames whose predecessor and successor were there
   // The root of the mean squared second difference |x_t+1 - 2 x_t + x_t-1| of the vertices, of the
   // animation and of the truth: where the first is larger the animation shakes, where it is smaller
   // it glides.

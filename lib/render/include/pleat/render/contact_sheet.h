@@ -23,7 +23,7 @@ struct SheetTile {
 
 struct ContactSheetOptions {
   int num_columns = 4;
-  ViewOptions view{.width = 256, .height = 320};  // of one tile
+  ViewOptions view{.width = 256, .height = 320};  // view of one tile
   // Every tile is moved so that its own center (x and z) is in the middle, which keeps traveling
   // characters large; the scale stays that of the largest tile.
   bool center_tiles = true;

@@ -20,8 +20,8 @@ struct SkeletonOverlay {
 };
 
 struct RenderOptions {
-  Rgb color{190, 192, 200};       // of the mesh where no vertex colors are given
-  Rgb back_color{196, 130, 110};  // of faces seen from behind
+  Rgb color{190, 192, 200};       // color of the mesh without vertex colors
+  Rgb back_color{196, 130, 110};  // color of faces seen from behind
   Rgb background{255, 255, 255};
   std::vector<Rgb> vertex_colors;  // V, or empty
   // 1 is lit; 0 shows colors as they are, whose meaning light would change; between, both are

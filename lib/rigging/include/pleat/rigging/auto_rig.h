@@ -52,10 +52,10 @@ struct AutoRigSummary {
   double residual = 0;
   FacingEvidence evidence;
   bool is_turned_by_evidence = false;   // front and back are those of the feet and knees
-  std::vector<FacingResidual> facings;  // of the rest frame
+  std::vector<FacingResidual> facings;  // those of the rest frame
   int num_frames_tried = 0;
   int num_spheres = 0;
-  SurfaceReport surface;  // of the rest frame
+  SurfaceReport surface;  // those of the rest frame
   HeatWeightsSummary heat;
   std::vector<std::string> warnings;
 };

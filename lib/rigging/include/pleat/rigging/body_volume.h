@@ -18,7 +18,7 @@ namespace pleat {
 
 struct BodyVolumeOptions {
   int resolution = 128;      // grid cells along the longest side of the body
-  double min_depth = 0.006;  // of the unit box: shallower medial samples are left out
+  double min_depth = 0.006;  // unit box; shallower medial samples are left out
   int num_threads = 1;       // 0 = one per core
 };
 

@@ -48,7 +48,7 @@ struct Embedding {
   Eigen::Matrix3Xd initial_joints;  // the same before the continuous refinement
   double residual = 0;              // search + uncovered surface; .03-.10 is doubtful, .15 no human
   double search_residual = 0;       // penalties alone
-  double uncovered_share = 0;       // of the body's surface, 0..1
+  double uncovered_share = 0;       // share of the body's surface, 0..1
   // How much the shorter arm falls short of half a leg, as a share of the leg: an arm that is
   // folded against the body or reaches into the clothes seems to end at the elbow. 0 = none does.
   double arm_shortfall = 0;

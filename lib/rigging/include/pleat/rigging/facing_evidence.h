@@ -31,8 +31,8 @@ struct FacingEvidence {
 
 struct FacingEvidenceOptions {
   int max_frames = 24;            // evenly spaced ones are looked at
-  double sure_foot_offset = .02;  // of the body's height: counts as 1
-  double sure_knee_bend = .15;    // mean sine of the bend: counts as 1
+  double sure_foot_offset = .02;  // share of the body's height that counts as 1
+  double sure_knee_bend = .15;    // mean sine of the bend that counts as 1
 };
 
 // Weighs feet and knees. The hypothesis' skeleton need not be exact: vertices go to their nearest

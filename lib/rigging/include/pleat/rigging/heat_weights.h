@@ -19,8 +19,8 @@ struct HeatWeightsOptions {
 };
 
 struct HeatWeightsSummary {
-  int num_hidden_vertices = 0;  // that see no bone and take their heat from their neighbors
-  int num_cold_components = 0;  // without any visible bone: heated by their nearest bones
+  int num_hidden_vertices = 0;  // vertices that see no bone; their neighbors heat them
+  int num_cold_components = 0;  // parts without a visible bone: heated by their nearest bones
 };
 
 // Solves (-L + H) w_b = H p_b for every bone b (Baran and Popovic 2007, section 4;

@@ -41,7 +41,7 @@ struct PlacementContext {
   };
   int joint = 0;
   int parent_sphere = -1;
-  double mirror_length = 0;  // of the mirrored chain, 0 = not placed
+  double mirror_length = 0;  // length of the mirrored chain, 0 = not placed
   std::vector<Other> others;
   std::vector<char> is_used;  // per sphere: on the path of a chain placed before
 };

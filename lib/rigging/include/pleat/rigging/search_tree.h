@@ -22,7 +22,7 @@ struct SearchJoint {
   std::vector<double> fractions;
   Eigen::Matrix3Xd directions;   // 3 x chain
   Eigen::VectorXd bone_lengths;  // template, unit box
-  double length = 0;             // of the chain, unit box
+  double length = 0;             // length of the chain, unit box
 };
 
 using SearchTree = std::vector<SearchJoint>;

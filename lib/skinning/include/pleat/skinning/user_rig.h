@@ -16,7 +16,7 @@ inline constexpr int kMaxUserJoints = 256;
 struct UserRig {
   Skeleton skeleton;                   // 2..256 joints; rest positions in the pose of `rest_frame`
   std::optional<SkinWeights> weights;  // absent: computed by heat
-  int rest_frame = 0;                  // of the first clip: the frame whose pose is the rest pose
+  int rest_frame = 0;                  // frame of the first clip whose pose is the rest pose
   std::vector<int> locked_joints;      // ascending; refinement leaves them where they are
 
   friend bool operator==(const UserRig& a, const UserRig& b);
