@@ -14,7 +14,7 @@
 //
 // At a partial placement the open joints fall into subtrees that hang on placed joints, and
 // subtrees do not see each other in pair penalties; so the sum of their rest(k, p) never exceeds
-// the true cost to come. It is tighter than the published one. With an admissible bound the first
+// the true cost to come. The bound is tighter than the published one. With an admissible bound the first
 // complete placement that leaves the queue is a cheapest one: whatever is still queued has a bound
 // that is not lower.
 //

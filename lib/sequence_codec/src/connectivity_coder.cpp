@@ -9,7 +9,7 @@
 // 3. for each further corner, how it is named: a new vertex, the end of an open edge that leaves
 //    the corner before (kAfterTo), the start of one that arrives at `from` (kBeforeFrom, for the
 //    last corner only), or any other vertex, by its difference to the corner before. The two middle
-//    kinds close a gap in the border and are most of what is not new;
+//    kinds close a gap in the border;
 // 4. for a new vertex its number in the file, and for the face its number and the corner that the
 //    file names first.
 //

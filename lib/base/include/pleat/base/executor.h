@@ -23,8 +23,8 @@ class Executor {
  public:
   // 0 or less means one thread per core.
   explicit Executor(int num_threads);
-  // Runs everything that is still waiting, then joins the threads. A task must not destroy its
-  // own executor: it would wait for itself.
+  // Runs everything that is still waiting, then joins the threads. A task must not destroy its own
+  // executor: it would wait for itself.
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;

@@ -1,4 +1,4 @@
-// SHA-256 content ids and checksums (OpenSSL's implementation).
+// SHA-256 for content ids and checksums, by OpenSSL.
 #pragma once
 
 #include <array>

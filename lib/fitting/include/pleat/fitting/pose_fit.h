@@ -69,9 +69,10 @@ absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
 // Clips are looked at separately; 0 when no clip has three frames.
 double RotationJitter(const PoseTrack& track);
 
-// Sets the root's world rotation to the mean rotation of the bones from the root to
-// leftUpperLeg and rightUpperLeg (of all children of the root where those names are missing) and
-// re-expresses the children: every other bone keeps its world motion, the mesh does not change.
+// Sets the root's world rotation to the mean rotation of the bones from the root to leftUpperLeg
+// and rightUpperLeg (of all children of the root where those names are missing) and re-expresses
+// the children: every other bone keeps its world motion, and the mesh does not change
+// (docs/method/fit.md#gauge).
 void FixRootGauge(const Skeleton& skeleton, Pose* pose);
 
 }  // namespace pleat

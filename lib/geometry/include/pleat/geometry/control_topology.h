@@ -1,4 +1,4 @@
-// Triangles over the control vertices.
+// Triangles over the control vertices (docs/method/details.md#control-mesh).
 #pragma once
 
 #include <Eigen/Core>

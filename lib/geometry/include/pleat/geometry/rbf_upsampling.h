@@ -21,7 +21,7 @@ struct RbfUpsamplingOptions {
   // The length of the kernel in mean spacings of the control vertices. Long kernels approach a
   // polyharmonic spline: best on captured clothes among lengths of 2 to 32.
   double kernel_length = 24;
-  // Extra coordinates of every vertex (F x V, or empty), e.g. the skinning weights, in which
+  // Extra coordinates of every vertex (F x V, or empty), such as the skinning weights, in which
   // kernel distances are measured besides the rest position: details change fastest where the
   // weights do. With the weights the error on captured clothes falls by a quarter.
   Eigen::MatrixXd features = {};

@@ -1,4 +1,4 @@
-// A bounding volume hierarchy over triangles with closest-point queries.
+// A bounding volume hierarchy over triangles with closest-point queries. Building costs O(F log F).
 #pragma once
 
 #include <Eigen/Core>

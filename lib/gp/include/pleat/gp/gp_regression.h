@@ -46,7 +46,7 @@ struct GpRegressionSummary {
   int num_hyperparameter_rows = 0;
 };
 
-// Everything a prediction needs; what a model file holds.
+// Everything that a prediction needs, and what a model file holds.
 struct GpRegressionParameters {
   KernelOptions kernel_options;
   KernelLogs kernel;             // in normalized units

@@ -17,7 +17,7 @@
 
 namespace pleat {
 
-// What the Gram term needs of the outputs Y (N x D).
+// The outputs Y (N x D) as the Gram term needs them.
 struct GramData {
   Eigen::MatrixXd factor;         // F, N x r with G = F F^T
   bool lower_triangular = false;  // F is square and lower triangular: cheaper
@@ -47,8 +47,8 @@ class GramTerm {
   // From now on both terms have the inputs that either is given, so their distances are computed
   // once. Both must have the same number of rows and the same `linear`.
   void ShareInputs(const GramTerm& other);
-  // Both terms work in the same memory from now on, which stays in the cache: what one has computed
-  // lasts until the other is evaluated, and they are not for two threads.
+  // From now on both terms work in the same memory, which stays in the cache: what one has computed
+  // lasts until the other is evaluated, and they must not be used by two threads.
   void ShareScratch(const GramTerm& other);
 
   // Returns the value; NaN when K cannot be factored even with more jitter (up to 1e-3 a), or when
@@ -65,9 +65,9 @@ class GramTerm {
   // weight * K^-1 F = d/dF, N x r; only for a factor that is not lower triangular.
   const Eigen::MatrixXd& weighted_solution() const;
 
-  // After Evaluate: K^-1 y for other right-hand sides (N x r).
+  // Computes K^-1 y for other right-hand sides (N x r), with the K of the last Evaluate.
   void Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution);
-  // After Evaluate: W = L^-1, lower triangular with K = L L^T, so that K^-1 = W^T W.
+  // W = L^-1 of the last Evaluate, lower triangular with K = L L^T, so that K^-1 = W^T W.
   const Eigen::MatrixXd& whitener() const;
 
  private:

@@ -1,9 +1,10 @@
-// The covariance function of every Gaussian process here, and its hyperparameters in log space.
+// The covariance function of every Gaussian process here, and its hyperparameters in log space
+// (docs/method/learner.md#kernels).
 //
 //   k(x, x') = a exp(-g/2 |x - x'|^2) + b + c x.x' + (s^2 + floor) [x is x']
 //
-// RBF, bias and white noise are the paper's (section IV-B names the RBF, the public reference
-// codes add the rest); the linear term is ours.
+// RBF, bias and white noise are the paper's (section IV-B names the RBF, the public reference codes
+// add the rest); the linear term is ours.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +14,7 @@
 
 namespace pleat {
 
-// Which terms a kernel has beside the RBF and the noise, and what keeps it well conditioned.
+// Says which terms a kernel has beside the RBF and the noise, and what keeps it well conditioned.
 struct KernelOptions {
   bool bias = true;
   bool linear = false;

@@ -28,8 +28,9 @@ enum class Optimizer { kScg, kLbfgs };
 // How the columns of a view are scaled before training. They are always centered.
 enum class ViewScaling {
   kOneScalar,  // one scalar per view, mean square 1: still vertices stay quiet
-  kPerColumn,  // every column to unit variance (N - 1), as the check values of
-               // docs/method/learner.md#check-values have it
+               // Every column to unit variance (N - 1), as docs/method/learner.md#check-values has
+               // it.
+  kPerColumn,
 };
 
 struct SharedGplvmOptions {

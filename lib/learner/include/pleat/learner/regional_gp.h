@@ -39,7 +39,7 @@ struct RegionalGpOptions {
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
 
-// Everything a prediction needs; what a model file holds.
+// Everything that a prediction needs, and what a model file holds.
 struct RegionalGpParameters {
   struct Scale {
     std::vector<int> columns;  // ascending

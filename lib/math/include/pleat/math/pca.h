@@ -1,4 +1,4 @@
-// Principal components of a data matrix with many more columns than rows.
+// Principal components of a data matrix, as a rule with many more columns than rows.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Normals of vertices.
+// Computes normals of vertices.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Simple meshes for tests and generators. Closed ones face outwards.
+// Simple meshes for tests and generators. Closed ones face outward.
 #pragma once
 
 #include <Eigen/Core>

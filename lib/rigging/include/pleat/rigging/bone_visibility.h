@@ -15,8 +15,8 @@ namespace pleat {
 Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                                       const Eigen::Vector3d& b);
 
-// What tells inside from outside. A distance field, where there is one, answers far from the
-// surface without a search of the tree; the result is the same.
+// Tells inside from outside. A distance field, where there is one, answers far from the surface
+// without a search of the tree; the result is the same. What it points to must outlive it.
 struct InsideTest {
   const TriangleTree* tree = nullptr;
   const WindingNumber* winding_number = nullptr;

@@ -1,4 +1,4 @@
-// The 18-joint human skeleton placed inside a body.
+// Places the 18-joint human skeleton inside a body.
 #pragma once
 
 #include <Eigen/Core>

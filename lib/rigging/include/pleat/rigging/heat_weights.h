@@ -1,4 +1,4 @@
-// Skinning weights by heat equilibrium on the surface.
+// Skinning weights by heat equilibrium on the surface (docs/method/rig.md#heat-weights).
 #pragma once
 
 #include <Eigen/Core>

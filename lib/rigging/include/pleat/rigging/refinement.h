@@ -22,8 +22,8 @@ struct RefinementOptions {
   // them. Relative deviations, in units of the template's leg.
   double proportions = 100;
   double length = .25;  // relative deviation from the template's length
-  // The same for the bones across the trunk, from hips and chest to the limbs: the surface says
-  // nothing about their length, under a skirt least of all.
+  // The same weight for the bones across the trunk, from hips and chest to the limbs: the surface
+  // says nothing about their length, under a skirt least of all.
   double trunk_length = 30;
   double angle = 5;     // 1 - cosine to the template's direction; 2 leaves hips in skirts worse
   double symmetry = 1;  // relative difference of mirrored lengths
