@@ -14,9 +14,9 @@
 //
 // At a partial placement the open joints fall into subtrees that hang on placed joints, and
 // subtrees do not see each other in pair penalties; so the sum of their rest(k, p) never exceeds
-// the true cost to come. The bound is tighter than the published one. With an admissible bound the first
-// complete placement that leaves the queue is a cheapest one: whatever is still queued has a bound
-// that is not lower.
+// the true cost to come. The bound is tighter than the published one. With an admissible bound the
+// first complete placement that leaves the queue is a cheapest one: whatever is still queued has a
+// bound that is not lower.
 //
 // Deepening. Best-first search alone would keep every state that costs less than the optimum. For a
 // facing that does not fit the optimum is expensive, and that is nearly everything. So states whose
