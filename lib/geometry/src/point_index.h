@@ -8,7 +8,8 @@
 
 namespace pleat {
 
-// Keeps its own copy of the points.
+// Keeps its own copy of the points. The tree refers to this object, so it can be neither copied nor
+// moved. Queries are const and may come from several threads.
 class PointIndex {
  public:
   explicit PointIndex(Eigen::Matrix3Xd points)
@@ -16,8 +17,8 @@ class PointIndex {
   PointIndex(const PointIndex&) = delete;
   PointIndex& operator=(const PointIndex&) = delete;
 
-  // The `count` nearest points, nearest first: (index, squared distance). Fewer when there are
-  // fewer points.
+  // Returns the `count` nearest points, nearest first, as (index, squared distance); fewer when
+  // there are fewer points.
   std::vector<std::pair<int, double>> Nearest(const Eigen::Vector3d& query, int count) const {
     std::vector<size_t> indices(count);
     std::vector<double> squared(count);
@@ -27,7 +28,7 @@ class PointIndex {
     return result;
   }
 
-  // All points nearer than `radius`, in no particular order: (index, squared distance).
+  // Returns all points nearer than `radius` as (index, squared distance), in no particular order.
   std::vector<std::pair<size_t, double>> Within(const Eigen::Vector3d& query, double radius) const {
     std::vector<std::pair<size_t, double>> result;
     tree_.radiusSearch(query.data(), radius * radius, result, nanoflann::SearchParams());

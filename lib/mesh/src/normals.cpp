@@ -14,6 +14,7 @@ Eigen::Matrix3Xd ComputeVertexNormals(const Topology& topology,
     const int a = triangles(0, i), b = triangles(1, i), c = triangles(2, i);
     const Eigen::Vector3d ab = positions.col(b) - positions.col(a);
     const Eigen::Vector3d ac = positions.col(c) - positions.col(a);
+    // The cross product is as long as twice the area, which gives the weighting for free.
     const Eigen::Vector3d twice_area = ab.cross(ac);
     for (const int v : {a, b, c}) normals.col(v) += twice_area;
   }

@@ -1,4 +1,4 @@
-// Normals of vertices.
+// Computes normals of vertices.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,8 @@
 
 namespace pleat {
 
-// Unit normals (3 x V): the area-weighted mean of the faces around each vertex. Zero where a vertex
-// has no face or its faces cancel. positions: 3 x V.
+// Returns unit normals (3 x V): the area-weighted mean of the faces around each vertex. A normal is
+// zero where a vertex has no face or its faces cancel. positions: 3 x V.
 Eigen::Matrix3Xd ComputeVertexNormals(const Topology& topology,
                                       const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 
