@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Collects vertices and polygons.
+// Collects vertices and polygons. What it is given must be valid, as Build() does not check.
 class ShapeBuilder {
  public:
   int AddVertex(const Eigen::Vector3d& position) {

@@ -39,7 +39,8 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
   return absl::OkStatus();
 }
 
-// The base of one vertex: moved by the root, or by linear blend skinning.
+// The base of one vertex, moved by the root or by linear blend skinning. Training asks for a few
+// vertices of many frames, where ComputeDetailBase would skin them all.
 Eigen::Vector3d BaseOfVertex(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
                              int v) {
   if (base == DetailBase::kRoot) {
@@ -102,7 +103,7 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
                                                const ComputeDetailsOptions& options,
                                                const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, track, vertices));
-  constexpr int kBatch = 64;
+  constexpr int kBatch = 64;  // frames between two reports of progress
   const int num_frames = sequence.num_frames();
   Eigen::MatrixXd details(num_frames, 3 * vertices.size());
   for (int begin = 0; begin < num_frames; begin += kBatch) {

@@ -17,7 +17,9 @@
 namespace pleat {
 namespace {
 
-// All state of a fit: one entry per frame, so that frames can be worked on in parallel.
+// The state of a fit, one entry per frame. Parallel loops write only the entry of their own frame
+// and read others only where the loop cannot change them (copies of the pass before, or frames of
+// the other parity), so the result does not depend on the number of threads.
 class PoseFitter {
  public:
   PoseFitter(const MeshSequence& sequence, const Rig& rig, const PoseFitOptions& options)
@@ -101,7 +103,7 @@ class PoseFitter {
     bool rescued = false;
   };
 
-  // Squared vertex distance of a frame's pose, mean over vertices.
+  // Returns the squared vertex distance of a frame's pose, the mean over vertices.
   double MeanSquare(const Frame& frame) const {
     PoseEnergy energy = energy_;
     energy.SetFrame(frame.cross, frame.sum_squares);
@@ -114,14 +116,15 @@ class PoseFitter {
     return std::sqrt(squares / static_cast<double>(frames_.size()));
   }
 
-  // Takes of q and -q the one nearer to the frame before.
+  // Takes the one of q and -q that is nearer to the frame before.
   static void KeepSigns(const Pose& previous, Pose* pose) {
     for (size_t j = 0; j < pose->rotations.size(); ++j) {
       if (pose->rotations[j].dot(previous.rotations[j]) < 0) pose->rotations[j].coeffs() *= -1;
     }
   }
 
-  // body(t) for t = first, first + step, ...; in batches, so that progress and cancellation act.
+  // Calls body(t) for t = first, first + step, ...; in batches, so that progress and cancellation
+  // act.
   absl::Status ForFrames(const Progress& progress, int first, int step,
                          const std::function<void(int)>& body) {
     constexpr int kBatch = 64;
@@ -136,6 +139,7 @@ class PoseFitter {
     return absl::OkStatus();
   }
 
+  // The only step that looks at vertices. It keeps what solvers need of the frame, 3J x 3 numbers.
   void StartFrame(int t) {
     const FrameMoments moments = ComputeFrameMoments(rig_, rig_moments_, sequence_.frame(t));
     Frame& frame = frames_[t];
@@ -145,7 +149,7 @@ class PoseFitter {
     frame.pose = ClosedFormWalk(rig_moments_, moments, rig_.skeleton);
   }
 
-  // Solves frame t from `start`; returns pose and energy without storing them.
+  // Solves the frame of `energy` from `start`; returns pose and energy without storing them.
   std::pair<ChainPose, PoseSolverSummary> Solve(const PoseEnergy& energy, ChainPose start,
                                                 int max_iterations) const {
     const PoseSolverSummary solved =
@@ -167,8 +171,9 @@ class PoseFitter {
     return s >= 0 && s < sequence_.num_frames() && clip_of_[s] == clip_of_[t];
   }
 
-  // Every frame tries its neighbors' poses of the pass before (so the order does not matter),
-  // those that `changed` there; fills `changed` anew.
+  // Lets every frame try the poses that its neighbors had after the pass before (so that the order
+  // does not matter), if they `changed` there; fills `changed` anew. An improvement below a
+  // thousandth is the tail of convergence, not another valley.
   absl::Status TryNeighbors(const Progress& progress, std::vector<char>* changed) {
     constexpr int kTrial = 5;  // iterations that show whether a start leads to a deeper valley
     std::vector<ChainPose> before;
@@ -192,7 +197,8 @@ class PoseFitter {
     return absl::OkStatus();
   }
 
-  // Block descent on the smoothed energy: even frames with odd ones held, then the other way.
+  // Block descent on the smoothed energy: even frames with the odd ones held, then the other way. A
+  // frame's neighbors are never solved together with it, so each half is exact and parallel.
   absl::Status Smooth(const Progress& progress) {
     constexpr int kSweeps = 3;
     for (int half = 0; half < 2 * kSweeps; ++half) {

@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kWeldFraction = 1e-6;
 
-// For every vertex the first vertex (in index order) at the same place.
+// Returns for every vertex the first vertex (in index order) at the same place. Places are rounded
+// to a grid, so two vertices nearer than a cell may still fall into two of them; that leaves a
+// seam, which the winding number does not mind.
 std::vector<int> WeldByPosition(const Eigen::Ref<const Eigen::Matrix3Xd>& positions) {
   const int num_vertices = static_cast<int>(positions.cols());
   const Eigen::AlignedBox3d box = ComputeBounds(positions);
@@ -109,7 +111,8 @@ std::vector<std::vector<Neighbor>> TriangleNeighbors(const std::vector<EdgeSide>
   return neighbors;
 }
 
-// Six times the signed volume of `patch` seen from its own center.
+// Returns six times the signed volume of `patch` seen from its own center, so that the sign has a
+// meaning for open patches too.
 double SignedVolume(const SolidSurface& surface, const std::vector<int>& patch) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (int f : patch) {
@@ -126,6 +129,8 @@ double SignedVolume(const SolidSurface& surface, const std::vector<int>& patch) 
   return volume;
 }
 
+// Grows each patch breadth first from its lowest triangle. `flipped` is relative to the input, so
+// two neighbors agree when they had the same orientation and both or neither are flipped.
 void OrientPatches(const std::vector<std::vector<Neighbor>>& neighbors, SolidSurface* surface) {
   const int num_triangles = static_cast<int>(surface->triangles.cols());
   std::vector<char> visited(num_triangles, 0), flipped(num_triangles, 0);

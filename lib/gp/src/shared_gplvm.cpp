@@ -42,7 +42,8 @@ absl::Status CheckTraining(const Eigen::Ref<const Eigen::MatrixXd>& poses,
   return CheckClipStarts(clip_starts, poses.rows());
 }
 
-// First q left singular vectors of the centered poses, times sqrt(N - 1); missing ones are zero.
+// Returns the first q left singular vectors of the centered poses, times sqrt(N - 1); missing ones
+// are zero.
 Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
   const PrincipalComponents pca = ComputePca(poses, {.max_components = q});
   Eigen::MatrixXd start = Eigen::MatrixXd::Zero(poses.rows(), q);
@@ -53,7 +54,7 @@ Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
   return start;
 }
 
-// K_b on centered poses, and log g of it.
+// Returns K_b on centered poses, and its log g.
 Eigen::MatrixXd BackKernel(const Eigen::MatrixXd& poses, const SharedGplvmOptions& options,
                            double* log_inverse_width) {
   const Eigen::Index n = poses.rows();
@@ -80,7 +81,7 @@ absl::StatusOr<Eigen::VectorXd> Minimize(SharedGplvmObjective& objective,
                        {.max_iterations = options.max_iterations, .curvature = curvature}, summary,
                        progress);
   }
-  // As many evaluations as SCG would use.
+  // The budget is as many evaluations as SCG would use, so that the two can be compared.
   return MinimizeLbfgs(
       objective, start,
       {.max_iterations = 2 * options.max_iterations, .max_evaluations = 2 * options.max_iterations},
@@ -188,6 +189,7 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
     if (!solver.FactorAndInvert(ridged, whitener)) {
       return absl::InvalidArgumentError("the back-constraint kernel cannot be factored");
     }
+    // The back weights that give the start, (K_b + back_noise I) A = X_0.
     solver.MultiplyByFactor(whitener, false, start, whitened);
     solver.MultiplyByFactor(whitener, true, whitened, points);
   }

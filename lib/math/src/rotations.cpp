@@ -27,6 +27,8 @@ Quaterniond QuaternionFromExponentialMap(const Vector3d& w) {
 Vector3d ExponentialMapFromQuaternion(const Quaterniond& rotation) {
   Quaterniond q = rotation.normalized();
   if (q.w() < 0) q.coeffs() = -q.coeffs();
+  // atan2 keeps full precision at both ends, where acos(w) or asin(sine) would lose half of the
+  // digits.
   const double sine = q.vec().norm();
   if (sine < 1e-8) return 2 * q.vec();
   return (2 * std::atan2(sine, q.w()) / sine) * q.vec();
@@ -34,6 +36,8 @@ Vector3d ExponentialMapFromQuaternion(const Quaterniond& rotation) {
 
 Vector3d UnwrapExponentialMap(const Vector3d& w, const Vector3d& reference) {
   const double angle = w.norm();
+  // Without an axis there is nothing to add turns about. Otherwise all candidates lie on one line,
+  // and the nearest one is where the line comes closest to `reference`.
   if (angle < 1e-9) return w;
   const Vector3d axis = w / angle;
   const double turns = std::round((axis.dot(reference) - angle) / (2 * std::numbers::pi));
@@ -43,7 +47,7 @@ Vector3d UnwrapExponentialMap(const Vector3d& w, const Vector3d& reference) {
 Vector3d EulerXyzFromRotation(const Matrix3d& rotation) {
   const double sine_b = std::clamp(rotation(0, 2), -1.0, 1.0);
   const double b = std::asin(sine_b);
-  if (std::abs(sine_b) > 1 - 1e-10) {  // gimbal lock: choose c = 0
+  if (std::abs(sine_b) > 1 - 1e-10) {  // gimbal lock: only a +- c is known
     return {std::atan2(rotation(2, 1), rotation(1, 1)), b, 0};
   }
   return {std::atan2(-rotation(1, 2), rotation(2, 2)), b,
@@ -59,6 +63,8 @@ Matrix3d RotationFromEulerXyz(const Vector3d& angles) {
 
 Matrix3d NearestRotation(const Matrix3d& matrix) {
   const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // Where U V^T is a reflection, the direction of the least singular value is turned around: Eigen
+  // sorts singular values by falling size, and this costs least.
   Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }

@@ -15,6 +15,7 @@
 namespace pleat {
 namespace {
 
+// Disjoint sets with path halving; nearly constant time for each call.
 class DisjointSets {
  public:
   explicit DisjointSets(int count) : parents_(static_cast<size_t>(count)) {
@@ -57,7 +58,8 @@ int CountComponents(DisjointSets* sets, const std::vector<bool>& referenced) {
   return count;
 }
 
-// Components, unreferenced and doubled vertices.
+// Counts components, unreferenced and doubled vertices. The sets of the first count are joined
+// further for the second, with vertices at one place as one.
 void CountParts(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                 MeshReport* report) {
   DisjointSets sets(topology.num_vertices());
@@ -90,7 +92,7 @@ void CountParts(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3X
 void MeasureFaces(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                   MeshReport* report) {
   const double min_area = 1e-12 * report->bounds.diagonal().squaredNorm();
-  const Eigen::Vector3d center = report->bounds.center();
+  const Eigen::Vector3d center = report->bounds.center();  // keeps the volume's terms small
   std::vector<int32_t> sorted;
   for (int f = 0; f < topology.num_faces(); ++f) {
     const std::span<const int32_t> corners = topology.face(f);

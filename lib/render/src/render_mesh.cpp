@@ -1,4 +1,7 @@
-// Half-space rasterization (Pineda 1988) at twice the resolution, averaged 2 x 2.
+// Half-space rasterization (Pineda 1988) at twice the resolution, averaged 2 x 2. The depth of a
+// camera is linear over the picture, so it is interpolated like a plane; normals and colors are
+// interpolated the same way, which is slightly wrong under perspective and does not show at the
+// size of a mesh's triangles. It uses no threads.
 #include "pleat/render/render_mesh.h"
 
 #include <Eigen/Geometry>
@@ -23,6 +26,8 @@ struct ProjectedVertex {
   Vector3f color;   // 0..255
 };
 
+// A key light from the upper left, a fill light from the right, and a little from above, all in
+// camera axes, so that a character is lit alike from every side.
 Rgb Shade(const Vector3f& color, const Vector3f& normal, float shading) {
   static const Vector3f kKey = Vector3f(-.45f, .60f, .66f).normalized();
   static const Vector3f kFill = Vector3f(.80f, .10f, .60f).normalized();
@@ -43,7 +48,7 @@ class Rasterizer {
 
   void DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c,
                     const Vector3f& back_color, float shading);
-  // A line hidden where the mesh is nearer; ends in samples with depth.
+  // Draws a line that is hidden where the mesh is nearer; its ends are in samples, with depth.
   void DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb color);
   Image Downsample() const;
 
@@ -87,7 +92,7 @@ void Rasterizer::DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b
 
 void Rasterizer::DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb color) {
   const int steps = std::max(1, static_cast<int>(std::ceil((to - from).head<2>().norm())));
-  if (steps > 4 * (image_.width() + image_.height())) return;  // runs far out of the picture
+  if (steps > 4 * (image_.width() + image_.height())) return;  // it runs far out of the picture
   for (int i = 0; i <= steps; ++i) {
     const Vector3d p = from + (to - from) * i / steps;
     const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSamplesPerLeaf = 10;  // of the search tree
 
-// Body segments as shares of stature: R. Drillis, R. Contini, "Body segment parameters", 1966
+// Body segments as shares of the stature: R. Drillis, R. Contini, "Body segment parameters", 1966
 // (as tabulated in D. Winter, "Biomechanics and Motor Control of Human Movement").
 constexpr double kThigh = .245, kLowerLeg = .246, kTrunk = .818 - .530;  // shoulders above hips
 
@@ -33,7 +33,8 @@ class RefinementObjective {
         samples_(medial_samples),
         places_(PositionsOf(medial_samples), kSamplesPerLeaf) {}
 
-  // The energy at `joints`; fills the Gauss-Newton system when `hessian` is not null.
+  // Returns the energy at `joints` and fills the Gauss-Newton system when `hessian` is not null.
+  // Gradient and matrix are halves of the true ones, which leaves the step the same.
   double Evaluate(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
                   Eigen::VectorXd* gradient) const {
     if (hessian) {
@@ -55,6 +56,8 @@ class RefinementObjective {
     return b == kLeftUpperLeg || b == kRightUpperLeg || b == kLeftUpperArm || b == kRightUpperArm;
   }
 
+  // The projector `across` turns with the bone, but its derivative is left out: it is small near
+  // the medial surface, and a step that does not lower the energy is refused.
   double Centering(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                    Eigen::VectorXd* gradient) const {
     const Eigen::Vector3d direction = (joints.col(b) - joints.col(Parent(b))).normalized();
@@ -83,7 +86,7 @@ class RefinementObjective {
     return energy;
   }
 
-  // Length, angle and symmetry of bone b.
+  // Length, angle and symmetry of bone b. A mirror pair is counted once, at its lower index.
   double Shape(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                Eigen::VectorXd* gradient) const {
     const Eigen::Vector3d bone = joints.col(b) - joints.col(Parent(b));
@@ -97,7 +100,7 @@ class RefinementObjective {
            gradient);
     double energy = length_weight * length_residual * length_residual;
 
-    // |u - t|^2 = 2 (1 - cos)
+    // |u - t|^2 = 2 (1 - cos) makes the angle a sum of squares.
     const Eigen::Vector3d angle_residual = direction - target / target_length;
     const Eigen::Matrix3d turn =
         (Eigen::Matrix3d::Identity() - direction * direction.transpose()) / length;
@@ -161,7 +164,7 @@ class RefinementObjective {
     return energy;
   }
 
-  // One residual that depends on bones (from, to) with derivative `slopes` by to - from.
+  // Adds one residual that depends on bones (from, to), with derivative `slopes` by to - from.
   static void AddRow(double weight, double residual, const std::vector<std::pair<int, int>>& bones,
                      const std::vector<Eigen::Vector3d>& slopes, Eigen::MatrixXd* hessian,
                      Eigen::VectorXd* gradient) {

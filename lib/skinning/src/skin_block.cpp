@@ -1,4 +1,6 @@
 // The same code is compiled for three instruction sets: everything is inlined into SkinBlockFor...
+// Each sum has one order, over the four influences of a vertex, whatever the width of the
+// registers; so all kernels give the same bits, and a prediction does not depend on the machine.
 #include "skin_block.h"
 
 #include <vector>

@@ -1,4 +1,5 @@
-// Status helpers shared by every module: absl::Status carries what, where, why and what to do.
+// Status helpers shared by every module. An absl::Status says what failed, where, why, and what to
+// do.
 #pragma once
 
 #include <utility>
@@ -29,7 +30,8 @@ absl::StatusOr<T> WithContext(absl::string_view where, absl::StatusOr<T> value) 
 #define PLEAT_STATUS_CONCAT_INNER(a, b) a##b
 #define PLEAT_STATUS_CONCAT(a, b) PLEAT_STATUS_CONCAT_INNER(a, b)
 
-// PLEAT_ASSIGN_OR_RETURN(auto mesh, ReadMesh(path)); assigns the value or returns the error.
+// PLEAT_ASSIGN_OR_RETURN(auto mesh, ReadMesh(path)); assigns the value or returns the error. It
+// expands to several statements, so it cannot be the body of an `if` without braces.
 #define PLEAT_ASSIGN_OR_RETURN(declaration, expression)                         \
   auto PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__) = (expression);          \
   if (!PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__).ok())                    \

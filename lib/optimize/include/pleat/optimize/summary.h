@@ -12,7 +12,7 @@ enum class StopReason {
 
 struct OptimizationSummary {
   int iterations = 0;   // attempted steps (SCG) or line searches (L-BFGS)
-  int evaluations = 0;  // of the value, alone or with the gradient
+  int evaluations = 0;  // evaluations of the value, alone or with the gradient
   double initial_objective = 0;
   double final_objective = 0;
   double final_gradient = 0;  // largest absolute entry
