@@ -30,10 +30,10 @@ class LiveSessionTest : public testing::Test {
   LiveSessionTest() : id_(running_.TrainModel()), model_(Acquire()) {}
 
   std::shared_ptr<const CharacterModel> Acquire() {
-    return running_.local().AcquireModel(id_).value();
+    return running_.local().models().Acquire(id_).value();
   }
   absl::StatusOr<std::unique_ptr<LiveSession>> Open(const LiveSessionOptions& options = {}) {
-    return running_.remote().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
+    return running_.remote().poses().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
                                              options);
   }
   // What pose t of `track` looks like, its history being the poses before it.
@@ -74,7 +74,7 @@ class LiveSessionTest : public testing::Test {
   std::unique_ptr<LiveSession> OpenStalled(const std::string& model_id) {
     auto session =
         running_.remote()
-            .OpenLiveSession({.model_id = model_id, .track = {}, .bone_scales = {}},
+            .poses().OpenLiveSession({.model_id = model_id, .track = {}, .bone_scales = {}},
                              {.stream = {.position_bits = 20, .speed = 10}, .max_in_flight = 64})
             .value();
     for (int i = 0; i < 64; ++i) {
@@ -91,7 +91,7 @@ class LiveSessionTest : public testing::Test {
   }
 
   RunningService running_{
-      Reach::kSocket, {}, {.num_pose_threads = 2, .max_receive_bytes = 4 << 20}};
+      Reach::kSocket, {}, {.max_receive_bytes = 4 << 20}};
   const std::string id_;
   const std::shared_ptr<const CharacterModel> model_;
   const std::unique_ptr<v1::PoseService::Stub> stub_ = v1::PoseService::NewStub(
@@ -161,7 +161,7 @@ TEST_F(LiveSessionTest, ABadPoseIsAnsweredWithAReasonAndTheSessionGoesOn) {
 }
 
 TEST_F(LiveSessionTest, RequestsThatMakeNoSenseEndTheSession) {
-  EXPECT_THAT(running_.remote().OpenLiveSession(
+  EXPECT_THAT(running_.remote().poses().OpenLiveSession(
                   {.model_id = std::string(64, '0'), .track = {}, .bone_scales = {}}),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(Open({.max_in_flight = 65}),
@@ -284,9 +284,9 @@ TEST_F(LiveSessionTest, AReaderThatStopsDelaysNobodyAndGoesAway) {
     ASSERT_THAT(session->Receive(&frame), IsOk());
   }
   EXPECT_LT(SecondsSince(start), 5);
-  EXPECT_EQ(running_.local().cache_stats().num_pinned, 2);
+  EXPECT_EQ(running_.local().models().cache_stats().num_pinned, 2);
   stalled.clear();
-  EXPECT_TRUE(Eventually([&] { return running_.local().cache_stats().num_pinned == 1; }));
+  EXPECT_TRUE(Eventually([&] { return running_.local().models().cache_stats().num_pinned == 1; }));
 }
 
 // One client floods the server with calls, 24 at a time; another one edits.

@@ -1,10 +1,12 @@
-// Compression with its report, as jobs and `pleat compress` run it.
+// Compression and decompression as a service and the command line do them in their own process.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "pleat/service/character_service.h"
+#include "pleat/sequence_codec/sequence_decoder.h"
+#include "pleat/service/compressed_sequence_service.h"
 
 namespace pleat {
 
@@ -18,5 +20,10 @@ struct MeasuredCompression {
 absl::StatusOr<MeasuredCompression> CompressMeasured(const MeshSequence& sequence,
                                                      const CompressOptions& options,
                                                      const Progress& progress);
+
+// The frames of `range` from a file that has been opened. kInvalidArgument when the range is not
+// inside the sequence.
+absl::StatusOr<std::unique_ptr<DecodeSession>> MakeDecodeSession(SequenceDecoder decoder,
+                                                                 FrameRange range);
 
 }  // namespace pleat
