@@ -77,7 +77,8 @@ void FrameSkinning::SetMotions(const BoneTransforms& transforms,
 
 void FrameSkinning::SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks,
                                const float* details, Eigen::Matrix3Xf* positions) const {
-  SkinBlocksWith(ChosenSkinBlock(), motions, first_block, num_blocks, details, positions);
+  SkinBlocksWith(SkinBlockVariants().front().kernel, motions, first_block, num_blocks, details,
+                 positions);
 }
 
 void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions,

@@ -1,8 +1,7 @@
 // Skins one block of 16 vertices, on the widest registers of this processor.
 #pragma once
 
-#include <span>
-
+#include "pleat/simd/dispatch.h"
 #include "pleat/skinning/frame_skinning.h"
 
 namespace pleat {
@@ -25,8 +24,6 @@ struct SkinBlockInputs {
 };
 
 // Returns the kernels that this processor can run, the fastest first.
-std::span<const SkinBlockFunction> UsableSkinBlocks();
-// Returns the first of them.
-SkinBlockFunction ChosenSkinBlock();
+const KernelVariants<SkinBlockFunction>& SkinBlockVariants();
 
 }  // namespace pleat
