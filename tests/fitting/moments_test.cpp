@@ -60,23 +60,24 @@ TEST(MomentsTest, EnergyIsTheSquaredDistanceOfSkinnedVertices) {
   const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(8));
   energy.SetFrame(ComputeChainCross(moments, frame, skeleton), frame.sum_squares);
   const double measured = (sequence.FrameAsDouble(0) - sequence.FrameAsDouble(8)).squaredNorm();
-  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[0], frame.center)), measured,
+  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.pose(0), frame.center)), measured,
               1e-5 * measured);
-  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[8], frame.center)), 0, 1e-9);
+  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.pose(8), frame.center)), 0, 1e-9);
 }
 
 TEST(MomentsTest, FarFromTheOriginTheEnergyKeepsItsDigits) {
   SkinnedFigure figure = MakeSkinnedFigure();
   const Skeleton& skeleton = figure.rig.skeleton;
-  PoseTrack track = MakeSmoothPoses(skeleton, 2, 3);
-  for (Pose& pose : track.poses) pose.root_position += Eigen::Vector3d(512, 0, -256);
+  PoseTrack::Parts parts = MakeSmoothPoses(skeleton, 2, 3).Take();
+  for (Pose& pose : parts.poses) pose.root_position += Eigen::Vector3d(512, 0, -256);
+  const PoseTrack track = PoseTrack::FromValid(std::move(parts));
   const MeshSequence sequence = MakeSkinnedSequence(figure, track);
   const RigMoments moments = ComputeRigMoments(figure.rig);
   const ChainMoments chain = ComputeChainMoments(moments, skeleton);
   PoseEnergy energy(chain, skeleton, 0);
   const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(1));
   energy.SetFrame(ComputeChainCross(moments, frame, skeleton), frame.sum_squares);
-  const double value = energy.DataValue(ToChainPose(skeleton, track.poses[1], frame.center));
+  const double value = energy.DataValue(ToChainPose(skeleton, track.pose(1), frame.center));
   // float32 at 512 m resolves 31 micrometers; the weights' float sums add about as much.
   EXPECT_LT(std::sqrt(std::abs(value) / sequence.num_vertices()), 1e-4);
 }

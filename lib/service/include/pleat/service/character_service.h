@@ -17,7 +17,7 @@
 #include "pleat/character/train_character.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/sequence_codec/compress_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 
