@@ -29,7 +29,7 @@ struct Setup {
     server = GrpcServer::Start(service.get(), {}).value();
     client = RemoteCharacterService::Connect("127.0.0.1:" + std::to_string(server->port())).value();
     TrainOptions options;
-    options.learner = "gp";
+    options.learner = LearnerChoice::kGp;
     const std::string sequence_id = client->sequences().Upload(performer.sequence, {})->id;
     const std::string job_id =
         client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .options = options})->id;
@@ -50,7 +50,7 @@ Setup& TheSetup() {
 void Evaluate(benchmark::State& state, bool skinned_only) {
   Setup& setup = TheSetup();
   PoseEvaluator evaluator(setup.model);
-  const std::vector<Pose>& poses = setup.query.track.poses;
+  const std::vector<Pose>& poses = setup.query.track.poses();
   EvaluatedFrame frame;
   size_t t = 1;
   for (auto _ : state) {
@@ -65,8 +65,9 @@ BENCHMARK_CAPTURE(Evaluate, hybrid, false)->Unit(benchmark::kMillisecond);
 
 void EvaluateAndEncode(benchmark::State& state, FrameEncoding encoding) {
   Setup& setup = TheSetup();
-  const auto session = LocalPoseSession::Open(setup.model, {.encoder = {.encoding = encoding}}).value();
-  const std::vector<Pose>& poses = setup.query.track.poses;
+  const auto session =
+      LocalPoseSession::Open(setup.model, {.encoder = {.encoding = encoding}}).value();
+  const std::vector<Pose>& poses = setup.query.track.poses();
   size_t t = 0;
   for (auto _ : state) {
     t = (t + 1) % poses.size();
@@ -82,7 +83,7 @@ BENCHMARK_CAPTURE(EvaluateAndEncode, points, FrameEncoding::kDracoPointCloud)
 void LiveRoundTrip(benchmark::State& state) {
   Setup& setup = TheSetup();
   const auto session = setup.client->poses().OpenLiveSession(setup.query).value();
-  const std::vector<Pose>& poses = setup.query.track.poses;
+  const std::vector<Pose>& poses = setup.query.track.poses();
   LiveFrame frame;
   size_t t = 0;
   for (auto _ : state) {

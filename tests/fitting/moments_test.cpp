@@ -79,17 +79,18 @@ TEST(MomentsTest, EnergyIsTheSquaredDistanceOfSkinnedVertices) {
   const MeshSequence sequence = MakeSkinnedSequence(figure, track);
   const FrameEnergy energy(figure.rig, sequence.frame(8));
   const double measured = (sequence.FrameAsDouble(0) - sequence.FrameAsDouble(8)).squaredNorm();
-  EXPECT_NEAR(energy.At(track.poses[0]), measured, 1e-5 * measured);
-  EXPECT_NEAR(energy.At(track.poses[8]), 0, 1e-9);
+  EXPECT_NEAR(energy.At(track.pose(0)), measured, 1e-5 * measured);
+  EXPECT_NEAR(energy.At(track.pose(8)), 0, 1e-9);
 }
 
 TEST(MomentsTest, FarFromTheOriginTheEnergyKeepsItsDigits) {
   SkinnedFigure figure = MakeSkinnedFigure();
   const Skeleton& skeleton = figure.rig.skeleton;
-  PoseTrack track = MakeSmoothPoses(skeleton, 2, 3);
-  for (Pose& pose : track.poses) pose.root_position += Eigen::Vector3d(512, 0, -256);
+  PoseTrack::Parts parts = MakeSmoothPoses(skeleton, 2, 3).Take();
+  for (Pose& pose : parts.poses) pose.root_position += Eigen::Vector3d(512, 0, -256);
+  const PoseTrack track = PoseTrack::FromValid(std::move(parts));
   const MeshSequence sequence = MakeSkinnedSequence(figure, track);
-  const double value = FrameEnergy(figure.rig, sequence.frame(1)).At(track.poses[1]);
+  const double value = FrameEnergy(figure.rig, sequence.frame(1)).At(track.pose(1));
   // float32 at 512 m resolves 31 micrometers; the weights' float sums add about as much.
   EXPECT_LT(std::sqrt(std::abs(value) / sequence.num_vertices()), 1e-4);
 }

@@ -32,13 +32,13 @@ class SmallModelBuilder {
     std::vector<VertexInfluences> influences(8);
     for (size_t v = 0; v < 8; ++v) influences[v] = {{1, 2, 0, 0}, {0.75f, 0.25f, 0, 0}};
     parts.rig.weights = *SkinWeights::Create(3, influences);
-    parts.options.learner = LearnerName(learner_);
+    parts.options.learner = *ParseChoice<LearnerChoice>("learner", LearnerName(learner_));
     parts.options.resolution_percent = learner_ == Learner::kSgplvm ? 50 : 100;
     parts.feature_reference = Vector(6);
     AddControl(&parts);
     parts.detail_model = std::make_shared<const DetailModel>(
         *DetailModel::FromParameters(Detail(static_cast<int>(parts.control_vertices.size()))));
-    parts.record.learner = parts.options.learner;
+    parts.record.learner = LearnerName(learner_);
     parts.record.num_frames = 3;
     parts.record.yaw_degrees = 90;
     parts.record.diagonal_m = 1.66;

@@ -138,7 +138,7 @@ TEST_F(LocalCharacterServiceTest, AnOwnRigSurvivesARestartAndGoesWithItsJob) {
   const std::string rig = EncodeRig({known.skeleton, known.weights, 0, {1}});
   const std::string first = service_->jobs().CreateTraining({.sequence_ids = {id}})->id;
   const JobInfo waiting = *service_->jobs().CreateTraining(
-      {.sequence_ids = {id}, .options = {.learner = "gp"}, .rig = rig});
+      {.sequence_ids = {id}, .options = {.learner = LearnerChoice::kGp}, .rig = rig});
   EXPECT_EQ(waiting.state, JobState::kQueued);
   const std::string path =
       folder_.path() + "/blobs/" + waiting.rig_id.substr(0, 2) + "/" + waiting.rig_id;

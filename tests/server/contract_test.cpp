@@ -192,20 +192,24 @@ TEST_P(ContractTest, BadRequestsAreRefusedAlike) {
   EXPECT_THAT(service_.poses().EvaluateClip(query, ignore),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   query.model_id = running_.TrainModel();
-  query.track.poses[1].rotations.pop_back();
+  PoseTrack::Parts parts = query.track.parts();
+  for (Pose& pose : parts.poses) pose.rotations.pop_back();
+  query.track = PoseTrack::FromValid(std::move(parts));
   EXPECT_THAT(service_.poses().EvaluateClip(query, ignore),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 1")));
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 0")));
 }
 
 TEST_P(ContractTest, AClipGivesEveryFrameInOrder) {
   const std::string model_id = running_.TrainModel();
   const auto model = running_.local().models().Acquire(model_id).value();
   for (const bool skinned_only : {false, true}) {
-    ClipQuery query{.model_id = model_id,
-                    .track = MakeMotion(model->skeleton(), 30, 40),
-                    .bone_scales = {1, 1.2, .9},
-                    .skinned_only = skinned_only};
-    query.track.clip_starts = {0, 11};
+    ClipQuery query{
+        .model_id = model_id,
+        .track = PoseTrack::FromValid({.fps = 40,
+                                       .poses = MakeMotion(model->skeleton(), 30, 40).poses(),
+                                       .clip_starts = {0, 11}}),
+        .bone_scales = {1, 1.2, .9},
+        .skinned_only = skinned_only};
     std::vector<EvaluatedFrame> truth;
     ASSERT_THAT(running_.local().poses().EvaluateClip(query,
                                               [&](int, const EvaluatedFrame& frame) {

@@ -83,9 +83,9 @@ TEST_F(StreamContentTest, ParametersAreEvaluatedHereToTheServersMesh) {
   }
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluatedFrame one,
                              client->poses().EvaluatePose({.model_id = id_, .track = {}, .bone_scales = {}},
-                                                  {track_.poses[3], track_.poses[2]}));
+                                                  {track_.pose(3), track_.pose(2)}));
   EvaluatedFrame truth;
-  ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.poses[3], &track_.poses[2]}, {}, &truth),
+  ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.pose(3), &track_.pose(2)}, {}, &truth),
               IsOk());
   EXPECT_LE((one.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-6);
 }
@@ -103,7 +103,7 @@ TEST_F(StreamContentTest, ALiveSessionOfParametersEvaluatesWithItsModel) {
             {.model_id = id_, .track = {}, .bone_scales = {1, 1.1, 1.2}}, options));
     EXPECT_EQ(session->header().num_vertices, 1200);
     for (int t = 0; t < 12; ++t) {
-      ASSERT_THAT(session->Send(t, track_.poses[t], {}, false, t == 5), IsOk());
+      ASSERT_THAT(session->Send(t, track_.pose(t), {}, false, t == 5), IsOk());
       LiveFrame frame;
       ASSERT_THAT(session->Receive(&frame), IsOk());
       EXPECT_EQ(frame.number, static_cast<uint64_t>(t));
@@ -111,7 +111,7 @@ TEST_F(StreamContentTest, ALiveSessionOfParametersEvaluatesWithItsModel) {
       ASSERT_TRUE(frame.parameters.has_value());
       EvaluatedFrame own, truth;
       ASSERT_THAT(evaluator.Show(*frame.parameters, {1, 1.1, 1.2}, &own), IsOk());
-      ASSERT_THAT(evaluator.Evaluate({&track_.poses[t], &track_.poses[std::max(0, t - 1)]},
+      ASSERT_THAT(evaluator.Evaluate({&track_.pose(t), &track_.pose(std::max(0, t - 1))},
                                      {1, 1.1, 1.2}, &truth),
                   IsOk());
       EXPECT_LE((own.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-6);
@@ -156,7 +156,7 @@ TEST_F(StreamContentTest, TheControlMeshIsATwentiethOfTheCharacter) {
         const auto session,
         running_.remote().poses().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
                                           {.stream = stream}));
-    ASSERT_THAT(session->Send(1, track_.poses[0]), IsOk());
+    ASSERT_THAT(session->Send(1, track_.pose(0)), IsOk());
     LiveFrame frame;
     ASSERT_THAT(session->Receive(&frame), IsOk());
     EXPECT_EQ(frame.positions.cols(), 60);
@@ -166,7 +166,7 @@ TEST_F(StreamContentTest, TheControlMeshIsATwentiethOfTheCharacter) {
 TEST_F(StreamContentTest, ForeignParametersAreRefused) {
   PoseEvaluator evaluator(model_);
   FrameParameters good;
-  ASSERT_THAT(evaluator.Predict({&track_.poses[0]}, false, &good), IsOk());
+  ASSERT_THAT(evaluator.Predict({&track_.pose(0)}, false, &good), IsOk());
   EvaluatedFrame frame;
   ASSERT_THAT(evaluator.Show(good, {}, &frame), IsOk());
   FrameParameters bad = good;

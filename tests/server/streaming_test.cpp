@@ -48,10 +48,9 @@ TEST_F(StreamingTest, OnePoseGivesOneFrame) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const EvaluatedFrame frame,
       running_.remote().poses().EvaluatePose({.model_id = id, .track = {}, .bone_scales = {}},
-                                     {track.poses[2], track.poses[1]}));
+                                     {track.pose(2), track.pose(1)}));
   EvaluatedFrame truth;
-  ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.poses[2], &track.poses[1]}, {}, &truth),
-              IsOk());
+  ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.pose(2), &track.pose(1)}, {}, &truth), IsOk());
   EXPECT_LE((frame.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-5);
 }
 

@@ -32,7 +32,7 @@ TEST_F(RigTest, RestPoseIsTheRestMesh) {
 }
 
 TEST_F(RigTest, AgreesWithTheDenseFormula) {
-  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5];
+  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5);
   const Eigen::Matrix3Xd skinned = Skin(pose, &transforms_);
   const Eigen::MatrixXd weights = figure_.rig.weights.ToDense();
   Eigen::Matrix3Xd expected = Eigen::Matrix3Xd::Zero(3, skinned.cols());
@@ -45,7 +45,7 @@ TEST_F(RigTest, AgreesWithTheDenseFormula) {
 }
 
 TEST_F(RigTest, RigidMotionOfTheBodyMovesTheMeshRigidly) {
-  Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5];
+  Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5);
   BoneTransforms before_transforms;
   const Eigen::Matrix3Xd before = Skin(pose, &before_transforms);
   const Eigen::Quaterniond turn = QuaternionFromExponentialMap({1, -0.5, 2});
@@ -63,7 +63,7 @@ TEST_F(RigTest, RigidMotionOfTheBodyMovesTheMeshRigidly) {
 }
 
 TEST_F(RigTest, BlendRotationOfOneBoneIsItsRotation) {
-  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).poses[5];
+  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).pose(5);
   Skin(pose, &transforms_);
   std::vector<VertexInfluences> influences(2);
   influences[0] = {{kLeftHand}, {1}};

@@ -85,7 +85,7 @@ absl::Status EvaluateHere(std::shared_ptr<const CharacterModel> model, const Cli
   EvaluatedFrame frame;
   for (int t = 0; t < query.track.num_frames(); ++t) {
     PLEAT_RETURN_IF_ERROR(
-        evaluator.EvaluateSkinned(query.track.poses[t], query.bone_scales, &frame));
+        evaluator.EvaluateSkinned(query.track.pose(t), query.bone_scales, &frame));
     PLEAT_RETURN_IF_ERROR(consume(t, frame));
   }
   return absl::OkStatus();
@@ -122,7 +122,7 @@ absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
                          const std::function<absl::Status(const ConsumeFrame&)>& evaluate,
                          const Progress& progress, Confidence* confidence) {
   AnimationOptions animation;
-  animation.frame_rate = FrameRateFromFps(query.track.fps);
+  animation.frame_rate = FrameRateFromFps(query.track.fps());
   animation.appearance = model.parts().appearance;
   animation.name = model.name();
   animation.encoder = EncoderOptions(options);
@@ -141,7 +141,7 @@ absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
 absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, PoseService& poses,
                                 const ClipQuery& query, const Progress& progress,
                                 Confidence* confidence) {
-  DracoFolderWriter writer(options.output, FrameRateFromFps(query.track.fps));
+  DracoFolderWriter writer(options.output, FrameRateFromFps(query.track.fps()));
   StreamHeader header;
   ClipStreamSink sink;
   sink.on_header = [&](const StreamHeader& received) {

@@ -53,25 +53,27 @@ class PoseFitter {
     }
     if (!(options_.smoothness > 0)) return progress.Stage("fit", 0.8, 1).Report(1);
     unsmoothed_rms_m_ = Rms();
-    unsmoothed_jitter_rad_ = RotationJitter(Track());
+    PLEAT_ASSIGN_OR_RETURN(const PoseTrack unsmoothed, Track());
+    unsmoothed_jitter_rad_ = RotationJitter(unsmoothed);
     return Smooth(progress.Stage("fit", 0.8, 1));
   }
 
-  PoseTrack Track() const {
-    PoseTrack track;
-    track.fps = sequence_.frame_rate().fps();
-    track.clip_starts = options_.clip_starts;
+  // An error where the numbers of a pose went astray.
+  absl::StatusOr<PoseTrack> Track() const {
+    PoseTrack::Parts track{.fps = sequence_.frame_rate().fps(),
+                           .clip_starts = options_.clip_starts};
     for (const Frame& frame : frames_) {
       track.poses.push_back(FromChainPose(rig_.skeleton, frame.pose, frame.center));
       FixRootGauge(rig_.skeleton, &track.poses.back());
     }
-    for (int t = 1; t < track.num_frames(); ++t) {
+    for (int t = 1; t < sequence_.num_frames(); ++t) {
       if (SameClip(t - 1, t)) KeepSigns(track.poses[t - 1], &track.poses[t]);
     }
-    return track;
+    return PoseTrack::Create(std::move(track));
   }
 
-  void Summarize(PoseFitSummary* summary) const {
+  // `track`: of this fitter.
+  void Summarize(const PoseTrack& track, PoseFitSummary* summary) const {
     *summary = {};
     double iterations = 0;
     for (const Frame& frame : frames_) {
@@ -80,7 +82,7 @@ class PoseFitter {
       summary->num_rescued_frames += frame.rescued;
     }
     summary->rms_m = Rms();
-    summary->jitter_rad = RotationJitter(Track());
+    summary->jitter_rad = RotationJitter(track);
     summary->unsmoothed_rms_m = unsmoothed_rms_m_.value_or(summary->rms_m);
     summary->unsmoothed_jitter_rad = unsmoothed_jitter_rad_.value_or(summary->jitter_rad);
     summary->mean_iterations = iterations / static_cast<double>(frames_.size());
@@ -258,15 +260,7 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig,
                      rig.rest_positions.cols(), " rest vertices, the sequence '", sequence.name(),
                      "' has ", num_vertices, "; use the rig of this mesh"));
   }
-  const std::vector<int>& starts = options.clip_starts;
-  bool ascending = !starts.empty() && starts.front() == 0;
-  for (size_t c = 1; c < starts.size(); ++c) ascending &= starts[c] > starts[c - 1];
-  if (!ascending || starts.back() >= sequence.num_frames()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("pose fit: clip starts must ascend from 0 and stay below the ",
-                     sequence.num_frames(), " frames of the sequence"));
-  }
-  return absl::OkStatus();
+  return CheckClipStarts(options.clip_starts, sequence.num_frames());
 }
 
 }  // namespace
@@ -277,19 +271,19 @@ absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
   PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, options));
   PoseFitter fitter(sequence, rig, options);
   PLEAT_RETURN_IF_ERROR(fitter.Run(progress));
-  if (summary != nullptr) fitter.Summarize(summary);
-  return fitter.Track();
+  PLEAT_ASSIGN_OR_RETURN(PoseTrack track, fitter.Track());
+  if (summary != nullptr) fitter.Summarize(track, summary);
+  return track;
 }
 
 double RotationJitter(const PoseTrack& track) {
   double squares = 0;
   int64_t count = 0;
   for (int t = 2; t < track.num_frames(); ++t) {
-    const auto next_start = std::upper_bound(track.clip_starts.begin(), track.clip_starts.end(), t);
-    if (next_start != track.clip_starts.begin() && t - 2 < *(next_start - 1)) continue;
-    const auto& before = track.poses[t - 2].rotations;
-    const auto& middle = track.poses[t - 1].rotations;
-    const auto& after = track.poses[t].rotations;
+    if (t - 2 < track.ClipOf(t).begin) continue;
+    const auto& before = track.pose(t - 2).rotations;
+    const auto& middle = track.pose(t - 1).rotations;
+    const auto& after = track.pose(t).rotations;
     for (size_t j = 0; j < middle.size(); ++j) {
       const Eigen::Quaterniond first = before[j].conjugate() * middle[j];
       const double angle = first.angularDistance(middle[j].conjugate() * after[j]);

@@ -61,7 +61,7 @@ class RigRefiner {
       const Eigen::Vector3d center = sequence.frame(t).cast<double>().rowwise().mean();
       frames_.push_back(t);
       centers_.push_back(center);
-      poses_.push_back(ToChainPose(rig.skeleton, track.poses[t], center));
+      poses_.push_back(ToChainPose(rig.skeleton, track.pose(t), center));
     }
     moments_.resize(frames_.size());
     energies_.resize(frames_.size());
@@ -201,13 +201,7 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
                                                    track.num_frames(), " frames, the sequence ",
                                                    sequence.num_frames()));
   }
-  for (const Pose& pose : track.poses) {
-    if (static_cast<int>(pose.rotations.size()) != rig.skeleton.num_joints()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("rig refinement: a pose has ", pose.rotations.size(),
-                       " rotations, the skeleton ", rig.skeleton.num_joints(), " joints"));
-    }
-  }
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, rig.skeleton.num_joints()));
   for (const int j : options.locked_joints) {
     if (j < 0 || j >= rig.skeleton.num_joints()) {
       return absl::InvalidArgumentError(absl::StrCat("rig refinement: locked joint ", j, " of ",

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/scaling.h"
+#include "pleat/math/clip_starts.h"
 #include "pleat/math/pca.h"
 #include "pleat/optimize/lbfgs.h"
 #include "pleat/optimize/scg.h"
@@ -98,20 +99,6 @@ SharedGplvmOptions SharedGplvmOptions::Paper() {
   options.relative_noise_floor = 0;
   options.absolute_jitter = 1e-8;
   return options;
-}
-
-absl::Status CheckClipStarts(const std::vector<int>& clip_starts, Eigen::Index num_rows) {
-  if (clip_starts.empty() || clip_starts[0] != 0) {
-    return absl::InvalidArgumentError("clip starts must begin with row 0");
-  }
-  for (size_t c = 0; c < clip_starts.size(); ++c) {
-    if (clip_starts[c] >= num_rows || (c > 0 && clip_starts[c] <= clip_starts[c - 1])) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("clip ", c, " starts at row ", clip_starts[c], " of ", num_rows,
-                       ": starts must rise and stay inside the rows"));
-    }
-  }
-  return absl::OkStatus();
 }
 
 DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling) {

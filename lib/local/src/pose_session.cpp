@@ -89,14 +89,7 @@ absl::StatusOr<std::unique_ptr<LocalClipSession>> LocalClipSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options,
     std::unique_ptr<EncoderPool::Lease> encoder) {
   // The history interpolates between poses, so all of them must fit before the first is shown.
-  const size_t num_joints = model->skeleton().joints().size();
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (track.poses[t].rotations.size() != num_joints) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("frame ", t, ": the pose has ", track.poses[t].rotations.size(),
-                       " rotations, the skeleton has ", num_joints, " joints"));
-    }
-  }
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, model->skeleton().num_joints()));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<LocalPoseSession> session,
                          LocalPoseSession::Open(model, std::move(options), std::move(encoder)));
   return std::unique_ptr<LocalClipSession>(

@@ -61,14 +61,14 @@ Skeleton PlaceSkeleton(const Stage& stage, const Skeleton& skeleton) {
   return skeleton.WithRestPositions(joints);
 }
 
-void PlaceTrack(const Stage& stage, const Skeleton& placed_skeleton, PoseTrack* track) {
-  const Eigen::Vector3d rest_root = placed_skeleton.rest_position(0);
-  for (Pose& pose : track->poses) {
+PoseTrack PlaceTrack(const Stage& stage, const Skeleton& placed_skeleton, PoseTrack track) {
+  PoseTrack::Parts placed = std::move(track).Take();
+  for (Pose& pose : placed.poses) {
     pose.root_position = stage.Place(pose.root_position);
     for (Eigen::Quaterniond& q : pose.rotations) q = stage.Turn(q);
   }
-  track->poses[0] = Pose::Rest(placed_skeleton);
-  track->poses[0].root_position = rest_root;
+  placed.poses[0] = Pose::Rest(placed_skeleton);
+  return PoseTrack::FromValid(std::move(placed));
 }
 
 // The detail of the skirt at the mesh's vertices: which share of which particles' displacements
@@ -116,7 +116,7 @@ absl::StatusOr<std::vector<Eigen::Matrix3Xf>> ComputeFrames(
     if (progress.cancelled()) return;
     const int t = item + 1;
     BoneTransforms bones;
-    ComputeBoneTransforms(truth.rig.skeleton, truth.track.poses[t], {}, &bones);
+    ComputeBoneTransforms(truth.rig.skeleton, truth.track.pose(t), {}, &bones);
     Eigen::Matrix3Xd positions;
     SkinVertices(truth.rig.weights, truth.rig.rest_positions, bones, &positions);
     detail.Add(grids[t], stage, &positions);
@@ -164,11 +164,11 @@ absl::StatusOr<Performer> GeneratePerformer(const PerformerOptions& options,
   PLEAT_ASSIGN_OR_RETURN(Topology topology, Topology::FromTriangles(num_vertices, triangles));
 
   const SkirtDetail detail(shape, dynamics, mesh);
-  PerformerTruth truth{
-      .rig = {PlaceSkeleton(stage, shape.skeleton()), std::move(weights), rest.cast<double>()},
-      .track = std::move(track),
-      .is_skirt = std::vector<uint8_t>(num_vertices, 0)};
-  PlaceTrack(stage, truth.rig.skeleton, &truth.track);
+  Skeleton placed_skeleton = PlaceSkeleton(stage, shape.skeleton());
+  PoseTrack placed_track = PlaceTrack(stage, placed_skeleton, std::move(track));
+  PerformerTruth truth{.rig = {std::move(placed_skeleton), std::move(weights), rest.cast<double>()},
+                       .track = std::move(placed_track),
+                       .is_skirt = std::vector<uint8_t>(num_vertices, 0)};
   for (int v : detail.vertices()) truth.is_skirt[v] = 1;
   PLEAT_ASSIGN_OR_RETURN(
       std::vector<Eigen::Matrix3Xf> frames,

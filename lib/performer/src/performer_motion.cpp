@@ -236,8 +236,7 @@ PoseTrack MotionGenerator::Generate() {
   const Course course =
       PlanCourse(options_.num_frames + static_cast<int>(std::ceil(kLookAhead_s * options_.fps)));
   const Footwork footwork(skeleton_, course, walk_ ? .75 : .45);
-  PoseTrack track;
-  track.fps = options_.fps;
+  PoseTrack::Parts track{.fps = options_.fps};
   for (int t = 0; t < options_.num_frames; ++t) {
     const double time_s = t / options_.fps;
     const double ease = course.liveliness[t];
@@ -258,7 +257,7 @@ PoseTrack MotionGenerator::Generate() {
     PoseLegs(feet, ease, &pose);
     track.poses.push_back(std::move(pose));
   }
-  return track;
+  return PoseTrack::FromValid(std::move(track));
 }
 
 }  // namespace

@@ -163,18 +163,18 @@ void SkirtDynamics::Step(const Surroundings& now, double step_s) {
 absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SkirtDynamics::Simulate(const PoseTrack& track,
                                                                       double gravity,
                                                                       const Progress& progress) {
-  const int num_substeps = std::max(1, static_cast<int>(std::ceil(1 / (track.fps * kStep_s))));
-  const double step_s = 1 / (track.fps * num_substeps);
+  const int num_substeps = std::max(1, static_cast<int>(std::ceil(1 / (track.fps() * kStep_s))));
+  const double step_s = 1 / (track.fps() * num_substeps);
   Surroundings from, to, now;
-  MeasureSurroundings(track.poses[0], gravity, &from);
+  MeasureSurroundings(track.pose(0), gravity, &from);
   positions_ = from.targets;
   velocities_.setZero(3, positions_.cols());
   std::vector<Eigen::Matrix3Xf> displacements;
   displacements.push_back(Eigen::Matrix3Xf::Zero(3, positions_.cols()));
   for (int t = 1; t < track.num_frames(); ++t) {
-    MeasureSurroundings(track.poses[t], gravity, &to);
+    MeasureSurroundings(track.pose(t), gravity, &to);
     now = to;
-    now.target_velocities = (to.targets - from.targets) * track.fps;
+    now.target_velocities = (to.targets - from.targets) * track.fps();
     for (int i = 1; i <= num_substeps; ++i) {
       const double u = static_cast<double>(i) / num_substeps;
       now.targets = from.targets + u * (to.targets - from.targets);

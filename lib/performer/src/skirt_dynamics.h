@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "character_shape.h"
 #include "pleat/base/progress.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 

@@ -8,13 +8,13 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/mesh/mesh_limits.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skeleton/skeleton.h"
 
 namespace pleat {
 
 struct Motion {
-  PoseTrack track;                    // all joints of the skeleton, unit quaternions
+  PoseTrack track;                    // all joints of the skeleton
   std::vector<double> bone_scales;    // J, or empty when the file has none
   std::vector<std::string> warnings;  // joints left at rest, ignored fields, rescaled quaternions
 };
@@ -26,7 +26,7 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
 absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
                                   const MeshLimits& limits = {});
 
-// bone_scales: J entries or empty. Every pose of `track` has skeleton.num_joints() rotations.
+// bone_scales: J entries or empty. `track` has skeleton.num_joints() joints.
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales = {});
 absl::Status WriteMotion(const std::string& path, const Skeleton& skeleton, const PoseTrack& track,

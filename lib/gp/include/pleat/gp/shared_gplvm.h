@@ -130,7 +130,4 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
                                              SharedGplvmSummary* summary = nullptr,
                                              const Progress& progress = {});
 
-// Returns kInvalidArgument unless `clip_starts` rises strictly from 0 and stays below num_rows.
-absl::Status CheckClipStarts(const std::vector<int>& clip_starts, Eigen::Index num_rows);
-
 }  // namespace pleat

@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/rig.h"
 
 namespace pleat {
