@@ -335,7 +335,7 @@ absl::Status PoseEvaluator::EvaluateSkinnedClip(
   EvaluatedFrame frame;
   for (int t = 0; t < track.num_frames(); ++t) {
     PLEAT_RETURN_IF_ERROR(WithContext(absl::StrCat("frame ", t),
-                                      EvaluateSkinned(track.poses[t], bone_scales, &frame)));
+                                      EvaluateSkinned(track.pose(t), bone_scales, &frame)));
     PLEAT_RETURN_IF_ERROR(consume(t, frame));
     PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / track.num_frames()));
   }

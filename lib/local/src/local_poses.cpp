@@ -26,7 +26,7 @@ absl::Status LocalPoses::EvaluateClip(
   EvaluatedFrame frame;
   for (int t = 0; t < query.track.num_frames(); ++t) {
     PLEAT_RETURN_IF_ERROR(
-        evaluator.EvaluateSkinned(query.track.poses[t], query.bone_scales, &frame));
+        evaluator.EvaluateSkinned(query.track.pose(t), query.bone_scales, &frame));
     PLEAT_RETURN_IF_ERROR(consume(t, frame));
   }
   return absl::OkStatus();
