@@ -17,7 +17,7 @@ class FitMotionTest : public testing::Test {
     EvaluatedFrame frame;
     std::vector<Eigen::Matrix3Xf> frames;
     for (int t = 0; t < track.num_frames(); ++t) {
-      EXPECT_THAT(evaluator.EvaluateSkinned(track.poses[t], {}, &frame), IsOk());
+      EXPECT_THAT(evaluator.EvaluateSkinned(track.pose(t), {}, &frame), IsOk());
       frames.push_back(frame.positions);
     }
     return MeshSequence::Create(model_->topology(), std::move(frames),

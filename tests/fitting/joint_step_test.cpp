@@ -18,7 +18,7 @@ class JointStepTest : public testing::Test {
       const FrameMoments frame = ComputeFrameMoments(figure_.rig, moments_, sequence_.frame(t));
       systems_.push_back(
           ComputeJointSystem(moments_, subtree, skeleton(), frame,
-                             ToChainPose(skeleton(), track_.poses[t], frame.center)));
+                             ToChainPose(skeleton(), track_.pose(t), frame.center)));
     }
     Random random(5);
     displaced_ = skeleton().RestPositions();

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
@@ -24,12 +25,6 @@ absl::Status NoSuchBlob(const std::string& id) {
 }
 
 }  // namespace
-
-bool IsContentId(std::string_view id) {
-  return id.size() == 64 && std::all_of(id.begin(), id.end(), [](char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-         });
-}
 
 absl::StatusOr<BlobStore> BlobStore::Open(std::string folder, uint64_t reserve_bytes) {
   std::error_code error;

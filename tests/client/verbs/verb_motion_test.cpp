@@ -34,7 +34,7 @@ TEST_F(MotionVerbTest, WithoutEditsAMotionComesBack) {
   const Motion before = Read(files_.motion_path()), after = Read(output_);
   ASSERT_EQ(after.track.num_frames(), before.track.num_frames());
   for (int t = 0; t < after.track.num_frames(); ++t) {
-    const Pose &a = after.track.poses[t], &b = before.track.poses[t];
+    const Pose &a = after.track.pose(t), &b = before.track.pose(t);
     EXPECT_LT((a.root_position - b.root_position).norm(), 1e-9);
     for (size_t j = 0; j < a.rotations.size(); ++j) {
       EXPECT_LT(a.rotations[j].angularDistance(b.rotations[j]), 1e-6);
@@ -55,12 +55,12 @@ TEST_F(MotionVerbTest, EditsAreAppliedAndBoneLengthsKept) {
   EXPECT_THAT(outcome.out, HasSubstr("edited.json: "));
   const Motion before = Read(files_.motion_path()), after = Read(output_);
   EXPECT_GT(after.track.num_frames(), before.track.num_frames() + 3);
-  EXPECT_NEAR(after.track.poses[0].root_position.y(), before.track.poses[0].root_position.y() + 1,
+  EXPECT_NEAR(after.track.pose(0).root_position.y(), before.track.pose(0).root_position.y() + 1,
               1e-9);
   ASSERT_EQ(after.bone_scales.size(), 3u);
   EXPECT_EQ(after.bone_scales[2], 1.25);
   for (size_t j = 1; j < 3; ++j) {
-    EXPECT_LT(after.track.poses[2].rotations[j].angularDistance(Eigen::Quaterniond::Identity()),
+    EXPECT_LT(after.track.pose(2).rotations[j].angularDistance(Eigen::Quaterniond::Identity()),
               1e-6);
   }
 }

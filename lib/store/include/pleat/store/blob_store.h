@@ -46,7 +46,4 @@ class BlobStore {
   uint64_t reserve_bytes_;
 };
 
-// True for 64 lower-case hexadecimal digits: nothing else may become a file name.
-bool IsContentId(std::string_view id);
-
 }  // namespace pleat
