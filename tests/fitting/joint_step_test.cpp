@@ -16,9 +16,8 @@ class JointStepTest : public testing::Test {
     const SubtreeMoments subtree = ComputeSubtreeMoments(moments_, skeleton());
     for (int t = 0; t < kNumFrames; ++t) {
       const FrameMoments frame = ComputeFrameMoments(figure_.rig, moments_, sequence_.frame(t));
-      systems_.push_back(
-          ComputeJointSystem(moments_, subtree, skeleton(), frame,
-                             ToChainPose(skeleton(), track_.pose(t), frame.center)));
+      systems_.push_back(ComputeJointSystem(moments_, subtree, skeleton(), frame,
+                                            ToChainPose(skeleton(), track_.pose(t), frame.center)));
     }
     Random random(5);
     displaced_ = skeleton().RestPositions();
@@ -98,13 +97,12 @@ TEST_F(JointStepTest, LockedJointsStayExactlyAndTheOthersAreStillSolved) {
 }
 
 TEST_F(JointStepTest, MotionThatBendsNothingMovesNoJoint) {
-  PoseTrack still = track_;
-  for (auto& pose : still.poses) pose = Pose::Rest(skeleton());
+  const PoseTrack still = PoseTrack::FromValid({.poses = {Pose::Rest(skeleton())}});
   const MeshSequence sequence = MakeSkinnedSequence(figure_, still);
   const FrameMoments frame = ComputeFrameMoments(figure_.rig, moments_, sequence.frame(0));
   const JointSystem system =
       ComputeJointSystem(moments_, ComputeSubtreeMoments(moments_, skeleton()), skeleton(), frame,
-                         ToChainPose(skeleton(), still.poses[0], frame.center));
+                         ToChainPose(skeleton(), still.poses()[0], frame.center));
   EXPECT_LT(system.matrix.cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT((SolveJoints({system}, moments_, skeleton(), displaced_, 1e-3, {}) - displaced_)
                 .cwiseAbs()

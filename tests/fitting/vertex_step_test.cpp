@@ -16,7 +16,7 @@ class VertexStepTest : public testing::Test {
     for (int t = 0; t < kNumFrames; ++t) {
       frames_.push_back(t);
       centers_.push_back(sequence_.FrameAsDouble(t).rowwise().mean());
-      poses_.push_back(ToChainPose(figure_.rig.skeleton, track_.poses[t], centers_.back()));
+      poses_.push_back(ToChainPose(figure_.rig.skeleton, track_.poses()[t], centers_.back()));
     }
     moments_ =
         ComputeVertexMoments(sequence_, frames_, poses_, centers_, figure_.rig, 1, {}).value();
