@@ -208,7 +208,7 @@ TEST(PoseEvaluatorTest, ASkinnedClipIsItsFramesWithoutDetail) {
               IsOk());
   ASSERT_EQ(static_cast<int>(frames.size()), TrainingTrack().num_frames());
   EvaluatedFrame expected;
-  ASSERT_THAT(evaluator.EvaluateSkinned(TrainingTrack().poses[3], {}, &expected), IsOk());
+  ASSERT_THAT(evaluator.EvaluateSkinned(TrainingTrack().pose(3), {}, &expected), IsOk());
   EXPECT_EQ(frames[3], expected.positions);
 }
 

@@ -24,7 +24,7 @@ class TubeFiles {
 
   TubeFiles() {
     EXPECT_THAT(WriteSequenceFile(sequence_path(), clip_), IsOk());
-    EXPECT_THAT(WriteModelFile(model_path(), *model_), IsOk());
+    EXPECT_THAT(WriteFile(model_path(), EncodeModel(*model_)), IsOk());
     EXPECT_THAT(WriteMotion(motion_path(), model_->skeleton(),
                             MakeMotion(model_->skeleton(), kNumMotionFrames)),
                 IsOk());

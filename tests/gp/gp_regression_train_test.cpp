@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pleat/gp/gp_regression.h"
+#include "support/gp_predictions.h"
 #include "support/random_data.h"
 #include "support/status_matchers.h"
 
@@ -37,8 +38,10 @@ TEST(GpRegressionTrainTest, ScaledInputsAndOutputsGiveTheScaledFunction) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression scaled, GpRegression::Train(1000 * x, 7 * y));
   Eigen::MatrixXd means, scaled_means;
   Eigen::VectorXd variances, scaled_variances;
-  gp.PredictBatch(queries, &means, &variances);
-  scaled.PredictBatch(1000 * queries, &scaled_means, &scaled_variances);
+  means = PredictRows(gp, queries).means;
+  variances = PredictRows(gp, queries).variances;
+  scaled_means = PredictRows(scaled, 1000 * queries).means;
+  scaled_variances = PredictRows(scaled, 1000 * queries).variances;
   EXPECT_LT((scaled_means / 7 - means).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LT((scaled_variances / 49 - variances).cwiseAbs().maxCoeff(), 1e-4);
 }
@@ -82,7 +85,7 @@ TEST(GpRegressionTrainTest, ManyRowsAreKeptThroughAFewInducingOnes) {
   EXPECT_EQ(gp.num_rows(), 60);
   Eigen::MatrixXd means;
   const Eigen::MatrixXd queries = .7 * RandomMatrix(50, 2, 3);
-  gp.PredictBatch(queries, &means, nullptr);
+  means = PredictRows(gp, queries).means;
   EXPECT_LT((means - SmoothOutputs(queries)).cwiseAbs().maxCoeff(), .05);
 }
 
@@ -106,7 +109,7 @@ TEST(GpRegressionTrainTest, ConstantOutputsAndOneRowAreLearned) {
       const GpRegression gp,
       GpRegression::Train(RandomMatrix(20, 2, 1), Eigen::MatrixXd::Constant(20, 1, 3)));
   Eigen::MatrixXd means;
-  gp.PredictBatch(RandomMatrix(5, 2, 2), &means, nullptr);
+  means = PredictRows(gp, RandomMatrix(5, 2, 2)).means;
   EXPECT_LT((means.array() - 3).abs().maxCoeff(), 1e-9);
   EXPECT_THAT(GpRegression::Train(RandomMatrix(1, 2, 1), RandomMatrix(1, 1, 2)), IsOk());
 }

@@ -79,16 +79,9 @@ using ConsumeFrame = std::function<absl::Status(int t, const EvaluatedFrame& fra
 absl::Status EvaluateHere(std::shared_ptr<const CharacterModel> model, const ClipQuery& query,
                           const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
-  if (!query.skinned_only) {
-    return evaluator.EvaluateClip(query.track, query.bone_scales, consume);
-  }
-  EvaluatedFrame frame;
-  for (int t = 0; t < query.track.num_frames(); ++t) {
-    PLEAT_RETURN_IF_ERROR(
-        evaluator.EvaluateSkinned(query.track.pose(t), query.bone_scales, &frame));
-    PLEAT_RETURN_IF_ERROR(consume(t, frame));
-  }
-  return absl::OkStatus();
+  return query.skinned_only
+             ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
+             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }
 
 void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, int num_vertices,

@@ -13,8 +13,10 @@
 namespace pleat {
 
 absl::StatusOr<RigFile> JobRunner::DecodeUserRig(const std::string& text) const {
-  return DecodeRigJson(text, {.max_bytes = static_cast<uint64_t>(files_->limits().max_rig_bytes),
-                              .max_vertices = files_->limits().max_vertices});
+  MeshLimits limits;
+  limits.max_document_bytes = static_cast<uint64_t>(files_->limits().max_rig_bytes);
+  limits.max_vertices = files_->limits().max_vertices;
+  return DecodeRigJson(text, limits);
 }
 
 absl::StatusOr<JobOutcome> JobRunner::Run(const JobInfo& job, const Progress& progress) const {

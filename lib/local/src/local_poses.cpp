@@ -22,14 +22,9 @@ absl::Status LocalPoses::EvaluateClip(
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
                          models_->Acquire(query.model_id));
   PoseEvaluator evaluator(std::move(model));
-  if (!query.skinned_only) return evaluator.EvaluateClip(query.track, query.bone_scales, consume);
-  EvaluatedFrame frame;
-  for (int t = 0; t < query.track.num_frames(); ++t) {
-    PLEAT_RETURN_IF_ERROR(
-        evaluator.EvaluateSkinned(query.track.pose(t), query.bone_scales, &frame));
-    PLEAT_RETURN_IF_ERROR(consume(t, frame));
-  }
-  return absl::OkStatus();
+  return query.skinned_only
+             ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
+             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }
 
 absl::StatusOr<std::unique_ptr<PoseSession>> LocalPoses::OpenSession(const std::string& model_id,

@@ -11,7 +11,7 @@
 namespace pleat {
 namespace {
 
-MeshFileLimits FileLimits(const ServiceLimits& limits) {
+MeshLimits FileLimits(const ServiceLimits& limits) {
   const auto max_bytes = static_cast<uint64_t>(limits.max_upload_bytes);
   return {.max_file_bytes = max_bytes,
           .max_vertices = limits.max_vertices,
