@@ -48,21 +48,6 @@ void LocalCharacterService::Shutdown() { jobs_->Shutdown(); }
 
 // --- stored files ---
 
-absl::Status LocalCharacterService::AddEntry(EntryKind kind, const std::string& id,
-                                             std::string record,
-                                             const std::function<absl::Status()>& place_file) {
-  std::lock_guard lock(content_mutex_);
-  PLEAT_RETURN_IF_ERROR(place_file());
-  return store_->catalogue().Put(kind, {id, std::move(record), 0});
-}
-
-absl::Status LocalCharacterService::DeleteEntry(EntryKind kind, const std::string& id) {
-  std::lock_guard lock(content_mutex_);
-  // Row first: a file without row is removed at the next start, a row without file is an error.
-  PLEAT_RETURN_IF_ERROR(store_->catalogue().Delete(kind, id));
-  return store_->blobs().Delete(id);
-}
-
 absl::StatusOr<std::string> LocalCharacterService::ReadStoredBytes(EntryKind kind,
                                                                    const std::string& id,
                                                                    uint64_t offset,
@@ -96,7 +81,7 @@ absl::StatusOr<std::vector<ModelInfo>> LocalCharacterService::ListModels() {
 }
 
 absl::Status LocalCharacterService::DeleteModel(const std::string& id) {
-  PLEAT_RETURN_IF_ERROR(DeleteEntry(EntryKind::kModel, id));
+  PLEAT_RETURN_IF_ERROR(store_->Delete(EntryKind::kModel, id));
   cache_.Erase(id);
   return absl::OkStatus();
 }

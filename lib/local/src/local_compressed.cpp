@@ -63,8 +63,8 @@ absl::StatusOr<CompressedSequenceInfo> LocalCharacterService::FinishCompressedUp
     return decoder.status();
   }
   CompressedSequenceInfo info = MakeInfo(*decoder, upload->id(), size_bytes);
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kCompressedSequence, info.id, EncodeRecord(info),
-                                 [&] { return upload->MoveTo(&store_->blobs()); }));
+  PLEAT_RETURN_IF_ERROR(
+      store_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload));
   return info;
 }
 
@@ -79,7 +79,7 @@ LocalCharacterService::ListCompressedSequences() {
 }
 
 absl::Status LocalCharacterService::DeleteCompressedSequence(const std::string& id) {
-  return DeleteEntry(EntryKind::kCompressedSequence, id);
+  return store_->Delete(EntryKind::kCompressedSequence, id);
 }
 
 absl::StatusOr<std::string> LocalCharacterService::DownloadCompressedSequence(

@@ -11,7 +11,7 @@
 #include "pleat/formats/model_file.h"
 #include "pleat/local/compression.h"
 #include "pleat/local/local_character_service.h"
-#include "pleat/wire/stored_records.h"
+#include "pleat/store/records.h"
 
 namespace pleat {
 namespace {
@@ -49,7 +49,7 @@ absl::Status LocalCharacterService::RestoreJobs() {
                          store_->catalogue().List(EntryKind::kRig));
   for (const CatalogueEntry& rig : rigs) {
     if (needed_rigs.contains(rig.id)) continue;
-    PLEAT_RETURN_IF_ERROR(DeleteEntry(EntryKind::kRig, rig.id));
+    PLEAT_RETURN_IF_ERROR(store_->Delete(EntryKind::kRig, rig.id));
   }
   jobs_->Restore(std::move(jobs));
   return absl::OkStatus();
@@ -75,8 +75,7 @@ absl::StatusOr<JobInfo> LocalCharacterService::CreateTrainingJob(const TrainingR
     PLEAT_ASSIGN_OR_RETURN(const RigFile rig, DecodeUserRig(request.rig));
     PLEAT_RETURN_IF_ERROR(CheckRigCounts(rig, clips[0]));
     draft.rig_id = ToHex(ComputeSha256(request.rig));
-    PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kRig, draft.rig_id, "",
-                                   [&] { return store_->blobs().Put(request.rig).status(); }));
+    PLEAT_RETURN_IF_ERROR(store_->Add(EntryKind::kRig, {draft.rig_id, ""}, request.rig));
   }
   return jobs_->Create(std::move(draft));
 }
@@ -137,8 +136,7 @@ absl::StatusOr<JobOutcome> LocalCharacterService::Train(const JobInfo& job,
   PLEAT_RETURN_IF_ERROR(progress.Stage("store", .98, 1).Report(0));
   const std::string bytes = EncodeModel(*model);
   const ModelInfo info = MakeModelInfo(*model, ModelId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kModel, info.id, EncodeRecord(info),
-                                 [&] { return store_->blobs().Put(bytes).status(); }));
+  PLEAT_RETURN_IF_ERROR(store_->Add(EntryKind::kModel, {info.id, EncodeRecord(info)}, bytes));
   return JobOutcome{info.id, model->record().warnings};
 }
 
@@ -161,8 +159,8 @@ absl::StatusOr<JobOutcome> LocalCharacterService::Compress(const JobInfo& job,
                                  .size_bytes = compressed.bytes.size(),
                                  .record = std::move(compressed.record)};
   info.record->sequence_id = sequence_id;
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kCompressedSequence, info.id, EncodeRecord(info),
-                                 [&] { return store_->blobs().Put(compressed.bytes).status(); }));
+  PLEAT_RETURN_IF_ERROR(
+      store_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, compressed.bytes));
   return JobOutcome{info.id, {}};
 }
 

@@ -47,8 +47,7 @@ absl::StatusOr<SequenceInfo> LocalCharacterService::UploadSequence(const MeshSeq
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
   SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kSequence, info.id, EncodeRecord(info),
-                                 [&] { return store_->blobs().Put(bytes).status(); }));
+  PLEAT_RETURN_IF_ERROR(store_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes));
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
   return info;
 }
@@ -62,7 +61,7 @@ absl::StatusOr<std::vector<SequenceInfo>> LocalCharacterService::ListSequences()
 }
 
 absl::Status LocalCharacterService::DeleteSequence(const std::string& id) {
-  return DeleteEntry(EntryKind::kSequence, id);
+  return store_->Delete(EntryKind::kSequence, id);
 }
 
 absl::StatusOr<UploadStatus> LocalCharacterService::QueryUpload(const std::string& id) {
@@ -104,8 +103,7 @@ absl::StatusOr<SequenceInfo> LocalCharacterService::FinishUpload(Upload* upload)
     return status;
   }
   SequenceInfo info = MakeSequenceInfo(*sequence, upload->id(), bytes.size());
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kSequence, info.id, EncodeRecord(info),
-                                 [&] { return upload->MoveTo(&store_->blobs()); }));
+  PLEAT_RETURN_IF_ERROR(store_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, upload));
   return info;
 }
 

@@ -5,9 +5,9 @@
 #include "check_count.h"
 #include "clip_info.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 

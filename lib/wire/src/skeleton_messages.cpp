@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
-#include "pleat/wire/utf8.h"
+#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {
@@ -37,14 +37,6 @@ absl::StatusOr<Eigen::Quaterniond> FromProto(const v1::Quaternion& message,
 }
 
 }  // namespace
-
-absl::Status CheckContentId(const std::string& id, absl::string_view what) {
-  bool good = id.size() == kIdLength;
-  for (const char c : id) good = good && ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'));
-  if (good) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(what, " must be 64 lower-case hexadecimal digits"));
-}
 
 absl::Status CheckName(const std::string& name, absl::string_view what) {
   if (name.size() <= kMaxWireNameBytes) return absl::OkStatus();

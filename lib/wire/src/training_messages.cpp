@@ -3,8 +3,8 @@
 #include <string>
 
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 

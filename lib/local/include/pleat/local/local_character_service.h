@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -144,19 +143,14 @@ class LocalCharacterService final : public CharacterService {
                                    const Progress& progress);
   absl::StatusOr<JobOutcome> Compress(const JobInfo& job, CompressOptions options,
                                       const Progress& progress);
-  // `place_file` puts the file into the blob store.
-  absl::Status AddEntry(EntryKind kind, const std::string& id, std::string record,
-                        const std::function<absl::Status()>& place_file);
   absl::StatusOr<std::string> Download(EntryKind kind, const std::string& id, uint64_t size_bytes,
                                        const Progress& progress);
-  absl::Status DeleteEntry(EntryKind kind, const std::string& id);
 
   const LocalServiceOptions options_;
   std::unique_ptr<Store> store_;
   ByteCache<CharacterModel> cache_;
   MemoryBudget decode_memory_;
   EncoderPool encoders_;
-  std::mutex content_mutex_;  // file and row appear and go together
   std::unique_ptr<JobManager> jobs_;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/base/content_id.h"
 #include "pleat/mesh/error_metrics.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/skeleton/pose.h"
@@ -18,10 +19,7 @@ namespace pleat {
 
 inline constexpr int kMaxWireJoints = 1024;
 inline constexpr int kMaxWireNameBytes = 256;
-inline constexpr int kIdLength = 64;  // hexadecimal digits of a content id
 
-// OK when `id` is 64 lower-case hexadecimal digits: nothing else may reach a file name.
-absl::Status CheckContentId(const std::string& id, absl::string_view what);
 // OK when `name` is at most kMaxWireNameBytes bytes.
 absl::Status CheckName(const std::string& name, absl::string_view what);
 
