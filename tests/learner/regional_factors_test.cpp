@@ -51,10 +51,10 @@ TEST(RegionalFactorsTest, AreTheKernelsOfAllRegionsOnEveryProcessor) {
         EXPECT_NEAR(expected[r * num_rows + n], ExpectedFactor(p, r, n, row), 1e-6);
       }
     }
-    for (const RegionalFactors::Function compute : RegionalFactors::Usable()) {
+    for (const auto& [set, compute] : RegionalFactors::Variants()) {
       Eigen::VectorXf values(3 * num_rows);
       compute(factors, row.data(), scratch.data(), values.data());
-      EXPECT_EQ(values, expected);
+      EXPECT_EQ(values, expected) << NameOf(set);
     }
   }
 }

@@ -12,18 +12,6 @@
 namespace pleat {
 namespace {
 
-// All kernels that this processor can run.
-std::vector<const DenseOps*> RunnableOps() {
-  std::vector<const DenseOps*> all = {BaselineDenseOps()};
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && Avx2DenseOps()) {
-    all.push_back(Avx2DenseOps());
-  }
-  if (__builtin_cpu_supports("avx512f") && Avx512DenseOps()) all.push_back(Avx512DenseOps());
-#endif
-  return all;
-}
-
 Eigen::MatrixXd Lower(const Eigen::MatrixXd& m) { return m.triangularView<Eigen::Lower>(); }
 
 Eigen::MatrixXd RandomPositiveDefinite(int n) {
@@ -37,17 +25,17 @@ class DenseTest : public ::testing::TestWithParam<int> {};
 TEST_P(DenseTest, FactorsAndInverts) {
   const int n = GetParam();
   const Eigen::MatrixXd k = RandomPositiveDefinite(n);
-  for (const DenseOps* ops : RunnableOps()) {
+  for (const auto& [set, ops] : DenseVariants()) {
     DenseSolver solver(*ops);
     Eigen::MatrixXd factor = k, inverse_factor, inverse, none;
-    ASSERT_TRUE(solver.FactorAndInvert(factor, inverse_factor)) << ops->name;
+    ASSERT_TRUE(solver.FactorAndInvert(factor, inverse_factor)) << NameOf(set);
     EXPECT_LT((Lower(factor) * Lower(factor).transpose() - k).norm(), 1e-12 * k.norm());
     EXPECT_LT((inverse_factor * Lower(factor) - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-11);
     EXPECT_EQ((inverse_factor - Lower(inverse_factor)).norm(), 0);
     solver.Whiten(inverse_factor, Eigen::MatrixXd(n, 0), false);
     solver.Gradient(inverse_factor, 1, none, inverse);
     const Eigen::MatrixXd full = inverse.selfadjointView<Eigen::Lower>();
-    EXPECT_LT((full * k - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10) << ops->name;
+    EXPECT_LT((full * k - Eigen::MatrixXd::Identity(n, n)).norm(), 1e-10) << NameOf(set);
   }
 }
 
@@ -55,7 +43,7 @@ TEST_P(DenseTest, MultipliesByTriangles) {
   const int n = GetParam();
   const Eigen::MatrixXd w = Lower(RandomMatrix(n, n, 1));
   const Eigen::MatrixXd wide = RandomMatrix(n, 7, 2);
-  for (const DenseOps* ops : RunnableOps()) {
+  for (const auto& [set, ops] : DenseVariants()) {
     DenseSolver solver(*ops);
     Eigen::MatrixXd h;
     solver.MultiplyByFactor(w, false, wide, h);
@@ -64,7 +52,7 @@ TEST_P(DenseTest, MultipliesByTriangles) {
     EXPECT_LT((h - w.transpose() * wide).norm(), 1e-12 * n * n);
     Eigen::MatrixXd s;
     solver.OuterProduct(wide, s);
-    EXPECT_LT((Lower(s) - Lower(wide * wide.transpose())).norm(), 1e-12 * n * n) << ops->name;
+    EXPECT_LT((Lower(s) - Lower(wide * wide.transpose())).norm(), 1e-12 * n * n) << NameOf(set);
   }
 }
 
@@ -74,18 +62,18 @@ TEST_P(DenseTest, GradientsAgreeWithEigen) {
   const Eigen::MatrixXd k = RandomPositiveDefinite(n);
   const Eigen::MatrixXd inverse = k.inverse();
   const Eigen::MatrixXd square = Lower(RandomMatrix(n, n, 3)), narrow = RandomMatrix(n, 5, 8);
-  for (const DenseOps* ops : RunnableOps()) {
+  for (const auto& [set, ops] : DenseVariants()) {
     DenseSolver solver(*ops);
     Eigen::MatrixXd factor = k, w, solution, gradient;
     ASSERT_TRUE(solver.FactorAndInvert(factor, w));
     for (const Eigen::MatrixXd& f : {square, narrow}) {
       const Eigen::MatrixXd truth = 9 * inverse - inverse * f * f.transpose() * inverse;
       const double trace = (inverse * f).cwiseProduct(f).sum();
-      EXPECT_NEAR(solver.Whiten(w, f, f.cols() == n), trace, 1e-10 * (1 + trace)) << ops->name;
+      EXPECT_NEAR(solver.Whiten(w, f, f.cols() == n), trace, 1e-10 * (1 + trace)) << NameOf(set);
       solver.Gradient(w, 9, solution, gradient);
-      EXPECT_LT((Lower(gradient) - Lower(truth)).norm(), 1e-10 * (1 + truth.norm())) << ops->name;
+      EXPECT_LT((Lower(gradient) - Lower(truth)).norm(), 1e-10 * (1 + truth.norm())) << NameOf(set);
     }
-    EXPECT_LT((solution - inverse * narrow).norm(), 1e-10 * (1 + solution.norm())) << ops->name;
+    EXPECT_LT((solution - inverse * narrow).norm(), 1e-10 * (1 + solution.norm())) << NameOf(set);
   }
 }
 
@@ -98,7 +86,7 @@ TEST_P(DenseTest, SweepsAgreeWithEigen) {
   }
   const Eigen::MatrixXd rbf = 1.5 * (-.35 * truth.array()).exp();
   const Eigen::MatrixXd t = x * x.transpose(), q0 = RandomMatrix(n, n, 6);
-  for (const DenseOps* ops : RunnableOps()) {
+  for (const auto& [set, ops] : DenseVariants()) {
     Eigen::MatrixXd r(n, n), k(n, n), q = q0, p(n, n);
     ops->squared_distances(x.data(), n, 3, r.data());
     EXPECT_LT((Lower(r) - Lower(truth)).norm(), 1e-12 * n);
@@ -115,7 +103,7 @@ TEST_P(DenseTest, SweepsAgreeWithEigen) {
     EXPECT_NEAR(sums.distance, a.cwiseProduct(rbf).cwiseProduct(truth).sum(), scale);
     EXPECT_NEAR(sums.linear, a.cwiseProduct(t).sum(), 10 * scale);
     EXPECT_LT((Lower(q) - lower).norm(), scale);
-    EXPECT_LT((Lower(p) - Lower(a.cwiseProduct(rbf))).norm(), scale) << ops->name;
+    EXPECT_LT((Lower(p) - Lower(a.cwiseProduct(rbf))).norm(), scale) << NameOf(set);
     Eigen::MatrixXd in_place = q0;
     const GramSums same =
         ops->gram_gradient(in_place.data(), r.data(), t.data(), n, .7, 1.5, .5, in_place.data());
@@ -127,7 +115,7 @@ TEST_P(DenseTest, SweepsAgreeWithEigen) {
 INSTANTIATE_TEST_SUITE_P(Sizes, DenseTest, ::testing::Values(1, 2, 7, 24, 25, 48, 97, 200, 301));
 
 TEST(DenseOpsTest, ExponentialIsAccurate) {
-  for (const DenseOps* ops : RunnableOps()) {
+  for (const auto& [set, ops] : DenseVariants()) {
     std::vector<double> values;
     for (double x = -50; x <= 0; x += .0137) values.push_back(x);
     values.push_back(0);
@@ -135,7 +123,7 @@ TEST(DenseOpsTest, ExponentialIsAccurate) {
     std::vector<double> result = values;
     ops->exp_in_place(result.data(), static_cast<ptrdiff_t>(result.size()));
     for (size_t i = 0; i < values.size(); ++i) {
-      EXPECT_NEAR(result[i] / std::exp(values[i]), 1, 1e-15) << values[i] << " " << ops->name;
+      EXPECT_NEAR(result[i] / std::exp(values[i]), 1, 1e-15) << values[i] << " " << NameOf(set);
     }
     double tiny[3] = {-1e4, -1e300, -std::numeric_limits<double>::infinity()};
     ops->exp_in_place(tiny, 3);
@@ -145,16 +133,19 @@ TEST(DenseOpsTest, ExponentialIsAccurate) {
 
 // The promise of dense.h: register width does not change a bit.
 TEST(DenseOpsTest, KernelsWithFmaGiveTheSameBits) {
-  const auto all = RunnableOps();
-  if (all.size() < 3) GTEST_SKIP() << "this processor has only one set of kernels with FMA";
+  std::vector<const DenseOps*> all;
+  for (const auto& [set, ops] : DenseVariants()) {
+    if (set != InstructionSet::kBaseline) all.push_back(ops);
+  }
+  if (all.size() < 2) GTEST_SKIP() << "this processor has only one set of kernels with FMA";
   const int n = 299;  // longer than a chunk of a sum, and not a multiple of anything
   const Eigen::MatrixXd x = RandomMatrix(n, 5, 4), f = Lower(RandomMatrix(n, n, 3));
   std::vector<Eigen::MatrixXd> first;
-  for (size_t i = 1; i < all.size(); ++i) {
-    DenseSolver solver(*all[i]);
+  for (const DenseOps* ops : all) {
+    DenseSolver solver(*ops);
     Eigen::MatrixXd r(n, n), k(n, n), w, solution, gradient, p(n, n), y;
-    all[i]->squared_distances(x.data(), n, 5, r.data());
-    all[i]->kernel(r.data(), nullptr, n, .7, 1.5, .2, 0, k.data());
+    ops->squared_distances(x.data(), n, 5, r.data());
+    ops->kernel(r.data(), nullptr, n, .7, 1.5, .2, 0, k.data());
     k.diagonal().array() += 1e-2;
     ASSERT_TRUE(solver.FactorAndInvert(k, w));
     std::vector<Eigen::MatrixXd> results = {Lower(r), Lower(k), w};
@@ -162,7 +153,7 @@ TEST(DenseOpsTest, KernelsWithFmaGiveTheSameBits) {
       const double trace = solver.Whiten(w, factor, factor.cols() == n);
       solver.Gradient(w, 7, solution, gradient);
       const GramSums sums =
-          all[i]->gram_gradient(gradient.data(), r.data(), nullptr, n, .7, 1.5, .5, p.data());
+          ops->gram_gradient(gradient.data(), r.data(), nullptr, n, .7, 1.5, .5, p.data());
       solver.SymmetricMultiply(p, x, y);
       for (const double value : {trace, sums.trace, sums.total, sums.amplitude, sums.distance}) {
         results.push_back(Eigen::MatrixXd::Constant(1, 1, value));

@@ -27,13 +27,13 @@ void CompareKernels(Scalar tolerance) {
     }
     AddWeightedRows(factor_pointers, rows.data(), 40, num_cols, sum_pointers);
     EXPECT_LT((expected - reference).cwiseAbs().maxCoeff(), tolerance);
-    for (const WeightedRowsKernel<Scalar>* kernel : UsableWeightedRows<Scalar>()) {
+    for (const auto& [set, kernel] : WeightedRowsVariants<Scalar>()) {
       for (int count = 1; count <= kMaxWeightedTogether; ++count) {
         Matrix sums = start.leftCols(count);
         for (int q = 0; q < count; ++q) sum_pointers[q] = sums.col(q).data();
-        kernel->add[count - 1](factor_pointers.data(), rows.data(), 40, num_cols,
-                               sum_pointers.data());
-        EXPECT_EQ(sums, expected.leftCols(count));
+        kernel.add[count - 1](factor_pointers.data(), rows.data(), 40, num_cols,
+                              sum_pointers.data());
+        EXPECT_EQ(sums, expected.leftCols(count)) << NameOf(set);
       }
     }
   }

@@ -18,8 +18,8 @@ namespace {
 class FrameSkinningTest : public ::testing::Test {
  protected:
   FrameSkinningTest() {
-    ComputeBoneTransforms(figure_.rig.skeleton,
-                          MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5], {}, &transforms_);
+    ComputeBoneTransforms(figure_.rig.skeleton, MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5),
+                          {}, &transforms_);
     skinning_.SetMotions(transforms_, transforms_.rotation, &motions_);
     details_.resize(3 * num_blocks_ * kSkinningLanes);
     for (size_t i = 0; i < details_.size(); ++i) {
@@ -56,11 +56,12 @@ class FrameSkinningTest : public ::testing::Test {
       for (const bool with_tables : {true, false}) {
         BoneMotions motions = motions_;
         if (!with_tables) motions.tables.clear();
-        for (const SkinBlockFunction skin_block : UsableSkinBlocks()) {
+        for (const auto& [set, skin_block] : SkinBlockVariants()) {
           Eigen::Matrix3Xf positions(3, num_vertices());
           skinning_.SkinBlocksWith(skin_block, motions, 0, num_blocks_, details, &positions);
           EXPECT_EQ(
-              0, std::memcmp(positions.data(), expected.data(), positions.size() * sizeof(float)));
+              0, std::memcmp(positions.data(), expected.data(), positions.size() * sizeof(float)))
+              << NameOf(set);
         }
       }
     }

@@ -4,17 +4,20 @@
 #include <limits>
 #include <set>
 #include <type_traits>
+#include <utility>
 
 #include "pleat/base/random.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
+#include "support/option_choices.h"
 #include "support/status_matchers.h"
 #include "wire/message_samples.h"
 
 namespace pleat {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -25,10 +28,10 @@ Skeleton SmallSkeleton() {
 
 TrainOptions ChangedOptions() {
   TrainOptions options = TrainOptions::Paper();
-  options.learner = "gp";
-  options.rotations = "quaternion";
-  options.deformation = "full";
-  options.detail_coordinates = "differential";
+  options.learner = LearnerChoice::kGp;
+  options.rotations = RotationRepresentation::kQuaternion;
+  options.deformation = DetailBase::kRoot;
+  options.detail_coordinates = DetailCoordinates::kDifferential;
   options.history = 3;
   options.rest_frame = 17;
   options.yaw_degrees = 90.5;
@@ -58,22 +61,38 @@ TEST(MessagesTest, EveryTrainOptionCrossesTheWire) {
   v1::TrainOptions bad;
   bad.set_history(0);
   EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("history")));
-  bad.set_history(2);
-  bad.set_learner("magic");
-  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("learner")));
+}
+
+TEST(MessagesTest, ChoicesTravelByNameAndUnknownNamesAreRefused) {
+  const auto* descriptor = v1::TrainOptions::descriptor();
+  std::string last_option;
+  ForEachChoice(
+      [&](const std::string& option, const std::string& name, const TrainOptions& options) {
+        const v1::TrainOptions message = ToProto(options);
+        const auto* field = descriptor->FindFieldByName(option);
+        EXPECT_EQ(message.GetReflection()->GetString(message, field), name) << option;
+        PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions back, FromProto(Reparse(message)));
+        EXPECT_EQ(back, options) << option << " " << name;
+        if (std::exchange(last_option, option) == option) return;
+        for (const char* unknown : {"magic", ""}) {
+          v1::TrainOptions bad;
+          bad.GetReflection()->SetString(&bad, field, unknown);
+          EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument,
+                                                AllOf(HasSubstr(option), HasSubstr(name))));
+        }
+      });
 }
 
 TEST(MessagesTest, PosesAndTracksAreExact) {
   Random random(4);
   for (int round = 0; round < 20; ++round) {
-    PoseTrack track;
-    track.fps = random.Uniform(1, 120);
-    for (int t = 0; t < 7; ++t) track.poses.push_back(RandomPose(&random, 18));
-    track.clip_starts = {0, 3};
+    PoseTrack::Parts parts{.fps = random.Uniform(1, 120), .clip_starts = {0, 3}};
+    for (int t = 0; t < 7; ++t) parts.poses.push_back(RandomPose(&random, 18));
+    const PoseTrack track = PoseTrack::FromValid(std::move(parts));
     PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack back, FromProto(Reparse(ToProto(track))));
-    EXPECT_EQ(back.fps, track.fps);
-    EXPECT_EQ(back.clip_starts, track.clip_starts);
-    for (int t = 0; t < 7; ++t) EXPECT_TRUE(SamePose(back.poses[t], track.poses[t]));
+    EXPECT_EQ(back.fps(), track.fps());
+    EXPECT_EQ(back.clip_starts(), track.clip_starts());
+    for (int t = 0; t < 7; ++t) EXPECT_TRUE(SamePose(back.pose(t), track.pose(t)));
   }
 }
 
@@ -102,7 +121,7 @@ TEST(MessagesTest, HostilePosesAreRefused) {
   EXPECT_THAT(FromProto(track), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("empty")));
   *track.add_poses() = good;
   *track.add_poses() = good;
-  EXPECT_EQ(FromProto(track)->clip_starts, std::vector<int>{0});
+  EXPECT_EQ(FromProto(track)->clip_starts(), std::vector<int>{0});
   for (const std::vector<int>& starts :
        std::vector<std::vector<int>>{{1}, {0, 0}, {0, 2}, {0, -1}, {0, 1, 1}}) {
     track.clear_clip_starts();

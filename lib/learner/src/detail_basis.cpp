@@ -180,7 +180,7 @@ void DetailBasis::ExpandBlocks(std::span<const Query* const> queries, int first_
                                int num_blocks, std::span<float* const> details) const {
   assert(queries.size() == details.size() && first_block >= 0 &&
          first_block + num_blocks <= this->num_blocks());
-  const PlaneKernel& kernel = *UsablePlaneKernels().front();
+  const PlaneKernel& kernel = PlaneVariants().front().kernel;
   const size_t block_bytes = static_cast<size_t>(num_pairs()) * 2 * kBlockDetails;
   for (size_t begin = 0; begin < queries.size(); begin += kMaxTogether) {
     const size_t count = std::min<size_t>(kMaxTogether, queries.size() - begin);

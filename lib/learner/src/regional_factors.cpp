@@ -1,10 +1,8 @@
-// The same code is compiled for three instruction sets: it is inlined into each function.
 #include "regional_factors.h"
 
 #include <algorithm>
 #include <map>
 
-#include "pleat/simd/cpu_target.h"
 #include "pleat/simd/dense.h"
 
 namespace pleat {
@@ -73,19 +71,19 @@ size_t RegionalFactors::scratch_size() const {
   return kLanes * (2 * atom_ends_.size() + 2 * set_ends_.size() + scales_.size());
 }
 
-#define PLEAT_INLINE inline __attribute__((always_inline))
-
-struct RegionalFactorsKernels {
+// The kernel; a struct, so that it can be a friend.
+struct RegionalFactorsKernel {
   typedef double Lanes __attribute__((vector_size(64), aligned(8), may_alias));
   static constexpr ptrdiff_t kLanes = RegionalFactors::kLanes;
 
-  static PLEAT_INLINE Lanes& At(double* values, size_t i) {
+  static PLEAT_ALWAYS_INLINE Lanes& At(double* values, size_t i) {
     return *reinterpret_cast<Lanes*>(values + i * kLanes);
   }
 
   // Of the rows of one chunk: the exponents of all scales and the products of all sets.
-  static PLEAT_INLINE void Sums(const RegionalFactors& f, const double* inputs, const double* row,
-                                double* atoms, double* products, double* exponents) {
+  static PLEAT_ALWAYS_INLINE void Sums(const RegionalFactors& f, const double* inputs,
+                                       const double* row, double* atoms, double* products,
+                                       double* exponents) {
     size_t c = 0;
     for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
       Lanes distance = {}, product = {};
@@ -115,8 +113,8 @@ struct RegionalFactorsKernels {
   }
 
   // factors[r * num_rows + n] of the `count` rows n of one chunk.
-  static PLEAT_INLINE void Kernels(const RegionalFactors& f, double* products, double* rbfs,
-                                   ptrdiff_t count, float* factors) {
+  static PLEAT_ALWAYS_INLINE void Kernels(const RegionalFactors& f, double* products, double* rbfs,
+                                          ptrdiff_t count, float* factors) {
     size_t s = 0;
     for (const RegionalFactors::Region& region : f.regions_) {
       Lanes kernel = Lanes{} + region.bias;
@@ -129,8 +127,8 @@ struct RegionalFactorsKernels {
     }
   }
 
-  static PLEAT_INLINE void Compute(const RegionalFactors& f, const double* row, double* scratch,
-                                   float* factors) {
+  static PLEAT_ALWAYS_INLINE void Run(const RegionalFactors& f, const double* row, double* scratch,
+                                      float* factors) {
     double* atoms = scratch;
     double* products = atoms + 2 * kLanes * f.atom_ends_.size();
     double* exponents = products + 2 * kLanes * f.set_ends_.size();
@@ -145,43 +143,13 @@ struct RegionalFactorsKernels {
   }
 };
 
-namespace {
-
-void ComputeForAny(const RegionalFactors& f, const double* row, double* scratch, float* factors) {
-  RegionalFactorsKernels::Compute(f, row, scratch, factors);
-}
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void ComputeForAvx2(const RegionalFactors& f, const double* row,
-                                                    double* scratch, float* factors) {
-  RegionalFactorsKernels::Compute(f, row, scratch, factors);
-}
-PLEAT_TARGET_AVX512("avx512f")
-void ComputeForAvx512(const RegionalFactors& f, const double* row, double* scratch,
-                      float* factors) {
-  RegionalFactorsKernels::Compute(f, row, scratch, factors);
-}
-#endif
-
-std::vector<RegionalFactors::Function> FindUsable() {
-  std::vector<RegionalFactors::Function> usable;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) usable.push_back(ComputeForAvx512);
-  if (__builtin_cpu_supports("avx2")) usable.push_back(ComputeForAvx2);
-#endif
-  usable.push_back(ComputeForAny);
-  return usable;
-}
-
-}  // namespace
-
-std::span<const RegionalFactors::Function> RegionalFactors::Usable() {
-  static const std::vector<Function> usable = FindUsable();
-  return usable;
+const KernelVariants<RegionalFactors::Function>& RegionalFactors::Variants() {
+  static const auto variants = CompiledVariants<RegionalFactorsKernel>();
+  return variants;
 }
 
 void RegionalFactors::Compute(const double* row, double* scratch, float* factors) const {
-  Usable().front()(*this, row, scratch, factors);
+  Variants().front().kernel(*this, row, scratch, factors);
 }
 
 }  // namespace pleat

@@ -3,10 +3,10 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "pleat/learner/regional_gp.h"
+#include "pleat/simd/dispatch.h"
 
 namespace pleat {
 
@@ -28,7 +28,7 @@ class RegionalFactors {
   // Kernels this processor can run, the fastest first; all give the same bits.
   using Function = void (*)(const RegionalFactors& factors_of, const double* row, double* scratch,
                             float* factors);
-  static std::span<const Function> Usable();
+  static const KernelVariants<Function>& Variants();
 
   static constexpr ptrdiff_t kLanes = 8;  // rows of the training that are computed together
   struct Scale {
@@ -42,7 +42,7 @@ class RegionalFactors {
   };
 
  private:
-  friend struct RegionalFactorsKernels;
+  friend struct RegionalFactorsKernel;
 
   ptrdiff_t num_rows_ = 0;
   // By eight rows, in these by columns in the order of the atoms; zeros after the last row.

@@ -6,24 +6,18 @@
 namespace pleat {
 namespace {
 
-const DenseOps* Choose() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f") && Avx512DenseOps()) return Avx512DenseOps();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && Avx2DenseOps()) {
-    return Avx2DenseOps();
-  }
-#endif
-  return BaselineDenseOps();
-}
-
 DenseView LowerView(const double* data, ptrdiff_t ld) { return {data, 1, ld, DenseShape::kLower}; }
 
 }  // namespace
 
-const DenseOps& ChosenDenseOps() {
-  static const DenseOps* const ops = Choose();
-  return *ops;
+const KernelVariants<const DenseOps*>& DenseVariants() {
+  using enum InstructionSet;
+  static const auto variants = RunnableVariants<const DenseOps*>(
+      {{kAvx512, Avx512DenseOps()}, {kAvx2, Avx2DenseOps()}, {kBaseline, BaselineDenseOps()}});
+  return variants;
 }
+
+const DenseOps& ChosenDenseOps() { return *DenseVariants().front().kernel; }
 
 void PackedRows::Resize(const DenseOps& ops, DenseShape shape, ptrdiff_t rows, DenseChunk columns) {
   rows_ = rows;

@@ -6,7 +6,6 @@
 
 namespace pleat {
 namespace dense_avx2 {
-constexpr const char* kName = "avx2";
 constexpr ptrdiff_t kWidth = 4, kPanelRegisters = 3, kPanelColumns = 4;
 typedef double Register __attribute__((vector_size(32)));
 typedef double UnalignedRegister __attribute__((vector_size(32), aligned(8), may_alias));

@@ -6,7 +6,6 @@
 
 namespace pleat {
 namespace dense_avx512 {
-constexpr const char* kName = "avx512";
 constexpr ptrdiff_t kWidth = 8, kPanelRegisters = 3, kPanelColumns = 8;
 typedef double Register __attribute__((vector_size(64)));
 typedef double UnalignedRegister __attribute__((vector_size(64), aligned(8), may_alias));

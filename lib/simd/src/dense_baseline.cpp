@@ -3,7 +3,6 @@
 
 namespace pleat {
 namespace dense_baseline {
-constexpr const char* kName = "baseline";
 constexpr ptrdiff_t kWidth = 2, kPanelRegisters = 2, kPanelColumns = 4;
 typedef double Register __attribute__((vector_size(16)));
 typedef double UnalignedRegister __attribute__((vector_size(16), aligned(8), may_alias));

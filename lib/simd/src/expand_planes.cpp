@@ -1,7 +1,6 @@
 #include "pleat/simd/expand_planes.h"
 
 #include <cstring>
-#include <vector>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -36,14 +35,14 @@ void ExpandPortably(const int8_t* values, const float* mean, ptrdiff_t num_pairs
 }
 
 constexpr PlaneKernel kPortable = {
-    "portable", {ExpandPortably<1>, ExpandPortably<2>, ExpandPortably<3>, ExpandPortably<4>}};
+    {ExpandPortably<1>, ExpandPortably<2>, ExpandPortably<3>, ExpandPortably<4>}};
 
 #if defined(__x86_64__)
 
 template <int kQueries>
-__attribute__((target("avx2"))) void ExpandAvx2(const int8_t* values, const float* mean,
-                                                ptrdiff_t num_pairs, const int16_t* const* weights,
-                                                const float* units, float* const* details) {
+PLEAT_TARGET_AVX2 void ExpandAvx2(const int8_t* values, const float* mean, ptrdiff_t num_pairs,
+                                  const int16_t* const* weights, const float* units,
+                                  float* const* details) {
   // 16 rows at a time, so that all sums stay in registers.
   for (int begin = 0; begin < kPlaneRows; begin += 16) {
     __m256i sums[kQueries][2];
@@ -69,26 +68,23 @@ __attribute__((target("avx2"))) void ExpandAvx2(const int8_t* values, const floa
   }
 }
 
-constexpr PlaneKernel kAvx2 = {"avx2",
-                               {ExpandAvx2<1>, ExpandAvx2<2>, ExpandAvx2<3>, ExpandAvx2<4>}};
+constexpr PlaneKernel kForAvx2 = {{ExpandAvx2<1>, ExpandAvx2<2>, ExpandAvx2<3>, ExpandAvx2<4>}};
 
-#define PLEAT_AVX512 __attribute__((target("avx512bw")))
-#define PLEAT_VNNI __attribute__((target("avx512bw,avx512vnni")))
-
-PLEAT_AVX512 inline __m512i LoadPair(const int8_t* values) {
+PLEAT_TARGET_AVX512 inline __m512i LoadPair(const int8_t* values) {
   return _mm512_cvtepi8_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(values)));
 }
 
-PLEAT_AVX512 inline void StoreDetails(__m512i sums, float unit, const float* mean, float* details) {
+PLEAT_TARGET_AVX512 inline void StoreDetails(__m512i sums, float unit, const float* mean,
+                                             float* details) {
   // The plain conversion reads an undefined register, of which gcc 12 warns.
   const __m512 scaled = _mm512_mul_ps(_mm512_set1_ps(unit), _mm512_maskz_cvtepi32_ps(0xffff, sums));
   _mm512_storeu_ps(details, _mm512_add_ps(_mm512_loadu_ps(mean), scaled));
 }
 
 template <int kQueries>
-PLEAT_AVX512 void ExpandAvx512(const int8_t* values, const float* mean, ptrdiff_t num_pairs,
-                               const int16_t* const* weights, const float* units,
-                               float* const* details) {
+PLEAT_TARGET_AVX512 void ExpandAvx512(const int8_t* values, const float* mean, ptrdiff_t num_pairs,
+                                      const int16_t* const* weights, const float* units,
+                                      float* const* details) {
   __m512i sums[kQueries][3];
   for (auto& sum : sums) sum[0] = sum[1] = sum[2] = _mm512_setzero_si512();
   for (ptrdiff_t p = 0; p < num_pairs; ++p) {
@@ -107,15 +103,15 @@ PLEAT_AVX512 void ExpandAvx512(const int8_t* values, const float* mean, ptrdiff_
   }
 }
 
-constexpr PlaneKernel kAvx512 = {
-    "avx512", {ExpandAvx512<1>, ExpandAvx512<2>, ExpandAvx512<3>, ExpandAvx512<4>}};
+constexpr PlaneKernel kForAvx512 = {
+    {ExpandAvx512<1>, ExpandAvx512<2>, ExpandAvx512<3>, ExpandAvx512<4>}};
 
 // One instruction multiplies and adds, but five cycles pass until its sum can be added to: twelve
 // sums side by side, or six of one or two queries.
 template <int kQueries>
-PLEAT_VNNI void ExpandVnni(const int8_t* values, const float* mean, ptrdiff_t num_pairs,
-                           const int16_t* const* weights, const float* units,
-                           float* const* details) {
+PLEAT_TARGET_AVX512_VNNI void ExpandVnni(const int8_t* values, const float* mean,
+                                         ptrdiff_t num_pairs, const int16_t* const* weights,
+                                         const float* units, float* const* details) {
   __m512i sums[kQueries][3];
 #pragma GCC unroll 4
   for (auto& sum : sums) sum[0] = sum[1] = sum[2] = _mm512_setzero_si512();
@@ -139,29 +135,21 @@ PLEAT_VNNI void ExpandVnni(const int8_t* values, const float* mean, ptrdiff_t nu
   }
 }
 
-constexpr PlaneKernel kVnni = {"avx512vnni",
-                               {ExpandVnni<1>, ExpandVnni<2>, ExpandVnni<3>, ExpandVnni<4>}};
+constexpr PlaneKernel kForVnni = {{ExpandVnni<1>, ExpandVnni<2>, ExpandVnni<3>, ExpandVnni<4>}};
 
 #endif
-
-std::vector<const PlaneKernel*> FindUsable() {
-  std::vector<const PlaneKernel*> usable;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vnni")) {
-    usable.push_back(&kVnni);
-  }
-  if (__builtin_cpu_supports("avx512bw")) usable.push_back(&kAvx512);
-  if (__builtin_cpu_supports("avx2")) usable.push_back(&kAvx2);
-#endif
-  usable.push_back(&kPortable);
-  return usable;
-}
 
 }  // namespace
 
-std::span<const PlaneKernel* const> UsablePlaneKernels() {
-  static const std::vector<const PlaneKernel*> usable = FindUsable();
-  return usable;
+const KernelVariants<PlaneKernel>& PlaneVariants() {
+  using enum InstructionSet;
+  static const auto variants = RunnableVariants<PlaneKernel>({
+#if defined(__x86_64__)
+    {kAvx512Vnni, kForVnni}, {kAvx512, kForAvx512}, {kAvx2, kForAvx2},
+#endif
+        {kBaseline, kPortable},
+  });
+  return variants;
 }
 
 }  // namespace pleat

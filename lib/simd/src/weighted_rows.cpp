@@ -1,31 +1,35 @@
-// The same code is compiled for three instruction sets: it is inlined into each function.
 #include "pleat/simd/weighted_rows.h"
 
 #include <algorithm>
 #include <cstring>
-#include <vector>
-
-#include "pleat/simd/cpu_target.h"
 
 namespace pleat {
 namespace {
 
-typedef float FloatLanes __attribute__((vector_size(64)));
-typedef double DoubleLanes __attribute__((vector_size(64)));
+template <typename Scalar>
+struct LanesOf;
+template <>
+struct LanesOf<float> {
+  typedef float Type __attribute__((vector_size(64)));
+};
+template <>
+struct LanesOf<double> {
+  typedef double Type __attribute__((vector_size(64)));
+};
 
 // From any address: as a template argument a type would lose its alignment.
 template <typename Lanes, typename Scalar>
-inline __attribute__((always_inline)) void Load(const Scalar* from, Lanes* lanes) {
+PLEAT_ALWAYS_INLINE void Load(const Scalar* from, Lanes* lanes) {
   std::memcpy(lanes, from, sizeof(Lanes));
 }
 
 // The columns from `begin` on, in as many passes of kRegisters registers as fit; returns the first
 // column left.
-template <int kVectors, int kRegisters, typename Lanes, typename Scalar>
-inline __attribute__((always_inline)) ptrdiff_t AddColumns(const Scalar* const* factors,
-                                                           const Scalar* rows, ptrdiff_t num_rows,
-                                                           ptrdiff_t num_cols, ptrdiff_t begin,
-                                                           Scalar* const* sums) {
+template <int kVectors, int kRegisters, typename Scalar>
+PLEAT_ALWAYS_INLINE ptrdiff_t AddColumns(const Scalar* const* factors, const Scalar* rows,
+                                         ptrdiff_t num_rows, ptrdiff_t num_cols, ptrdiff_t begin,
+                                         Scalar* const* sums) {
+  using Lanes = typename LanesOf<Scalar>::Type;
   constexpr ptrdiff_t kLanes = sizeof(Lanes) / sizeof(Scalar);
   for (; begin + kLanes * kRegisters <= num_cols; begin += kLanes * kRegisters) {
     Lanes block[kVectors][kRegisters];
@@ -56,69 +60,33 @@ inline __attribute__((always_inline)) ptrdiff_t AddColumns(const Scalar* const* 
   return begin;
 }
 
-template <int kVectors, typename Lanes, typename Scalar>
-inline __attribute__((always_inline)) void Add(const Scalar* const* factors, const Scalar* rows,
-                                               ptrdiff_t num_rows, ptrdiff_t num_cols,
-                                               Scalar* const* sums) {
-  constexpr int kRegisters = kVectors == 1 ? 8 : 4;
-  ptrdiff_t begin =
-      AddColumns<kVectors, kRegisters, Lanes>(factors, rows, num_rows, num_cols, 0, sums);
-  begin = AddColumns<kVectors, 1, Lanes>(factors, rows, num_rows, num_cols, begin, sums);
-  for (int q = 0; q < kVectors; ++q) {
-    for (ptrdiff_t n = 0; n < num_rows; ++n) {
-      for (ptrdiff_t c = begin; c < num_cols; ++c) {
-        sums[q][c] += factors[q][n] * rows[n * num_cols + c];
+template <typename Scalar, int kVectors>
+struct AddRows {
+  static PLEAT_ALWAYS_INLINE void Run(const Scalar* const* factors, const Scalar* rows,
+                                      ptrdiff_t num_rows, ptrdiff_t num_cols, Scalar* const* sums) {
+    constexpr int kRegisters = kVectors == 1 ? 8 : 4;
+    ptrdiff_t begin = AddColumns<kVectors, kRegisters>(factors, rows, num_rows, num_cols, 0, sums);
+    begin = AddColumns<kVectors, 1>(factors, rows, num_rows, num_cols, begin, sums);
+    for (int q = 0; q < kVectors; ++q) {
+      for (ptrdiff_t n = 0; n < num_rows; ++n) {
+        for (ptrdiff_t c = begin; c < num_cols; ++c) {
+          sums[q][c] += factors[q][n] * rows[n * num_cols + c];
+        }
       }
     }
   }
-}
+};
 
-template <int kVectors, typename Lanes, typename Scalar>
-void AddForAny(const Scalar* const* factors, const Scalar* rows, ptrdiff_t num_rows,
-               ptrdiff_t num_cols, Scalar* const* sums) {
-  Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
-}
-
-#if defined(__x86_64__)
-template <int kVectors, typename Lanes, typename Scalar>
-__attribute__((target("avx2"))) void AddForAvx2(const Scalar* const* factors, const Scalar* rows,
-                                                ptrdiff_t num_rows, ptrdiff_t num_cols,
-                                                Scalar* const* sums) {
-  Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
-}
-
-template <int kVectors, typename Lanes, typename Scalar>
-PLEAT_TARGET_AVX512("avx512f")
-void AddForAvx512(const Scalar* const* factors, const Scalar* rows, ptrdiff_t num_rows,
-                  ptrdiff_t num_cols, Scalar* const* sums) {
-  Add<kVectors, Lanes>(factors, rows, num_rows, num_cols, sums);
-}
-#endif
-
-template <typename Scalar, typename Lanes>
-std::vector<const WeightedRowsKernel<Scalar>*> FindUsable() {
-  static constexpr WeightedRowsKernel<Scalar> kAny = {
-      {AddForAny<1, Lanes, Scalar>, AddForAny<2, Lanes, Scalar>, AddForAny<3, Lanes, Scalar>,
-       AddForAny<4, Lanes, Scalar>}};
-  std::vector<const WeightedRowsKernel<Scalar>*> usable;
-#if defined(__x86_64__)
-  static constexpr WeightedRowsKernel<Scalar> kAvx2 = {
-      {AddForAvx2<1, Lanes, Scalar>, AddForAvx2<2, Lanes, Scalar>, AddForAvx2<3, Lanes, Scalar>,
-       AddForAvx2<4, Lanes, Scalar>}};
-  static constexpr WeightedRowsKernel<Scalar> kAvx512 = {
-      {AddForAvx512<1, Lanes, Scalar>, AddForAvx512<2, Lanes, Scalar>,
-       AddForAvx512<3, Lanes, Scalar>, AddForAvx512<4, Lanes, Scalar>}};
-  if (__builtin_cpu_supports("avx512f")) usable.push_back(&kAvx512);
-  if (__builtin_cpu_supports("avx2")) usable.push_back(&kAvx2);
-#endif
-  usable.push_back(&kAny);
-  return usable;
+template <typename Scalar, InstructionSet kSet>
+constexpr WeightedRowsKernel<Scalar> KernelFor() {
+  return {{CompileFor<AddRows<Scalar, 1>, kSet>(), CompileFor<AddRows<Scalar, 2>, kSet>(),
+           CompileFor<AddRows<Scalar, 3>, kSet>(), CompileFor<AddRows<Scalar, 4>, kSet>()}};
 }
 
 template <typename Scalar>
 void AddAll(std::span<const Scalar* const> factors, const Scalar* rows, ptrdiff_t num_rows,
             ptrdiff_t num_cols, std::span<Scalar* const> sums) {
-  const WeightedRowsKernel<Scalar>& kernel = *UsableWeightedRows<Scalar>().front();
+  const WeightedRowsKernel<Scalar>& kernel = WeightedRowsVariants<Scalar>().front().kernel;
   for (size_t begin = 0; begin < factors.size(); begin += kMaxWeightedTogether) {
     const size_t count = std::min<size_t>(kMaxWeightedTogether, factors.size() - begin);
     kernel.add[count - 1](factors.data() + begin, rows, num_rows, num_cols, sums.data() + begin);
@@ -127,17 +95,18 @@ void AddAll(std::span<const Scalar* const> factors, const Scalar* rows, ptrdiff_
 
 }  // namespace
 
-template <>
-std::span<const WeightedRowsKernel<float>* const> UsableWeightedRows<float>() {
-  static const auto usable = FindUsable<float, FloatLanes>();
-  return usable;
+template <typename Scalar>
+const KernelVariants<WeightedRowsKernel<Scalar>>& WeightedRowsVariants() {
+  using enum InstructionSet;
+  static const auto variants =
+      RunnableVariants<WeightedRowsKernel<Scalar>>({{kAvx512, KernelFor<Scalar, kAvx512>()},
+                                                    {kAvx2, KernelFor<Scalar, kAvx2>()},
+                                                    {kBaseline, KernelFor<Scalar, kBaseline>()}});
+  return variants;
 }
 
-template <>
-std::span<const WeightedRowsKernel<double>* const> UsableWeightedRows<double>() {
-  static const auto usable = FindUsable<double, DoubleLanes>();
-  return usable;
-}
+template const KernelVariants<WeightedRowsKernel<float>>& WeightedRowsVariants<float>();
+template const KernelVariants<WeightedRowsKernel<double>>& WeightedRowsVariants<double>();
 
 void AddWeightedRows(std::span<const float* const> factors, const float* rows, ptrdiff_t num_rows,
                      ptrdiff_t num_cols, std::span<float* const> sums) {

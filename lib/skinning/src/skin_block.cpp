@@ -1,15 +1,11 @@
-// The same code is compiled for three instruction sets: everything is inlined into SkinBlockFor...
+// The same body is compiled for each instruction set. Each sum has one order, over the four
+// influences of a vertex, whatever the width of the registers; so all kernels give the same bits,
+// and a prediction does not depend on the machine.
 #include "skin_block.h"
-
-#include <vector>
 
 #if defined(__x86_64__)
 #include <immintrin.h>
-
-#include "pleat/simd/cpu_target.h"
 #endif
-
-#define PLEAT_INLINE inline __attribute__((always_inline))
 
 namespace pleat {
 namespace {
@@ -26,8 +22,8 @@ alignas(64) constexpr float kOnQuaternion[kParameters] = {0, 0, 0, 1, 0, 0, 0, 1
                                                           0, 0, 0, 1, 0, 0, 0, 1};
 
 // lanes[parameter][lane] = blended[lane][parameter], four by four.
-PLEAT_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
-                            float (&lanes)[kParameters][kLanes]) {
+PLEAT_ALWAYS_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
+                                   float (&lanes)[kParameters][kLanes]) {
   for (int lane = 0; lane < kLanes; lane += 4) {
     for (int parameter = 0; parameter < kParameters; parameter += 4) {
       const auto row = [&](int i) {
@@ -50,7 +46,7 @@ PLEAT_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
 }
 
 // m[parameter] = sum_k w_k (parameter of bone k), vertex by vertex.
-PLEAT_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m) {
+PLEAT_ALWAYS_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m) {
   alignas(64) float blended[kLanes][kParameters];
   alignas(64) float lanes[kParameters][kLanes];
   const FrameSkinning::Block& block = *inputs.block;
@@ -73,7 +69,7 @@ PLEAT_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m) {
 }
 
 // position[axis] += R(q) detail, q the normalized fourth row of `m`.
-PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* position) {
+PLEAT_ALWAYS_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* position) {
   const Sixteen squared = (m[3] * m[3] + m[7] * m[7]) + (m[11] * m[11] + m[15] * m[15]);
   // R(q) d = d + 2 / |q|^2 (w u + q x u), u = q x d: no root is needed.
   const Sixteen scale = 2.0f / squared;
@@ -98,7 +94,7 @@ PLEAT_INLINE void AddDetails(const Sixteen* m, const float* details, Sixteen* po
 }
 
 // position = [m] rest.
-PLEAT_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, Sixteen* position) {
+PLEAT_ALWAYS_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, Sixteen* position) {
   const auto* x = reinterpret_cast<const Sixteen*>(inputs.block->rest);
 #pragma GCC unroll 3
   for (int axis = 0; axis < 3; ++axis) {
@@ -106,31 +102,22 @@ PLEAT_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, Sixteen*
   }
 }
 
-PLEAT_INLINE void SkinVertices(const SkinBlockInputs& inputs, float* positions) {
-  Sixteen m[kParameters], position[3];
-  BlendVertices(inputs, m);
-  Move(m, inputs, position);
-  if (inputs.details != nullptr) AddDetails(m, inputs.details, position);
-  for (int lane = 0; lane < kLanes; ++lane) {
-    for (int axis = 0; axis < 3; ++axis) positions[3 * lane + axis] = position[axis][lane];
+struct SkinBlockBody {
+  static PLEAT_ALWAYS_INLINE void Run(const SkinBlockInputs& inputs, float* positions) {
+    Sixteen m[kParameters], position[3];
+    BlendVertices(inputs, m);
+    Move(m, inputs, position);
+    if (inputs.details != nullptr) AddDetails(m, inputs.details, position);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      for (int axis = 0; axis < 3; ++axis) positions[3 * lane + axis] = position[axis][lane];
+    }
   }
-}
-
-void SkinBlockForAny(const SkinBlockInputs& inputs, float* positions) {
-  SkinVertices(inputs, positions);
-}
+};
 
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void SkinBlockForAvx2(const SkinBlockInputs& inputs,
-                                                      float* positions) {
-  SkinVertices(inputs, positions);
-}
-
 // The same sums with all vertices side by side: the bones' numbers lie in registers.
-#define PLEAT_AVX512 PLEAT_TARGET_AVX512("avx512f,avx512bw")
-
-PLEAT_AVX512 PLEAT_INLINE void BlendByLookup(const SkinBlockInputs& inputs, bool with_axes,
-                                             Sixteen* m) {
+PLEAT_TARGET_AVX512 PLEAT_ALWAYS_INLINE void BlendByLookup(const SkinBlockInputs& inputs,
+                                                           bool with_axes, Sixteen* m) {
   const FrameSkinning::Block& block = *inputs.block;
   __m512i bones[kMaxInfluences];
 #pragma GCC unroll 4
@@ -168,7 +155,8 @@ constexpr Interleaving kInterleaving = [] {
   return from;
 }();
 
-PLEAT_AVX512 PLEAT_INLINE void StoreByVertex(const Sixteen* position, float* positions) {
+PLEAT_TARGET_AVX512 PLEAT_ALWAYS_INLINE void StoreByVertex(const Sixteen* position,
+                                                           float* positions) {
 #pragma GCC unroll 3
   for (int part = 0; part < 3; ++part) {
     const __m512i from_xy = _mm512_loadu_si512(kInterleaving.from_xy + part * kLanes);
@@ -178,9 +166,9 @@ PLEAT_AVX512 PLEAT_INLINE void StoreByVertex(const Sixteen* position, float* pos
   }
 }
 
-PLEAT_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float* positions) {
+PLEAT_TARGET_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float* positions) {
   if (inputs.tables == nullptr) {
-    SkinVertices(inputs, positions);
+    SkinBlockBody::Run(inputs, positions);
     return;
   }
   Sixteen m[kParameters], position[3];
@@ -196,23 +184,18 @@ PLEAT_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float* posit
 }
 #endif
 
-std::vector<SkinBlockFunction> FindUsable() {
-  std::vector<SkinBlockFunction> usable;
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512bw")) usable.push_back(SkinBlockForAvx512);
-  if (__builtin_cpu_supports("avx2")) usable.push_back(SkinBlockForAvx2);
-#endif
-  usable.push_back(SkinBlockForAny);
-  return usable;
-}
-
 }  // namespace
 
-std::span<const SkinBlockFunction> UsableSkinBlocks() {
-  static const std::vector<SkinBlockFunction> usable = FindUsable();
-  return usable;
+const KernelVariants<SkinBlockFunction>& SkinBlockVariants() {
+  using enum InstructionSet;
+  static const auto variants = RunnableVariants<SkinBlockFunction>({
+#if defined(__x86_64__)
+    {kAvx512, SkinBlockForAvx512},
+#endif
+        {kAvx2, CompileFor<SkinBlockBody, kAvx2>()},
+        {kBaseline, CompileFor<SkinBlockBody, kBaseline>()},
+  });
+  return variants;
 }
-
-SkinBlockFunction ChosenSkinBlock() { return UsableSkinBlocks().front(); }
 
 }  // namespace pleat

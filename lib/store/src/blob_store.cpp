@@ -15,6 +15,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "file_sync.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"

@@ -5,7 +5,10 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
-#include "pleat/service/character_service.h"
+#include "pleat/service/compressed_sequence_service.h"
+#include "pleat/service/job_service.h"
+#include "pleat/service/model_service.h"
+#include "pleat/service/sequence_service.h"
 #include "pleat/store/v1/records.pb.h"
 
 namespace pleat {

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "check_count.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"

@@ -4,6 +4,7 @@
 
 #include "check_count.h"
 #include "clip_info.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
 #include "pleat/wire/service_messages.h"

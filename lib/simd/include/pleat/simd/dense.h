@@ -8,10 +8,13 @@
 #include <vector>
 
 #include "pleat/simd/dense_ops.h"
+#include "pleat/simd/dispatch.h"
 
 namespace pleat {
 
-// The kernels this process uses.
+// Those this processor can run, the fastest first.
+const KernelVariants<const DenseOps*>& DenseVariants();
+// The kernels this process uses: the first of them.
 const DenseOps& ChosenDenseOps();
 
 inline DenseView ViewOf(const Eigen::MatrixXd& m, DenseShape shape = DenseShape::kFull) {

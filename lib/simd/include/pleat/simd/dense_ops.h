@@ -72,7 +72,6 @@ constexpr ptrdiff_t kDenseAlignment = 64;
 // All matrices are column-major with leading dimension `n` unless a stride is given; "lower" means
 // that entries above the diagonal are neither read nor defined.
 struct DenseOps {
-  const char* name;
   ptrdiff_t panel_rows;  // a packed chunk has a multiple of this many rows
 
   // Packs one chunk of `rows` rows of `a`; `packed` is aligned to kDenseAlignment bytes.

@@ -3,7 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
+
+#include "pleat/simd/dispatch.h"
 
 namespace pleat {
 
@@ -14,7 +15,6 @@ inline constexpr int kMaxTogether = 4;  // queries that are summed in one pass
 // 48 rows l: values are num_pairs x 48 x 2, weights[q] 2 num_pairs. The sums must fit in 32 bits.
 // All kernels give the same bits.
 struct PlaneKernel {
-  const char* name;
   // [k]: for k + 1 queries.
   using Function = void (*)(const int8_t* values, const float* mean, ptrdiff_t num_pairs,
                             const int16_t* const* weights, const float* units,
@@ -23,6 +23,6 @@ struct PlaneKernel {
 };
 
 // Those this processor can run, the fastest first.
-std::span<const PlaneKernel* const> UsablePlaneKernels();
+const KernelVariants<PlaneKernel>& PlaneVariants();
 
 }  // namespace pleat

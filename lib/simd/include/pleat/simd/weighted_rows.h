@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "pleat/simd/dispatch.h"
+
 namespace pleat {
 
 inline constexpr int kMaxWeightedTogether = 4;  // vectors that are multiplied in one pass
@@ -21,7 +23,7 @@ struct WeightedRowsKernel {
 
 // Those this processor can run, the fastest first.
 template <typename Scalar>
-std::span<const WeightedRowsKernel<Scalar>* const> UsableWeightedRows();
+const KernelVariants<WeightedRowsKernel<Scalar>>& WeightedRowsVariants();
 
 // For any number of vectors.
 void AddWeightedRows(std::span<const float* const> factors, const float* rows, ptrdiff_t num_rows,

@@ -9,7 +9,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "pleat/base/content_id.h"
 #include "pleat/store/staged_file.h"
 #include "pleat/store/sync_hook.h"
 

@@ -23,14 +23,13 @@ struct CatalogueEntry {
 
 // Invariants:
 //  - The file is a SQLite database in write-ahead-log mode with one table, `entries`; its version
-//  is
-//    PRAGMA user_version. `record` is opaque here: records.h says what it holds.
+//    is PRAGMA user_version. `record` is opaque here: records.h says what it holds.
 //  - An entry is (kind, id). Its position, the order in which entries were added, never changes.
 //  - A call that changes something returns after its commit has been synced (synchronous=FULL):
-//  what
-//    was reported survives a power cut. A crash before that loses the whole change, never a part.
+//    what was reported survives a power cut. A crash before that loses the whole change, never a
+//    part.
 //  - Nobody sees a change before it is durable: SQLite publishes a commit to readers after the
-//  sync.
+//    sync.
 //
 // Threads: two connections, each behind its own mutex. All changes go through `writer_`, one at a
 // time, because SQLite has one writer anyway and two connections that write would starve each

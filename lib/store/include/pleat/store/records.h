@@ -7,7 +7,10 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "pleat/service/character_service.h"
+#include "pleat/service/compressed_sequence_service.h"
+#include "pleat/service/job_service.h"
+#include "pleat/service/model_service.h"
+#include "pleat/service/sequence_service.h"
 
 namespace pleat {
 

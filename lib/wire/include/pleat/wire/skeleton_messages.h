@@ -11,7 +11,7 @@
 #include "pleat/base/content_id.h"
 #include "pleat/mesh/error_metrics.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skeleton/skeleton.h"
 #include "pleat/v1/common.pb.h"
 
