@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "pleat/base/content_id.h"
 #include "pleat/mesh/error_metrics.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/skeleton/pose_track.h"
