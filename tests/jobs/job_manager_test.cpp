@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <thread>
 
 #include "support/status_matchers.h"
 
@@ -267,6 +268,48 @@ TEST(JobManagerTest, ACrashedJobRunsAgainThreeTimes) {
   jobs.Start();
   EXPECT_EQ(WaitForEnd(jobs, "job-crashed").state, JobState::kSucceeded);
   EXPECT_EQ(jobs.Find("job-crashed").value()->snapshot().attempts, 3);
+}
+
+TEST(JobManagerTest, WhoAsksDoesNotWaitForAJobThatIsSaved) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool blocked = false, waits = false;  // guarded by mutex
+  JobManager jobs({}, Succeeds(), [&](const JobInfo&, int) {
+    std::unique_lock lock(mutex);
+    waits = blocked;
+    changed.notify_all();
+    changed.wait(lock, [&] { return !blocked; });
+    return absl::OkStatus();
+  });
+  const auto while_one_is_saved = [&](auto&& change, auto&& ask) {
+    {
+      std::lock_guard lock(mutex);
+      blocked = true;
+      waits = false;
+    }
+    std::thread changer(change);
+    {
+      std::unique_lock lock(mutex);
+      changed.wait(lock, [&] { return waits; });
+    }
+    ask();
+    {
+      std::lock_guard lock(mutex);
+      blocked = false;
+      changed.notify_all();
+    }
+    changer.join();
+  };
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo first, jobs.Create({}));  // the workers do not run
+  while_one_is_saved([&] { EXPECT_THAT(jobs.Create({}), IsOk()); },
+                     [&] {
+                       EXPECT_THAT(jobs.Get(first.id), IsOk());
+                       EXPECT_EQ(jobs.List().size(), 1u);  // not yet saved, so not yet there
+                     });
+  EXPECT_EQ(jobs.List().size(), 2u);
+  while_one_is_saved([&] { EXPECT_THAT(jobs.Cancel(first.id), IsOk()); },
+                     [&] { EXPECT_EQ(jobs.List().size(), 2u); });
+  EXPECT_EQ(jobs.Get(first.id)->state, JobState::kCancelled);
 }
 
 TEST(JobManagerTest, RefusesWhenFullOrNotSaved) {

@@ -8,7 +8,7 @@
 #include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/service/compression.h"
-#include "pleat/wire/stored_records.h"
+#include "pleat/store/records.h"
 
 namespace pleat {
 
@@ -57,8 +57,7 @@ absl::StatusOr<JobOutcome> JobRunner::Train(const JobInfo& job, const TrainOptio
   PLEAT_RETURN_IF_ERROR(progress.Stage("store", .98, 1).Report(0));
   const std::string bytes = EncodeModel(*model);
   const ModelInfo info = MakeModelInfo(*model, ModelId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kModel, info.id, EncodeRecord(info),
-                                    [&] { return files_->blobs().Put(bytes).status(); }));
+  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kModel, {info.id, EncodeRecord(info)}, bytes));
   return JobOutcome{info.id, model->record().warnings};
 }
 
@@ -81,8 +80,7 @@ absl::StatusOr<JobOutcome> JobRunner::Compress(const JobInfo& job, CompressOptio
                                  .record = std::move(compressed.record)};
   info.record->sequence_id = sequence_id;
   PLEAT_RETURN_IF_ERROR(
-      files_->Add(EntryKind::kCompressedSequence, info.id, EncodeRecord(info),
-                  [&] { return files_->blobs().Put(compressed.bytes).status(); }));
+      files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, compressed.bytes));
   return JobOutcome{info.id, {}};
 }
 

@@ -85,8 +85,8 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
     return decoder.status();
   }
   CompressedSequenceInfo info = MakeInfo(*decoder, upload->id(), size_bytes);
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kCompressedSequence, info.id, EncodeRecord(info),
-                                    [&] { return upload->MoveTo(&files_->blobs()); }));
+  PLEAT_RETURN_IF_ERROR(
+      files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload));
   return info;
 }
 

@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
-#include "pleat/wire/stored_records.h"
+#include "pleat/store/records.h"
 
 namespace pleat {
 namespace {
@@ -112,8 +112,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
     PLEAT_ASSIGN_OR_RETURN(const RigFile rig, runner_.DecodeUserRig(request.rig));
     PLEAT_RETURN_IF_ERROR(CheckRigCounts(rig, clips[0]));
     draft.rig_id = ToHex(ComputeSha256(request.rig));
-    PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kRig, draft.rig_id, "",
-                                      [&] { return files_->blobs().Put(request.rig).status(); }));
+    PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kRig, {draft.rig_id, ""}, request.rig));
   }
   return manager_.Create(std::move(draft));
 }

@@ -48,8 +48,7 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
   SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, info.id, EncodeRecord(info),
-                                    [&] { return files_->blobs().Put(bytes).status(); }));
+  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes));
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
   return info;
 }
@@ -98,8 +97,7 @@ absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload)
     return status;
   }
   SequenceInfo info = MakeSequenceInfo(*sequence, upload->id(), bytes.size());
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, info.id, EncodeRecord(info),
-                                    [&] { return upload->MoveTo(&files_->blobs()); }));
+  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, upload));
   return info;
 }
 

@@ -12,20 +12,6 @@ constexpr uint64_t kDownloadStepBytes = 8 << 20;
 
 }  // namespace
 
-absl::Status StoredFiles::Add(EntryKind kind, const std::string& id, std::string record,
-                              const std::function<absl::Status()>& place_file) {
-  std::lock_guard lock(content_mutex_);
-  PLEAT_RETURN_IF_ERROR(place_file());
-  return catalogue().Put(kind, {id, std::move(record), 0});
-}
-
-absl::Status StoredFiles::Delete(EntryKind kind, const std::string& id) {
-  std::lock_guard lock(content_mutex_);
-  // Row first: a file without row is removed at the next start, a row without file is an error.
-  PLEAT_RETURN_IF_ERROR(catalogue().Delete(kind, id));
-  return blobs().Delete(id);
-}
-
 absl::StatusOr<std::string> StoredFiles::ReadBytes(EntryKind kind, const std::string& id,
                                                    uint64_t offset, uint64_t count) {
   PLEAT_RETURN_IF_ERROR(catalogue().Get(kind, id).status());

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
-#include "pleat/wire/utf8.h"
+#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {

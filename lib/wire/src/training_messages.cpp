@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 

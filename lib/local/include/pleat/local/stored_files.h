@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -16,7 +18,7 @@
 
 namespace pleat {
 
-// A file and its row appear and go together. Thread-safe.
+// Thread-safe.
 class StoredFiles {
  public:
   StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits)
@@ -28,10 +30,14 @@ class StoredFiles {
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 
-  // `place_file` puts the file into the blob store.
-  absl::Status Add(EntryKind kind, const std::string& id, std::string record,
-                   const std::function<absl::Status()>& place_file);
-  absl::Status Delete(EntryKind kind, const std::string& id);
+  // A file and its row appear and go together (see Store).
+  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, std::string_view bytes) {
+    return store_->Add(kind, entry, bytes);
+  }
+  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, Upload* upload) {
+    return store_->Add(kind, entry, upload);
+  }
+  absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
   // `count` bytes (fewer at the end) of the file of an entry.
   absl::StatusOr<std::string> ReadBytes(EntryKind kind, const std::string& id, uint64_t offset,
                                         uint64_t count);
@@ -45,7 +51,6 @@ class StoredFiles {
  private:
   const std::unique_ptr<Store> store_;
   const ServiceLimits limits_;
-  std::mutex content_mutex_;  // file and row appear and go together
 };
 
 // An upload of the store that ends as `finish` says.

@@ -1,4 +1,4 @@
-#include "pleat/wire/utf8.h"
+#include "pleat/base/utf8.h"
 
 #include <cstdint>
 
