@@ -76,7 +76,7 @@ TEST_F(LocalPosesTest, AStreamAnswersPosesInOrderWithTheirHistory) {
   const auto stream = Open({});
   PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(stream->header()));
   for (int t = 0; t < 4; ++t) {
-    stream->Push({.number = 100 + static_cast<uint64_t>(t), .pose = track_.poses[t]});
+    stream->Push({.number = 100 + static_cast<uint64_t>(t), .pose = track_.pose(t)});
   }
   EXPECT_FALSE(stream->HasRoom());
   for (int t = 0; t < 4; ++t) {
@@ -88,8 +88,8 @@ TEST_F(LocalPosesTest, AStreamAnswersPosesInOrderWithTheirHistory) {
     EXPECT_EQ(reply.num_together, 1);
     ASSERT_THAT(reply.frame, IsOk());
     EvaluatedFrame truth;
-    const Pose& before = track_.poses[std::max(t - 1, 0)];
-    ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.poses[t], &before}, {}, &truth), IsOk());
+    const Pose& before = track_.pose(std::max(t - 1, 0));
+    ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.pose(t), &before}, {}, &truth), IsOk());
     Eigen::Matrix3Xf positions;
     ASSERT_THAT(decoder.Decode(reply.frame->draco, reply.frame->mark, &positions), IsOk());
     EXPECT_LE((positions - truth.positions).cwiseAbs().maxCoeff(), 2e-5);
@@ -102,12 +102,12 @@ TEST_F(LocalPosesTest, WithLatestWinsTheNewestPoseIsAnsweredWhileThereAreCredits
   const auto stream = Open({.max_in_flight = 1, .latest_wins = true});
   for (int t = 0; t < 3; ++t) {
     EXPECT_TRUE(stream->HasRoom());
-    stream->Push({.number = static_cast<uint64_t>(t), .pose = track_.poses[t]});
+    stream->Push({.number = static_cast<uint64_t>(t), .pose = track_.pose(t)});
   }
   stream->Answer();
   EXPECT_EQ(replies_.At(0).number, 2u);
   EXPECT_EQ(replies_.At(0).num_superseded, 2);
-  stream->Push({.number = 3, .pose = track_.poses[3]});
+  stream->Push({.number = 3, .pose = track_.pose(3)});
   EXPECT_FALSE(stream->ready());
   EXPECT_FALSE(stream->empty());
   EXPECT_THAT(stream->Acknowledge(2), HasStatus(absl::StatusCode::kInvalidArgument, _));
@@ -119,11 +119,11 @@ TEST_F(LocalPosesTest, WithLatestWinsTheNewestPoseIsAnsweredWhileThereAreCredits
 
 TEST_F(LocalPosesTest, APoseThatCannotBeShownIsAReply) {
   const auto stream = Open({});
-  Pose short_pose = track_.poses[0];
+  Pose short_pose = track_.pose(0);
   short_pose.rotations.pop_back();
   stream->Push({.number = 1, .pose = short_pose});
   stream->Push({.number = 2, .status = absl::InvalidArgumentError("unreadable")});
-  stream->Push({.number = 3, .pose = track_.poses[0]});
+  stream->Push({.number = 3, .pose = track_.pose(0)});
   for (int i = 0; i < 3; ++i) {
     stream->Answer();
     replies_.At(i);

@@ -38,7 +38,8 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
                                          }),
                   IsOk());
       PLEAT_ASSERT_OK_AND_ASSIGN(
-          const auto clip, LocalClipSession::Open(model_, track, {.encoder = {.encoding = encoding}}));
+          const auto clip,
+          LocalClipSession::Open(model_, track, {.encoder = {.encoding = encoding}}));
       PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(clip->header()));
       for (int t = 0; t < track.num_frames(); ++t) {
         ASSERT_FALSE(clip->done());
