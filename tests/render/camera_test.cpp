@@ -67,7 +67,6 @@ TEST(CameraTest, OrthographicDoesNotShrinkWithDistanceAndPerspectiveDoes) {
 
 TEST(CameraTest, TheViewerSeesDownTheCamerasAxis) {
   const Eigen::Matrix3Xd points = RandomMatrix(3, 10, 2);
-  const Eigen::Vector3d middle = (points.rowwise().minCoeff() + points.rowwise().maxCoeff()) / 2;
   for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
     const Camera camera = Camera::Fit(View(projection, 0, 0), points);
     EXPECT_LT(

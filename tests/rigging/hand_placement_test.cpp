@@ -21,7 +21,7 @@ class HandPlacementTest : public testing::Test {
   Eigen::Matrix3Xd UnitJoints() const {
     Eigen::Matrix3Xd joints = figure_.joints;
     for (int j = 0; j < joints.cols(); ++j) {
-      joints.col(j) = volume_.UnitFromWorld(figure_.joints.col(j));
+      joints.col(j) = volume_.scale * figure_.joints.col(j) + volume_.offset;
     }
     return joints;
   }

@@ -21,7 +21,7 @@ TEST(MainBodyTest, WhatFloatsBesideTheCharacterIsLeftOut) {
   ASSERT_EQ(body.is_body.size(), 2u);
   EXPECT_EQ(body.is_body[0] + body.is_body[1], 1);
   // The box is right of everything else.
-  const double box_left = volume.UnitFromWorld({.9, 0, 0}).x();
+  const double box_left = volume.scale * .9 + volume.offset.x();
   EXPECT_LT(body.bounds.max().x(), box_left);
   for (const Sphere& sphere : body.graph.spheres()) EXPECT_LT(sphere.center.x(), box_left);
 }
