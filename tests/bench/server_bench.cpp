@@ -5,6 +5,7 @@
 #include "pleat/character/train_character.h"
 #include "pleat/grpc/grpc_server.h"
 #include "pleat/local/local_character_service.h"
+#include "pleat/local/pose_session.h"
 #include "pleat/performer/performer.h"
 #include "pleat/remote/remote_character_service.h"
 #include "support/temporary_folder.h"
