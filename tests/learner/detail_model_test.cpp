@@ -290,7 +290,7 @@ TEST(TrainDetailModelTest, RefusesWrongDataWithWords) {
   EXPECT_THAT(TrainDetailModel(seen.features.topRows(5), seen.details, {0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("two frames")));
   EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0, 99}),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rows")));
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("clip_starts")));
   EXPECT_THAT(TrainDetailModel(seen.features, seen.details, {0}, {.max_components = 0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("component")));
   Eigen::MatrixXd hole = seen.details;
