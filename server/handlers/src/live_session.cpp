@@ -136,21 +136,21 @@ class LiveReactor final
 
   // From here on to Answered on the executor. Nothing else touches session_, turn_ and response_.
   bool Prepare(PoseQuery* query) override {
-    turn_.reset();
     {
       std::lock_guard lock(mutex_);
-      if (!Ended()) turn_ = queue_->Take();
+      has_turn_ = !Ended();
+      if (has_turn_) queue_->Take(&turn_);
     }
     start_ = std::chrono::steady_clock::now();
-    if (!turn_.has_value() || !turn_->status.ok()) return false;
+    if (!has_turn_ || !turn_.status.ok()) return false;
     poses_.clear();
-    for (const Pose& pose : turn_->poses) poses_.push_back(&pose);
+    for (const Pose& pose : turn_.poses) poses_.push_back(&pose);
     *query = session_->QueryOf(&poses_);
     return true;
   }
   PoseEvaluator& evaluator() override { return session_->evaluator(); }
   void Evaluated(const PoseQuery* query, double evaluate_us, int num_together) override {
-    if (!turn_.has_value()) return Answered(absl::CancelledError("the session has ended"));
+    if (!has_turn_) return Answered(absl::CancelledError("the session has ended"));
     Answered(CallGuarded([&] {
       Show(query, evaluate_us, num_together);
       return absl::OkStatus();
@@ -188,16 +188,15 @@ class LiveReactor final
   // A pose that cannot be shown is an answer, not an error. query: null when its turn says why not.
   void Show(const PoseQuery* query, double evaluate_us, int num_together) {
     response_.Clear();
-    if (turn_->keyframe) session_->RequestKeyframe();
-    absl::StatusOr<EncodedFrame> frame = query != nullptr
-                                             ? session_->Encode(*query, evaluate_us)
-                                             : absl::StatusOr<EncodedFrame>(turn_->status);
+    if (turn_.keyframe) session_->RequestKeyframe();
+    const absl::Status status =
+        query != nullptr ? session_->Encode(*query, evaluate_us, &frame_) : turn_.status;
     *response_.mutable_report() =
-        ReportOf(*turn_, start_ - turn_->arrived, frame.ok() ? &*frame : nullptr, num_together);
-    if (frame.ok()) {
-      *response_.mutable_frame() = ToProto(turn_->number, *std::move(frame));
+        ReportOf(turn_, start_ - turn_.arrived, status.ok() ? &frame_ : nullptr, num_together);
+    if (status.ok()) {
+      *response_.mutable_frame() = ToProto(turn_.number, std::move(frame_));
     } else {
-      *response_.mutable_rejection() = RejectionOf(turn_->number, frame.status());
+      *response_.mutable_rejection() = RejectionOf(turn_.number, status);
     }
   }
 
@@ -207,7 +206,9 @@ class LiveReactor final
   // Used while working_, by Advance when nothing is under way; response_ also while writing_.
   std::unique_ptr<PoseSession> session_;
   v1::LiveSessionResponse response_;
-  std::optional<LiveTurn> turn_;
+  LiveTurn turn_;
+  bool has_turn_ = false;
+  EncodedFrame frame_;              // its bytes become those of response_
   std::vector<const Pose*> poses_;  // of turn_
   std::chrono::steady_clock::time_point start_;
 

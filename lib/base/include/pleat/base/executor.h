@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "pleat/base/ring_queue.h"
+
 namespace pleat {
 
 // Tasks start in the order of Post, but flows take turns. The destructor runs what is still
@@ -23,7 +25,8 @@ class Executor {
   Executor& operator=(const Executor&) = delete;
 
   // The task must not throw. flow: whose task it is; a flow gets one task per round, however many
-  // of it wait. 0: a flow of its own.
+  // of it wait. 0: a flow of its own; such a task whose captures fit into std::function itself
+  // (two pointers) is posted without an allocation.
   void Post(std::function<void()> task, uint64_t flow = 0);
   int num_threads() const { return static_cast<int>(threads_.size()); }
 
@@ -38,7 +41,7 @@ class Executor {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Turn> turns_;                                  // guarded by mutex_
+  RingQueue<Turn> turns_;                                   // guarded by mutex_
   std::unordered_map<uint64_t, std::deque<Task>> waiting_;  // per flow, not empty; by mutex_
   bool stopping_ = false;                                   // guarded by mutex_
   std::vector<std::thread> threads_;
