@@ -41,8 +41,9 @@ int Run(const ServerOptions& options) {
   for (const std::string& id : (*service)->missing_files()) {
     spdlog::error("the file of '{}' is gone from the data folder; restore or delete it", id);
   }
-  absl::StatusOr<std::unique_ptr<GrpcServer>> server =
-      GrpcServer::Start(service->get(), options.grpc);
+  GrpcServerOptions grpc = options.grpc;
+  grpc.pose_executor = (*service)->poses().executor();
+  absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
   const std::string address = Address(options.grpc, (*server)->port());
   // On standard output, so that a script can wait for it and read the port.

@@ -21,6 +21,13 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
   app->add_option("--threads-per-job", service->num_threads_per_job, "0 = one per core")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  app->add_option("--pose-threads", service->num_pose_threads, "0 = one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_option("--max-batch", service->max_batch,
+                  "Live poses of one model that are evaluated together; 1 = none")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
   app->add_option("--cache-bytes", service->cache_bytes, "Memory for models (e.g. 2GB)")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
@@ -46,13 +53,6 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
 void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
   app->add_option("--listen", grpc->listen,
                   "HOST:PORT or unix:PATH; port 0 = any free one, printed at the start")
-      ->capture_default_str();
-  app->add_option("--pose-threads", grpc->num_pose_threads, "0 = one per core")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app->add_option("--max-batch", grpc->max_batch,
-                  "Live poses of one model that are evaluated together; 1 = none")
-      ->check(CLI::Range(1, 16))
       ->capture_default_str();
   app->add_option("--max-message-bytes", grpc->max_receive_bytes, "Largest message from a client")
       ->check(CLI::Range(64 << 10, 256 << 20))

@@ -20,32 +20,33 @@ struct Watched {
   JobInfo job;
 };
 
-absl::Status EndOf(const JobInfo& job) {
-  switch (job.state) {
-    case JobState::kSucceeded:
-      return absl::OkStatus();
-    case JobState::kCancelled:
-      return absl::CancelledError(absl::StrCat("job ", job.id, " was cancelled"));
-    case JobState::kFailed:
-      return absl::Status(job.error.ok() ? absl::StatusCode::kInternal : job.error.code(),
-                          absl::StrCat("job ", job.id, " failed: ", job.error.message()));
-    default:
-      return absl::UnavailableError(absl::StrCat("the service stopped telling about job ", job.id,
-                                                 ", which is ", JobStateName(job.state),
-                                                 ": see 'pleat jobs show ", job.id, "'"));
+// How a job has ended, or why nobody could tell.
+absl::Status EndOf(const absl::Status& watch, const JobInfo& job) {
+  if (absl::IsUnavailable(watch)) {
+    return absl::UnavailableError(absl::StrCat(watch.message(), "; job ", job.id,
+                                               " may go on: see 'pleat jobs show ", job.id, "'"));
   }
+  PLEAT_RETURN_IF_ERROR(watch);
+  if (job.state == JobState::kCancelled) {
+    return absl::CancelledError(absl::StrCat("job ", job.id, " was cancelled"));
+  }
+  if (job.state == JobState::kFailed) {
+    return absl::Status(job.error.ok() ? absl::StatusCode::kInternal : job.error.code(),
+                        absl::StrCat("job ", job.id, " failed: ", job.error.message()));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
 
-absl::StatusOr<JobInfo> WatchJobToEnd(CharacterService& service, const std::string& id,
+absl::StatusOr<JobInfo> WatchJobToEnd(JobService& jobs, const std::string& id,
                                       const Session& session, bool cancel_on_interrupt,
                                       std::map<std::string, double>* stage_seconds) {
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   Watched watched;
   watched.job.id = id;
   std::future<absl::Status> watching = std::async(std::launch::async, [&] {
-    return service.WatchJob(id, [&](const JobInfo& job) {
+    return WatchJob(jobs, id, [&](const JobInfo& job) {
       if (job.state == JobState::kRunning || job.state == JobState::kSucceeded) {
         const bool done = job.state == JobState::kSucceeded;
         display.Update({done ? "done" : job.stage, done ? 1.0 : job.fraction, job.objective},
@@ -63,14 +64,13 @@ absl::StatusOr<JobInfo> WatchJobToEnd(CharacterService& service, const std::stri
     if (!cancel_on_interrupt || cancelled || !Interrupted()) continue;
     cancelled = true;
     // The watch ends by itself when the job is cancelled; when it cannot be, its error says so.
-    if (absl::Status status = service.CancelJob(id); !status.ok()) {
+    if (absl::Status status = jobs.Cancel(id); !status.ok()) {
       *session.err << "cannot cancel job " << id << ": " << status.message() << std::endl;
     }
   }
   display.Finish();
   if (stage_seconds != nullptr) *stage_seconds = display.stage_seconds();
-  PLEAT_RETURN_IF_ERROR(watching.get());
-  PLEAT_RETURN_IF_ERROR(EndOf(watched.job));
+  PLEAT_RETURN_IF_ERROR(EndOf(watching.get(), watched.job));
   return watched.job;
 }
 

@@ -10,12 +10,9 @@
 
 namespace pleat {
 
-absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& session) {
-  if (session.local) {
-    LocalServiceOptions options;
-    options.data_dir = session.DataFolder();
-    return LocalCharacterService::Open(std::move(options));
-  }
+namespace {
+
+absl::StatusOr<std::unique_ptr<RemoteCharacterService>> Connect(const Session& session) {
   RemoteOptions options;
   options.tls = session.tls || !session.tls_ca.empty() || !session.tls_certificate.empty();
   if (!session.tls_ca.empty()) {
@@ -26,6 +23,21 @@ absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& ses
     PLEAT_ASSIGN_OR_RETURN(options.tls_client_key, ReadFile(session.tls_key));
   }
   return RemoteCharacterService::Connect(session.ServerAddress(), std::move(options));
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& session) {
+  if (!session.local) return Connect(session);
+  LocalServiceOptions options;
+  options.data_dir = session.DataFolder();
+  return LocalCharacterService::Open(std::move(options));
+}
+
+absl::StatusOr<std::unique_ptr<RemoteCharacterService>> OpenRemoteService(const Session& session,
+                                                                          const std::string& verb) {
+  if (session.local) return UsageError(verb + " measures a server: it has no --local");
+  return Connect(session);
 }
 
 absl::StatusOr<std::string> CompleteId(const std::vector<std::string>& ids,
@@ -44,16 +56,16 @@ absl::StatusOr<std::string> CompleteId(const std::vector<std::string>& ids,
   return found;
 }
 
-absl::StatusOr<std::string> FindModel(CharacterService& service, const std::string& prefix) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<ModelInfo> models, service.ListModels());
-  return CompleteId(models, prefix, "model");
+absl::StatusOr<std::string> FindModel(ModelService& models, const std::string& prefix) {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<ModelInfo> infos, models.List());
+  return CompleteId(infos, prefix, "model");
 }
 
-absl::StatusOr<SequenceInfo> UploadWithProgress(CharacterService& service,
+absl::StatusOr<SequenceInfo> UploadWithProgress(SequenceService& sequences,
                                                 const MeshSequence& sequence,
                                                 const Session& session) {
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  return service.UploadSequence(sequence, InterruptibleProgress(&display).Stage("upload", 0, 1));
+  return sequences.Upload(sequence, InterruptibleProgress(&display).Stage("upload", 0, 1));
 }
 
 }  // namespace pleat

@@ -12,9 +12,16 @@
 
 namespace pleat {
 
+class RemoteCharacterService;
+
 // The server of --server (or PLEAT_SERVER, or the default address), or with --local the service in
 // this process over the data folder.
 absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& session);
+
+// The same server, for verbs that need more than the services: live sessions are a matter of the
+// network. A usage error that names `verb` with --local.
+absl::StatusOr<std::unique_ptr<RemoteCharacterService>> OpenRemoteService(const Session& session,
+                                                                          const std::string& verb);
 
 // The one id among `ids` that begins with `prefix`: people copy the first digits. kNotFound names
 // `kind`; a usage error when several begin so.
@@ -31,16 +38,16 @@ absl::StatusOr<std::string> CompleteId(const std::vector<Info>& infos, const std
 }
 
 // The id of the only model whose id begins with `prefix`.
-absl::StatusOr<std::string> FindModel(CharacterService& service, const std::string& prefix);
+absl::StatusOr<std::string> FindModel(ModelService& models, const std::string& prefix);
 
 // Uploads with progress; Ctrl-C stops it.
-absl::StatusOr<SequenceInfo> UploadWithProgress(CharacterService& service,
+absl::StatusOr<SequenceInfo> UploadWithProgress(SequenceService& sequences,
                                                 const MeshSequence& sequence,
                                                 const Session& session);
 
 // Watches a job with progress until it is final. On Ctrl-C the job is cancelled when
 // `cancel_on_interrupt`. A job that failed gives its own error.
-absl::StatusOr<JobInfo> WatchJobToEnd(CharacterService& service, const std::string& id,
+absl::StatusOr<JobInfo> WatchJobToEnd(JobService& jobs, const std::string& id,
                                       const Session& session, bool cancel_on_interrupt,
                                       std::map<std::string, double>* stage_seconds);
 

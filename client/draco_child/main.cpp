@@ -66,9 +66,9 @@ int Run(char** argv) {
       !Limit(RLIMIT_CORE, 0) || !Limit(RLIMIT_FSIZE, 0)) {
     return Fail(absl::InternalError("cannot limit the process that decodes Draco"));
   }
-  DracoFileLimits limits;
-  limits.max_vertices = static_cast<uint32_t>(std::strtoul(argv[3], nullptr, 10));
-  limits.max_triangles = static_cast<uint32_t>(std::strtoul(argv[4], nullptr, 10));
+  MeshLimits limits;
+  limits.max_vertices = std::strtol(argv[3], nullptr, 10);
+  limits.max_faces = std::strtol(argv[4], nullptr, 10);
   const absl::StatusOr<std::string> bytes = ReadInput();
   if (!bytes.ok()) return Fail(bytes.status());
   const absl::StatusOr<DracoGeometry> geometry = DecodeDracoFile(*bytes, limits);

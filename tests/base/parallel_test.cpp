@@ -34,6 +34,19 @@ TEST_P(ParallelForTest, RethrowsAfterAllThreadsEnded) {
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelForTest, testing::Values(0, 1, 2, 7));
 
+TEST_P(ParallelForTest, PiecesCoverEveryItemOnce) {
+  std::vector<std::atomic<int>> counts(1003);
+  EXPECT_TRUE(
+      ParallelForPieces(1003, 64, GetParam(), Progress(), [&](int item) { ++counts[item]; }).ok());
+  for (const std::atomic<int>& count : counts) EXPECT_EQ(count, 1);
+}
+
+TEST_P(ParallelForTest, NoPieceBeginsAfterACancellation) {
+  const Progress cancelled(nullptr, [] { return true; });
+  EXPECT_EQ(ParallelForPieces(10, 3, GetParam(), cancelled, [](int) { FAIL(); }).code(),
+            absl::StatusCode::kCancelled);
+}
+
 TEST(ParallelForTest, NoItemsIsFine) {
   ParallelFor(0, 4, [](int) { FAIL(); });
 }

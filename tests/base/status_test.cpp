@@ -49,5 +49,14 @@ TEST(StatusTest, ReturnIfErrorStopsAtTheFirstError) {
   EXPECT_EQ(num_passed, 1);
 }
 
+TEST(StatusTest, WithContextNamesThePlaceOfAnErrorAndKeepsValues) {
+  EXPECT_THAT(WithContext("a.obj", absl::OkStatus()), IsOk());
+  EXPECT_THAT(WithContext("a.obj", absl::DataLossError("cut off")),
+              HasStatus(absl::StatusCode::kDataLoss, "a.obj: cut off"));
+  EXPECT_EQ(*WithContext("a.obj", Half(8)), 4);
+  EXPECT_THAT(WithContext("a.obj", Half(7)),
+              HasStatus(absl::StatusCode::kInvalidArgument, "a.obj: odd"));
+}
+
 }  // namespace
 }  // namespace pleat

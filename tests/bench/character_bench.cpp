@@ -23,7 +23,7 @@ const Performer& BenchPerformer() {
 
 TrainOptions Learner(const std::string& learner) {
   TrainOptions options;
-  options.learner = learner;
+  options.learner = ParseChoice<LearnerChoice>("learner", learner).value();
   return options;
 }
 
@@ -47,7 +47,7 @@ void EvaluatePose(benchmark::State& state, const std::string& learner) {
   int t = 1;
   for (auto _ : state) {
     const absl::Status status =
-        evaluator.Evaluate({&track.poses[t], &track.poses[t - 1]}, {}, &frame);
+        evaluator.Evaluate({&track.pose(t), &track.pose(t - 1)}, {}, &frame);
     if (!status.ok()) state.SkipWithError(status.ToString().c_str());
     t = t + 1 < track.num_frames() ? t + 1 : 1;
   }
@@ -74,7 +74,7 @@ void EvaluateColdPose(benchmark::State& state, const std::string& learner) {
     benchmark::DoNotOptimize(others.data());
     state.ResumeTiming();
     const absl::Status status =
-        evaluator.Evaluate({&track.poses[t], &track.poses[t - 1]}, {}, &frame);
+        evaluator.Evaluate({&track.pose(t), &track.pose(t - 1)}, {}, &frame);
     if (!status.ok()) state.SkipWithError(status.ToString().c_str());
     t = t + 1 < track.num_frames() ? t + 1 : 1;
   }
@@ -96,7 +96,7 @@ void EvaluateBatch(benchmark::State& state, const std::string& learner) {
   int t = 1;
   while (state.KeepRunningBatch(kBatch)) {
     for (int q = 0; q < kBatch; ++q) {
-      poses[q] = {&track.poses[t], &track.poses[t - 1]};
+      poses[q] = {&track.pose(t), &track.pose(t - 1)};
       queries[q].poses = &poses[q];
       queries[q].frame = &frames[q];
       t = t + 1 < track.num_frames() ? t + 1 : 1;

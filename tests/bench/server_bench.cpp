@@ -29,15 +29,15 @@ struct Setup {
     server = GrpcServer::Start(service.get(), {}).value();
     client = RemoteCharacterService::Connect("127.0.0.1:" + std::to_string(server->port())).value();
     TrainOptions options;
-    options.learner = "gp";
-    const std::string sequence_id = client->UploadSequence(performer.sequence, {})->id;
+    options.learner = LearnerChoice::kGp;
+    const std::string sequence_id = client->sequences().Upload(performer.sequence, {})->id;
     const std::string job_id =
-        client->CreateTrainingJob({.sequence_ids = {sequence_id}, .options = options})->id;
-    const absl::Status watched = client->WatchJob(job_id, [&](const JobInfo& job) {
+        client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .options = options})->id;
+    const absl::Status watched = WatchJob(client->jobs(), job_id, [&](const JobInfo& job) {
       query.model_id = job.result_id;
       return true;
     });
-    if (watched.ok()) model = service->AcquireModel(query.model_id).value();
+    if (watched.ok()) model = service->models().Acquire(query.model_id).value();
     query.track = performer.truth.track;
   }
 };
@@ -50,7 +50,7 @@ Setup& TheSetup() {
 void Evaluate(benchmark::State& state, bool skinned_only) {
   Setup& setup = TheSetup();
   PoseEvaluator evaluator(setup.model);
-  const std::vector<Pose>& poses = setup.query.track.poses;
+  const std::vector<Pose>& poses = setup.query.track.poses();
   EvaluatedFrame frame;
   size_t t = 1;
   for (auto _ : state) {
@@ -65,8 +65,9 @@ BENCHMARK_CAPTURE(Evaluate, hybrid, false)->Unit(benchmark::kMillisecond);
 
 void EvaluateAndEncode(benchmark::State& state, FrameEncoding encoding) {
   Setup& setup = TheSetup();
-  const auto session = PoseSession::Open(setup.model, {.encoder = {.encoding = encoding}}).value();
-  const std::vector<Pose>& poses = setup.query.track.poses;
+  const auto session =
+      LocalPoseSession::Open(setup.model, {.encoder = {.encoding = encoding}}).value();
+  const std::vector<Pose>& poses = setup.query.track.poses();
   size_t t = 0;
   for (auto _ : state) {
     t = (t + 1) % poses.size();
@@ -81,8 +82,8 @@ BENCHMARK_CAPTURE(EvaluateAndEncode, points, FrameEncoding::kDracoPointCloud)
 // Pose out, frame back and decoded.
 void LiveRoundTrip(benchmark::State& state) {
   Setup& setup = TheSetup();
-  const auto session = setup.client->OpenLiveSession(setup.query).value();
-  const std::vector<Pose>& poses = setup.query.track.poses;
+  const auto session = setup.client->poses().OpenLiveSession(setup.query).value();
+  const std::vector<Pose>& poses = setup.query.track.poses();
   LiveFrame frame;
   size_t t = 0;
   for (auto _ : state) {
@@ -99,7 +100,7 @@ BENCHMARK(LiveRoundTrip)->Unit(benchmark::kMillisecond)->UseRealTime();
 void ClipStream(benchmark::State& state) {
   Setup& setup = TheSetup();
   for (auto _ : state) {
-    const absl::Status status = setup.client->EvaluateClip(
+    const absl::Status status = setup.client->poses().EvaluateClip(
         setup.query, [](int, const EvaluatedFrame&) { return absl::OkStatus(); });
     if (!status.ok()) state.SkipWithError(std::string(status.message()).c_str());
   }
@@ -109,7 +110,7 @@ BENCHMARK(ClipStream)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void SmallCall(benchmark::State& state) {
   Setup& setup = TheSetup();
-  for (auto _ : state) benchmark::DoNotOptimize(setup.client->GetModel(setup.query.model_id));
+  for (auto _ : state) benchmark::DoNotOptimize(setup.client->models().Get(setup.query.model_id));
 }
 BENCHMARK(SmallCall)->Unit(benchmark::kMillisecond)->UseRealTime();
 

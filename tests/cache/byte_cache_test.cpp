@@ -111,17 +111,17 @@ TEST(ByteCacheTest, ErrorsAreNotKept) {
 TEST(ByteCacheTest, ManyAskersShareOneLoad) {
   Cache cache(100);
   std::atomic<int> num_loads = 0;
-  std::latch all_there(8);
+  std::latch asking(8);
   std::vector<Cache::Handle> handles(8);
   std::vector<std::thread> threads;
   for (int i = 0; i < 8; ++i) {
     threads.emplace_back([&, i] {
-      all_there.arrive_and_wait();
+      asking.count_down();
       handles[i] = cache
                        .Get("a",
                             [&](const std::string&) -> absl::StatusOr<Cache::Loaded> {
                               ++num_loads;
-                              std::this_thread::sleep_for(std::chrono::milliseconds(20));
+                              asking.wait();  // the load lasts until everybody asks
                               return Cache::Loaded{std::make_shared<const std::string>("x"), 1};
                             })
                        .value();

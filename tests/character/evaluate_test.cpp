@@ -87,7 +87,7 @@ TEST(EvaluateTest, NeitherTrainingNorSelectionSeesTestFrames) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence crumpled,
                                MeshSequence::Create(sequence.topology(), std::move(frames)));
     EvaluateOptions options = Options(protocol);
-    options.train.learner = "auto";
+    options.train.learner = LearnerChoice::kAuto;
     options.train.iterations = 20;
     options.learners.clear();
     options.measure_baselines = false;
@@ -139,7 +139,7 @@ TEST(EvaluateTest, CrossTestsEveryFrameOfTheSecondClip) {
   // With the first rig; so little is left by a refined one that 60 frames of another motion do not
   // teach it.
   EvaluateOptions options = Options(EvaluationProtocol::kCross);
-  options.train.refine = "none";
+  options.train.refine = RigRefinement::kNone;
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
                              EvaluateCharacter(SmallPerformer().sequence, other.sequence, options));
   EXPECT_EQ(report.num_test_frames, 25);

@@ -109,7 +109,7 @@ TEST(ExperimentTest, ResolutionsGoFromAllVerticesToFivePercent) {
 
 TEST(ExperimentTest, HybridIsMeasuredAgainstSkinningLearnersAndBaselines) {
   EvaluateOptions options = Options(EvaluationProtocol::kBlocks10);
-  options.learners = {"ridge", "gp"};
+  options.learners = {LearnerChoice::kRidge, LearnerChoice::kGp};
   PLEAT_ASSERT_OK_AND_ASSIGN(const ExperimentReport report,
                              RunExperiment(SmallPerformer().sequence, std::nullopt,
                                            Experiment::kSkinnedVsHybrid, options));

@@ -26,7 +26,7 @@ MeshSequence ThrownAbout(const MeshSequence& sequence, const PoseTrack& truth,
             .toRotationMatrix();
     const Eigen::Vector3d shift(random.Normal(), random.Normal(), random.Normal());
     BoneTransforms transforms;
-    ComputeBoneTransforms(skeleton, truth.poses[t], {}, &transforms);
+    ComputeBoneTransforms(skeleton, truth.pose(t), {}, &transforms);
     joints->push_back((turn * transforms.joint_positions).colwise() + shift);
     frames.push_back(((turn * sequence.FrameAsDouble(t)).colwise() + shift).cast<float>());
   }
@@ -45,7 +45,7 @@ TEST(FastMotionTest, LeftAndRightAreNeverSwapped) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack track, FitPoses(thrown, model->rig(), {}, nullptr));
   for (int t = 0; t < thrown.num_frames(); ++t) {
     BoneTransforms transforms;
-    ComputeBoneTransforms(model->skeleton(), track.poses[t], {}, &transforms);
+    ComputeBoneTransforms(model->skeleton(), track.pose(t), {}, &transforms);
     const Eigen::Matrix3Xd& found = transforms.joint_positions;
     for (const auto& [left, right] :
          {std::pair(kLeftLowerLeg, kRightLowerLeg), std::pair(kLeftFoot, kRightFoot),

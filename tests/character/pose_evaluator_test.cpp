@@ -73,14 +73,13 @@ TEST(PoseEvaluatorTest, TrainingPosesGiveTheTrainingFrames) {
 
 TEST(PoseEvaluatorTest, ConfidenceFallsFarFromTraining) {
   PoseEvaluator evaluator(SmallCharacter());
-  Pose strange = TrainingTrack().poses[10];
+  Pose strange = TrainingTrack().pose(10);
   for (int j = 1; j < kNumHumanJoints; ++j) {
     strange.rotations[j] = Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitX());
   }
   EvaluatedFrame seen, unseen;
-  ASSERT_THAT(
-      evaluator.Evaluate({&TrainingTrack().poses[10], &TrainingTrack().poses[9]}, {}, &seen),
-      IsOk());
+  ASSERT_THAT(evaluator.Evaluate({&TrainingTrack().pose(10), &TrainingTrack().pose(9)}, {}, &seen),
+              IsOk());
   ASSERT_THAT(evaluator.Evaluate({&strange}, {}, &unseen), IsOk());
   EXPECT_GT(seen.confidence, 0.8);
   EXPECT_LT(unseen.confidence, 0.3);
@@ -121,7 +120,7 @@ double LargestDetailStep(PoseEvaluator& evaluator, const Pose& from, const Pose&
 
 TEST(PoseEvaluatorTest, APoseThatLeavesTrainingNeverPops) {
   PoseEvaluator evaluator(SmallCharacter());
-  const Pose seen = TrainingTrack().poses[10];
+  const Pose seen = TrainingTrack().pose(10);
   Pose strange = seen;
   for (int j = 1; j < kNumHumanJoints; ++j) {
     strange.rotations[j] = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitX());
@@ -151,7 +150,7 @@ TEST(PoseEvaluatorTest, FollowsARigidMotionOfTheWholePose) {
     pose.rotations[0] = turn * pose.rotations[0];
     return pose;
   };
-  const Pose now = TrainingTrack().poses[20], before = TrainingTrack().poses[19];
+  const Pose now = TrainingTrack().pose(20), before = TrainingTrack().pose(19);
   const Pose now_moved = moved(now), before_moved = moved(before);
   EvaluatedFrame frame, frame_moved;
   ASSERT_THAT(evaluator.Evaluate({&now, &before}, {}, &frame), IsOk());
@@ -163,18 +162,18 @@ TEST(PoseEvaluatorTest, FollowsARigidMotionOfTheWholePose) {
 
 TEST(PoseEvaluatorTest, DoublingTheFrameRateKeepsTheFrames) {
   // The same motion at twice the rate: history is taken at the model's own interval.
-  PoseTrack fast;
-  fast.fps = 2 * TrainingTrack().fps;
+  PoseTrack::Parts parts{.fps = 2 * TrainingTrack().fps()};
   for (int t = 0; t + 1 < TrainingTrack().num_frames(); ++t) {
-    fast.poses.push_back(TrainingTrack().poses[t]);
-    Pose middle = TrainingTrack().poses[t];
-    const Pose& next = TrainingTrack().poses[t + 1];
+    parts.poses.push_back(TrainingTrack().pose(t));
+    Pose middle = TrainingTrack().pose(t);
+    const Pose& next = TrainingTrack().pose(t + 1);
     middle.root_position = (middle.root_position + next.root_position) / 2;
     for (int j = 0; j < kNumHumanJoints; ++j) {
       middle.rotations[j] = middle.rotations[j].slerp(0.5, next.rotations[j]);
     }
-    fast.poses.push_back(middle);
+    parts.poses.push_back(middle);
   }
+  const PoseTrack fast = PoseTrack::FromValid(std::move(parts));
   PoseEvaluator evaluator(SmallCharacter());
   std::vector<Eigen::Matrix3Xf> slow_frames;
   ASSERT_THAT(evaluator.EvaluateClip(TrainingTrack(), {},
@@ -197,10 +196,26 @@ TEST(PoseEvaluatorTest, DoublingTheFrameRateKeepsTheFrames) {
   EXPECT_LT(worst, 1e-4f);
 }
 
+TEST(PoseEvaluatorTest, ASkinnedClipIsItsFramesWithoutDetail) {
+  PoseEvaluator evaluator(SmallCharacter());
+  std::vector<Eigen::Matrix3Xf> frames;
+  ASSERT_THAT(evaluator.EvaluateSkinnedClip(TrainingTrack(), {},
+                                            [&](int t, const EvaluatedFrame& frame) {
+                                              EXPECT_EQ(t, static_cast<int>(frames.size()));
+                                              frames.push_back(frame.positions);
+                                              return absl::OkStatus();
+                                            }),
+              IsOk());
+  ASSERT_EQ(static_cast<int>(frames.size()), TrainingTrack().num_frames());
+  EvaluatedFrame expected;
+  ASSERT_THAT(evaluator.EvaluateSkinned(TrainingTrack().pose(3), {}, &expected), IsOk());
+  EXPECT_EQ(frames[3], expected.positions);
+}
+
 TEST(PoseEvaluatorTest, BoneScalesGiveNewProportions) {
   std::vector<double> scales(kNumHumanJoints, 1.0);
   scales[kLeftLowerLeg] = 1.5;
-  const Pose& pose = TrainingTrack().poses[0];
+  const Pose& pose = TrainingTrack().pose(0);
   EXPECT_NEAR(BoneLength(*SmallCharacter(), pose, scales, kLeftLowerLeg),
               1.5 * BoneLength(*SmallCharacter(), pose, {}, kLeftLowerLeg), 1e-9);
   PoseEvaluator evaluator(SmallCharacter());
@@ -219,7 +234,7 @@ TEST(PoseEvaluatorTest, DoesNotAllocateAfterTheFirstFrame) {
   PoseEvaluator evaluator(SmallCharacter());
   EvaluatedFrame frame;
   const std::vector<double> scales(kNumHumanJoints, 1.1);
-  const std::vector<const Pose*> poses = {&TrainingTrack().poses[5], &TrainingTrack().poses[4]};
+  const std::vector<const Pose*> poses = {&TrainingTrack().pose(5), &TrainingTrack().pose(4)};
   ASSERT_THAT(evaluator.Evaluate(poses, scales, &frame), IsOk());
   num_allocations = 0;
   counting = true;
@@ -255,8 +270,7 @@ TEST(PoseEvaluatorTest, SinglePrecisionIsWithinAHundredthOfAMillimeter) {
   PoseEvaluator evaluator(SmallCharacter());
   EvaluatedFrame frame;
   for (const int t : {1, 9, 20}) {
-    const std::vector<const Pose*> poses = {&TrainingTrack().poses[t],
-                                            &TrainingTrack().poses[t - 1]};
+    const std::vector<const Pose*> poses = {&TrainingTrack().pose(t), &TrainingTrack().pose(t - 1)};
     ASSERT_THAT(evaluator.Evaluate(poses, {}, &frame), IsOk());
     const Eigen::Matrix3Xd expected = EvaluateInDoublePrecision(*SmallCharacter(), poses);
     EXPECT_LT((frame.positions.cast<double>() - expected).cwiseAbs().maxCoeff(), 1e-5);
@@ -271,7 +285,7 @@ TEST(PoseEvaluatorTest, ABatchGivesTheBitsOfSingleQueries) {
   std::vector<PoseQuery> queries(kNumQueries);
   const std::vector<double> scales(kNumHumanJoints, 1.1), wrong_scales = {1, 2};
   for (int q = 0; q < kNumQueries; ++q) {
-    poses.push_back({&TrainingTrack().poses[q + 1], &TrainingTrack().poses[q]});
+    poses.push_back({&TrainingTrack().pose(q + 1), &TrainingTrack().pose(q)});
   }
   for (int q = 0; q < kNumQueries; ++q) {
     queries[q] = {.poses = &poses[q],
@@ -305,7 +319,7 @@ TEST(PoseEvaluatorTest, ABatchGivesTheBitsOfSingleQueries) {
 TEST(PoseEvaluatorTest, BadPosesAreRefusedWithWords) {
   PoseEvaluator evaluator(SmallCharacter());
   EvaluatedFrame frame;
-  Pose pose = TrainingTrack().poses[0];
+  Pose pose = TrainingTrack().pose(0);
   const auto expect_refused = [&](const Pose& bad, const std::vector<double>& scales,
                                   const char* word) {
     EXPECT_THAT(evaluator.Evaluate({&bad}, scales, &frame),

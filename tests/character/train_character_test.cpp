@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "absl/strings/str_replace.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/skeleton/human_template.h"
 #include "support/status_matchers.h"
@@ -70,7 +71,7 @@ TEST(TrainCharacterTest, FindsTheJointsOfTheTruth) {
   EXPECT_GT(found.rest_position(kLeftHand).x(), found.rest_position(kRightHand).x());
 }
 
-class TrainThreadsTest : public ::testing::TestWithParam<std::string> {};
+class TrainThreadsTest : public ::testing::TestWithParam<LearnerChoice> {};
 
 TEST_P(TrainThreadsTest, SameBytesForAnyThreadCount) {
   TrainOptions options;
@@ -89,16 +90,16 @@ TEST_P(TrainThreadsTest, SameBytesForAnyThreadCount) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Learners, TrainThreadsTest,
-                         ::testing::Values("auto", "regional", "gp", "sgplvm", "back-constrained",
-                                           "ridge"),
+                         ::testing::Values(LearnerChoice::kAuto, LearnerChoice::kRegional,
+                                           LearnerChoice::kGp, LearnerChoice::kSgplvm,
+                                           LearnerChoice::kBackConstrained, LearnerChoice::kRidge),
                          [](const auto& info) {
-                           return info.param == "back-constrained" ? "back_constrained"
-                                                                   : info.param;
+                           return absl::StrReplaceAll(ChoiceName(info.param), {{"-", "_"}});
                          });
 
 TEST(TrainCharacterTest, AutoRecordsWhatItChoseBy) {
   TrainOptions options = FastTrainOptions();
-  options.learner = "auto";
+  options.learner = LearnerChoice::kAuto;
   options.iterations = 20;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
                              TrainCharacter({SmallPerformer().sequence}, options));
@@ -115,7 +116,7 @@ TEST(TrainCharacterTest, AutoRecordsWhatItChoseBy) {
 TEST(TrainCharacterTest, EveryLearnerTrainsAndIsNamedInTheRecord) {
   for (const std::string& learner : LearnerNames()) {
     TrainOptions options = FastTrainOptions();
-    options.learner = learner;
+    PLEAT_ASSERT_OK_AND_ASSIGN(options.learner, ParseChoice<LearnerChoice>("learner", learner));
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
                                TrainCharacter({SmallPerformer().sequence}, options));
     EXPECT_EQ(model->record().learner, learner);
@@ -127,7 +128,7 @@ TEST(TrainCharacterTest, EveryLearnerTrainsAndIsNamedInTheRecord) {
 
 TEST(TrainCharacterTest, DifferentialDetailsComeBackAsOffsets) {
   TrainOptions options = FastTrainOptions();
-  options.detail_coordinates = "differential";
+  options.detail_coordinates = DetailCoordinates::kDifferential;
   for (const double percent : {100., 20.}) {
     options.resolution_percent = percent;
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
@@ -141,7 +142,7 @@ TEST(TrainCharacterTest, DifferentialDetailsComeBackAsOffsets) {
 
 TEST(TrainCharacterTest, TheFullDeformationIsLearnedTooAndLessWell) {
   TrainOptions options = FastTrainOptions();
-  options.deformation = "full";
+  options.deformation = DetailBase::kRoot;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto model,
                              TrainCharacter({SmallPerformer().sequence}, options));
   const TrainingRecord& record = model->record();
@@ -165,7 +166,7 @@ TEST(TrainCharacterTest, EveryStepOfRefinementFitsBetter) {
   std::map<std::string, std::shared_ptr<const CharacterModel>> models;
   for (const std::string refine : {"none", "joints", "full"}) {
     TrainOptions options = FastTrainOptions();
-    options.refine = refine;
+    PLEAT_ASSERT_OK_AND_ASSIGN(options.refine, ParseChoice<RigRefinement>("refine", refine));
     PLEAT_ASSERT_OK_AND_ASSIGN(models[refine],
                                TrainCharacter({SmallPerformer().sequence}, options));
   }
@@ -203,8 +204,8 @@ TEST(TrainCharacterTest, ClipsOfAnotherMeshAreNamed) {
 }
 
 TEST(TrainCharacterTest, BadOptionsAreRefusedBeforeAnyWork) {
-  EXPECT_THAT(TrainCharacter({SmallPerformer().sequence}, {.learner = "oracle"}),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("oracle")));
+  EXPECT_THAT(TrainCharacter({SmallPerformer().sequence}, {.learner = LearnerChoice{77}}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("77")));
   EXPECT_THAT(TrainCharacter({SmallPerformer().sequence}, {.rest_frame = 60}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rest_frame")));
   EXPECT_THAT(TrainCharacter({}, {}),

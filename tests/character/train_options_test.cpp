@@ -4,12 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "pleat/formats/model_file.h"
+#include "support/fake_training.h"
+#include "support/option_choices.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(TrainOptionsTest, TextRoundTripKeepsEveryOption) {
@@ -33,12 +41,8 @@ TEST(TrainOptionsTest, EachBadValueIsNamedWithItsRange) {
     EXPECT_THAT(ValidateTrainOptions(options),
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(name)));
   };
-  expect_refused({.learner = "magic"}, "learner");
-  expect_refused({.fit = ""}, "fit");
-  expect_refused({.detail_axes = "screen"}, "detail_axes");
-  expect_refused({.deformation = "coarse"}, "deformation");
-  expect_refused({.detail_coordinates = "polar"}, "detail_coordinates");
-  expect_refused({.rotations = "matrix"}, "rotations");
+  expect_refused({.learner = LearnerChoice{77}}, "learner");
+  expect_refused({.upsampling = Upsampling{-1}}, "upsampling");
   expect_refused({.history = 0}, "history");
   expect_refused({.resolution_percent = 0.5}, "resolution_percent");
   expect_refused({.resolution_percent = std::numeric_limits<double>::quiet_NaN()},
@@ -50,6 +54,61 @@ TEST(TrainOptionsTest, EachBadValueIsNamedWithItsRange) {
   expect_refused({.dynamics_weight = -1}, "dynamics_weight");
   expect_refused({.detail_energy = 1.5}, "detail_energy");
   expect_refused({.max_components = 0}, "max_components");
+}
+
+TEST(TrainOptionsTest, EveryNameRoundTripsThroughText) {
+  int num_choices = 0;
+  ForEachChoice(
+      [&](const std::string& option, const std::string& name, const TrainOptions& options) {
+        const std::string line = absl::StrCat(option, "=", name, "\n");
+        EXPECT_THAT(FormatTrainOptions(options), HasSubstr(line));
+        PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions back, ParseTrainOptions(line));
+        EXPECT_EQ(back, options) << line;
+        ++num_choices;
+      });
+  EXPECT_EQ(num_choices, 25);
+}
+
+TEST(TrainOptionsTest, EveryNameRoundTripsThroughTheModelFile) {
+  const MeshSequence clip = MakeSwayingTube(2);
+  ForEachChoice(
+      [&](const std::string& option, const std::string& name, const TrainOptions& options) {
+        CharacterModel::Parts parts = MakeFakeModel(clip, options)->parts();
+        parts.options = options;
+        PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, CharacterModel::Create(std::move(parts)));
+        PLEAT_ASSERT_OK_AND_ASSIGN(const auto back, DecodeModel(EncodeModel(*model)));
+        EXPECT_EQ(back->options(), options) << option << " " << name;
+      });
+}
+
+// A model file holds the options as text between sections of their own, so a name of the same
+// length may stand in for another.
+TEST(TrainOptionsTest, AModelFileWithAnUnknownNameIsRefused) {
+  std::string bytes = EncodeModel(*MakeFakeModel(MakeSwayingTube(2), {}));
+  const size_t at = bytes.find("refine=full\n");
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_THAT(DecodeModel(bytes), IsOk());
+  EXPECT_THAT(DecodeModel(bytes.replace(at, 11, "refine=fool")), testing::Not(IsOk()));
+  EXPECT_THAT(ParseTrainOptions("refine=fool\n"),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("none, joints, full")));
+}
+
+TEST(TrainOptionsTest, AnUnknownNameListsTheValidOnes) {
+  ForEachChoice([&](const std::string& option, const std::string& name, const TrainOptions&) {
+    for (const char* unknown : {"magic", "", "Auto", " gp"}) {
+      EXPECT_THAT(
+          ParseTrainOptions(absl::StrCat(option, "=", unknown, "\n")),
+          HasStatus(absl::StatusCode::kInvalidArgument, AllOf(HasSubstr(option), HasSubstr(name))));
+    }
+  });
+}
+
+TEST(TrainOptionsTest, TheTextsAreThoseOfTheOptions) {
+  std::vector<std::string> names, texts;
+  const TrainOptions options;
+  VisitTrainOptions(options, [&](const char* name, const auto&) { names.emplace_back(name); });
+  for (const OptionText& text : OptionTexts()) texts.emplace_back(text.name);
+  EXPECT_EQ(texts, names);
 }
 
 TEST(TrainOptionsTest, ParserNamesUnknownAndUnreadableLines) {

@@ -29,7 +29,7 @@ struct OwnRig {
 
 TrainOptions QuickOptions() {
   TrainOptions options;
-  options.learner = "gp";
+  options.learner = LearnerChoice::kGp;
   return options;
 }
 
@@ -52,7 +52,7 @@ TEST(TrainWithRig, ALockedRigKeepsItsJoints) {
                              TrainCharacterWithRig({own.clip}, own.rig, QuickOptions()));
   EXPECT_EQ(locked->skeleton().RestPositions(), own.rig.skeleton.RestPositions());
   TrainOptions as_it_is = QuickOptions();
-  as_it_is.refine = "none";
+  as_it_is.refine = RigRefinement::kNone;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto kept, TrainCharacterWithRig({own.clip}, own.rig, as_it_is));
   EXPECT_EQ(kept->rig().weights.ToDense(), own.rig.weights->ToDense());
   EXPECT_EQ(kept->skeleton().RestPositions(), own.rig.skeleton.RestPositions());
@@ -99,7 +99,7 @@ TEST(TrainWithRig, TakesTheMostJointsThereMayBe) {
   figure.rig = {rig.skeleton, *rig.weights, rest};
   const MeshSequence clip = MakeSkinnedSequence(figure, MakeSmoothPoses(rig.skeleton, 4, 3, .05));
   TrainOptions options = QuickOptions();
-  options.refine = "none";
+  options.refine = RigRefinement::kNone;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, TrainCharacterWithRig({clip}, rig, options));
   EXPECT_EQ(model->skeleton().num_joints(), kMaxUserJoints);
   EXPECT_EQ(model->skeleton().joint(255).name, "link 255");
@@ -110,7 +110,7 @@ TEST(TrainWithRig, ComputesMissingWeights) {
   OwnRig own;
   own.rig.weights.reset();
   TrainOptions options = QuickOptions();
-  options.refine = "none";
+  options.refine = RigRefinement::kNone;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, TrainCharacterWithRig({own.clip}, own.rig, options));
   EXPECT_EQ(model->rig().weights.num_vertices(), own.clip.num_vertices());
 }

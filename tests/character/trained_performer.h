@@ -14,7 +14,7 @@ inline const Performer& SmallPerformer() {
   return performer;
 }
 
-inline TrainOptions FastTrainOptions() { return {.learner = "gp"}; }
+inline TrainOptions FastTrainOptions() { return {.learner = LearnerChoice::kGp}; }
 
 inline std::shared_ptr<const CharacterModel> SmallCharacter() {
   static const std::shared_ptr<const CharacterModel> model =

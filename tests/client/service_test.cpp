@@ -2,93 +2,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 
-#include <future>
+#include <functional>
+#include <memory>
 #include <sstream>
-#include <thread>
 
 #include "cli/exit_code.h"
+#include "support/mock_services.h"
+#include "support/scripted_jobs.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-
-// A service with one job that goes through the states it is told.
-class ScriptedService : public CharacterService {
- public:
-  explicit ScriptedService(std::vector<JobInfo> script) : script_(std::move(script)) {}
-
-  absl::StatusOr<SequenceInfo> UploadSequence(const MeshSequence&, const Progress&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<SequenceInfo> GetSequence(const std::string&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<std::vector<SequenceInfo>> ListSequences() override {
-    return absl::UnimplementedError("");
-  }
-  absl::Status DeleteSequence(const std::string&) override { return absl::UnimplementedError(""); }
-  absl::StatusOr<JobInfo> CreateTrainingJob(const TrainingRequest&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<JobInfo> CreateCompressionJob(const std::string&,
-                                               const CompressOptions&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<JobInfo> GetJob(const std::string&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<std::vector<JobInfo>> ListJobs() override { return absl::UnimplementedError(""); }
-  absl::Status CancelJob(const std::string&) override { return absl::OkStatus(); }
-  absl::Status WatchJob(const std::string&,
-                        const std::function<bool(const JobInfo&)>& observe) override {
-    for (const JobInfo& job : script_) observe(job);
-    return absl::OkStatus();
-  }
-  absl::StatusOr<ModelInfo> GetModel(const std::string&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<std::vector<ModelInfo>> ListModels() override {
-    std::vector<ModelInfo> models(2);
-    models[0].id = "abc1";
-    models[1].id = "abd2";
-    return models;
-  }
-  absl::Status DeleteModel(const std::string&) override { return absl::UnimplementedError(""); }
-  absl::StatusOr<std::string> DownloadModel(const std::string&, const Progress&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<CompressedSequenceInfo> UploadCompressedSequence(const std::string&,
-                                                                  const Progress&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<CompressedSequenceInfo> GetCompressedSequence(const std::string&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<std::vector<CompressedSequenceInfo>> ListCompressedSequences() override {
-    return absl::UnimplementedError("");
-  }
-  absl::Status DeleteCompressedSequence(const std::string&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::StatusOr<std::string> DownloadCompressedSequence(const std::string&,
-                                                         const Progress&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::Status DecodeFrames(const std::string&, FrameRange, const DecodedFramesSink&) override {
-    return absl::UnimplementedError("");
-  }
-  absl::Status EvaluateClip(
-      const ClipQuery&, const std::function<absl::Status(int, const EvaluatedFrame&)>&) override {
-    return absl::UnimplementedError("");
-  }
-
- private:
-  std::vector<JobInfo> script_;
-};
 
 JobInfo Job(JobState state, const std::string& stage = "", double fraction = 0) {
   JobInfo job;
@@ -105,18 +32,27 @@ absl::StatusOr<JobInfo> Watch(std::vector<JobInfo> script,
   Session session;
   session.out = &out;
   session.err = &err;
-  ScriptedService service(std::move(script));
-  return WatchJobToEnd(service, "j1", session, true, seconds);
+  testing::NiceMock<MockJobService> jobs;
+  ON_CALL(jobs, Subscribe("j1", testing::_))
+      .WillByDefault([&](const std::string&, std::function<void()> listener) {
+        return std::make_unique<ScriptedSubscription>(
+            script, absl::UnavailableError("the connection broke"), std::move(listener));
+      });
+  return WatchJobToEnd(jobs, "j1", session, true, seconds);
 }
 
 TEST(Service, CompletesIdsFromTheirFirstDigits) {
-  ScriptedService service({});
-  EXPECT_EQ(FindModel(service, "abc").value_or(""), "abc1");
-  EXPECT_EQ(FindModel(service, "abd2").value_or(""), "abd2");
-  EXPECT_TRUE(IsUsageError(FindModel(service, "ab").status()));
-  EXPECT_THAT(FindModel(service, "x"),
+  testing::NiceMock<MockModelService> models;
+  std::vector<ModelInfo> infos(2);
+  infos[0].id = "abc1";
+  infos[1].id = "abd2";
+  ON_CALL(models, List).WillByDefault(testing::Return(infos));
+  EXPECT_EQ(FindModel(models, "abc").value_or(""), "abc1");
+  EXPECT_EQ(FindModel(models, "abd2").value_or(""), "abd2");
+  EXPECT_TRUE(IsUsageError(FindModel(models, "ab").status()));
+  EXPECT_THAT(FindModel(models, "x"),
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("no model x")));
-  EXPECT_EQ(FindModel(service, "").status().code(), absl::StatusCode::kNotFound);
+  EXPECT_EQ(FindModel(models, "").status().code(), absl::StatusCode::kNotFound);
 }
 
 TEST(Service, WatchingEndsWithTheModel) {
@@ -145,6 +81,7 @@ TEST(Service, AFailedJobGivesItsOwnErrorAndExitCode) {
 TEST(Service, AWatchThatBreaksOffIsNotASuccess) {
   const absl::Status status = Watch({Job(JobState::kRunning, "rig", .1)}).status();
   EXPECT_EQ(ExitCodeOf(status), ExitCode::kUnavailable);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("the connection broke"));
   EXPECT_THAT(std::string(status.message()), HasSubstr("pleat jobs show j1"));
 }
 

@@ -48,7 +48,7 @@ TEST_F(DetailsTest, ApplyIsTheInverseInAllAxes) {
     ASSERT_EQ(details.cols(), 15);
     for (int t = 0; t < 12; ++t) {
       BoneTransforms transforms;
-      ComputeBoneTransforms(figure_.rig.skeleton, track_.poses[t], {}, &transforms);
+      ComputeBoneTransforms(figure_.rig.skeleton, track_.pose(t), {}, &transforms);
       Eigen::Matrix3Xd skinned, subset(3, 5), positions;
       SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms, &skinned);
       for (int c = 0; c < 5; ++c) subset.col(c) = skinned.col(some[c]);
@@ -72,7 +72,7 @@ TEST_F(DetailsTest, TheFullDeformationIsBeyondTheMotionOfTheRoot) {
                                ComputeDetails(sequence_, figure_.rig, track_, all_,
                                               {.base = DetailBase::kRoot, .axes = axes}));
     for (int t = 0; t < 12; ++t) {
-      const Pose& pose = track_.poses[t];
+      const Pose& pose = track_.pose(t);
       BoneTransforms transforms;
       ComputeBoneTransforms(figure_.rig.skeleton, pose, {}, &transforms);
       Eigen::Matrix3Xd base;
@@ -96,16 +96,17 @@ TEST_F(DetailsTest, TheFullDeformationIsBeyondTheMotionOfTheRoot) {
 TEST_F(DetailsTest, RootAndLocalDetailsIgnoreRigidMotionOfTheWholeBody) {
   const Eigen::Quaterniond turn = QuaternionFromExponentialMap({0.3, 2, -0.5});
   const Eigen::Vector3d shift(3, -1, 2);
-  PoseTrack moved_track = track_;
+  PoseTrack::Parts moved_parts = track_.parts();
   std::vector<Eigen::Matrix3Xf> moved_frames;
   for (int t = 0; t < 12; ++t) {
     moved_frames.push_back(
         ((turn.toRotationMatrix() * sequence_.FrameAsDouble(t)).colwise() + shift).cast<float>());
-    moved_track.poses[t].root_position = turn * track_.poses[t].root_position + shift;
-    moved_track.poses[t].rotations[0] = turn * track_.poses[t].rotations[0];
+    moved_parts.poses[t].root_position = turn * track_.pose(t).root_position + shift;
+    moved_parts.poses[t].rotations[0] = turn * track_.pose(t).rotations[0];
   }
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence moved,
                              MeshSequence::Create(figure_.topology, std::move(moved_frames)));
+  const PoseTrack moved_track = PoseTrack::FromValid(std::move(moved_parts));
   for (const DetailAxes axes : kAllAxes) {
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const Eigen::MatrixXd before,
@@ -138,12 +139,13 @@ TEST_F(DetailsTest, WrongInputIsRefusedWithWords) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("rig")));
   EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, track_, {0, 612}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex 612")));
-  PoseTrack broken = track_;
-  broken.poses[4].rotations.pop_back();
-  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, broken, {0}),
+  PoseTrack::Parts parts = track_.parts();
+  for (Pose& pose : parts.poses) pose.rotations.pop_back();
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, PoseTrack::FromValid(std::move(parts)), {0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("joints")));
-  broken.poses.pop_back();
-  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, broken, {0}),
+  parts = track_.parts();
+  parts.poses.pop_back();
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, PoseTrack::FromValid(std::move(parts)), {0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("11 frames")));
   EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, track_, all_, {},
                              Progress(nullptr, [] { return true; })),

@@ -49,34 +49,48 @@ TEST(MomentsTest, ChainMomentsAreSumsOverVertices) {
             1e-9);
 }
 
+// The energy of one frame (3 x V) as a function of the pose.
+class FrameEnergy {
+ public:
+  FrameEnergy(const Rig& rig, const Eigen::Matrix3Xf& positions)
+      : skeleton_(rig.skeleton),
+        moments_(ComputeRigMoments(rig)),
+        chain_(ComputeChainMoments(moments_, skeleton_)),
+        frame_(ComputeFrameMoments(rig, moments_, positions)),
+        energy_(chain_, skeleton_, 0) {
+    energy_.SetFrame(ComputeChainCross(moments_, frame_, skeleton_), frame_.sum_squares);
+  }
+  double At(const Pose& pose) const {
+    return energy_.DataValue(ToChainPose(skeleton_, pose, frame_.center));
+  }
+
+ private:
+  const Skeleton& skeleton_;
+  const RigMoments moments_;
+  const ChainMoments chain_;
+  const FrameMoments frame_;
+  PoseEnergy energy_;
+};
+
 TEST(MomentsTest, EnergyIsTheSquaredDistanceOfSkinnedVertices) {
   const SkinnedFigure figure = MakeSkinnedFigure();
   const Skeleton& skeleton = figure.rig.skeleton;
   const PoseTrack track = MakeSmoothPoses(skeleton, 9, 3);
   const MeshSequence sequence = MakeSkinnedSequence(figure, track);
-  const RigMoments moments = ComputeRigMoments(figure.rig);
-  const ChainMoments chain = ComputeChainMoments(moments, skeleton);
-  PoseEnergy energy(chain, skeleton, 0);
-  const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(8));
-  energy.SetFrame(ComputeChainCross(moments, frame, skeleton), frame.sum_squares);
+  const FrameEnergy energy(figure.rig, sequence.frame(8));
   const double measured = (sequence.FrameAsDouble(0) - sequence.FrameAsDouble(8)).squaredNorm();
-  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[0], frame.center)), measured,
-              1e-5 * measured);
-  EXPECT_NEAR(energy.DataValue(ToChainPose(skeleton, track.poses[8], frame.center)), 0, 1e-9);
+  EXPECT_NEAR(energy.At(track.pose(0)), measured, 1e-5 * measured);
+  EXPECT_NEAR(energy.At(track.pose(8)), 0, 1e-9);
 }
 
 TEST(MomentsTest, FarFromTheOriginTheEnergyKeepsItsDigits) {
   SkinnedFigure figure = MakeSkinnedFigure();
   const Skeleton& skeleton = figure.rig.skeleton;
-  PoseTrack track = MakeSmoothPoses(skeleton, 2, 3);
-  for (Pose& pose : track.poses) pose.root_position += Eigen::Vector3d(512, 0, -256);
+  PoseTrack::Parts parts = MakeSmoothPoses(skeleton, 2, 3).Take();
+  for (Pose& pose : parts.poses) pose.root_position += Eigen::Vector3d(512, 0, -256);
+  const PoseTrack track = PoseTrack::FromValid(std::move(parts));
   const MeshSequence sequence = MakeSkinnedSequence(figure, track);
-  const RigMoments moments = ComputeRigMoments(figure.rig);
-  const ChainMoments chain = ComputeChainMoments(moments, skeleton);
-  PoseEnergy energy(chain, skeleton, 0);
-  const FrameMoments frame = ComputeFrameMoments(figure.rig, moments, sequence.frame(1));
-  energy.SetFrame(ComputeChainCross(moments, frame, skeleton), frame.sum_squares);
-  const double value = energy.DataValue(ToChainPose(skeleton, track.poses[1], frame.center));
+  const double value = FrameEnergy(figure.rig, sequence.frame(1)).At(track.pose(1));
   // float32 at 512 m resolves 31 micrometers; the weights' float sums add about as much.
   EXPECT_LT(std::sqrt(std::abs(value) / sequence.num_vertices()), 1e-4);
 }

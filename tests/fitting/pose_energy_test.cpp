@@ -49,7 +49,7 @@ class PoseEnergyTest : public ::testing::Test {
     return energy;
   }
   ChainPose PoseAt(int t) const {
-    return ToChainPose(figure_.rig.skeleton, track_.poses[t], {0.3, 0.8, 0.4});
+    return ToChainPose(figure_.rig.skeleton, track_.pose(t), {0.3, 0.8, 0.4});
   }
 
   SkinnedFigure figure_;
@@ -120,10 +120,11 @@ TEST_F(PoseEnergyTest, StiffnessTermsAreWhatTheySay) {
 }
 
 TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
-  const ChainPose rest = ToChainPose(figure_.rig.skeleton, Pose::Rest(figure_.rig.skeleton), {});
+  const ChainPose rest =
+      ToChainPose(figure_.rig.skeleton, Pose::Rest(figure_.rig.skeleton), Eigen::Vector3d::Zero());
   auto cost_of_turning = [&](int bone) {
     ChainPose pose = rest;
-    pose.rotation(bone) = RotationFromExponentialMap({0, 0.2, 0});
+    pose.rotation(bone) = QuaternionFromExponentialMap({0, 0.2, 0}).toRotationMatrix();
     const PoseEnergy energy = MakeEnergy(1, 0.5, 0);
     return energy.Value(pose) - energy.DataValue(pose);
   };
@@ -135,10 +136,10 @@ TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
 TEST_F(PoseEnergyTest, ChainPoseRoundTrip) {
   const Skeleton& skeleton = figure_.rig.skeleton;
   const Eigen::Vector3d center(1, 2, 3);
-  const Pose pose = FromChainPose(skeleton, ToChainPose(skeleton, track_.poses[6], center), center);
-  EXPECT_LT((pose.root_position - track_.poses[6].root_position).norm(), 1e-12);
+  const Pose pose = FromChainPose(skeleton, ToChainPose(skeleton, track_.pose(6), center), center);
+  EXPECT_LT((pose.root_position - track_.pose(6).root_position).norm(), 1e-12);
   for (int j = 0; j < skeleton.num_joints(); ++j) {
-    EXPECT_LT(pose.rotations[j].angularDistance(track_.poses[6].rotations[j]), 1e-7);
+    EXPECT_LT(pose.rotations[j].angularDistance(track_.pose(6).rotations[j]), 1e-7);
     EXPECT_GE(pose.rotations[j].w(), 0);
   }
 }

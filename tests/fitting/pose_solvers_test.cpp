@@ -37,11 +37,10 @@ class PoseSolversTest : public ::testing::Test {
 };
 
 TEST_F(PoseSolversTest, ClosedFormWalkIsExactForARigidlyMovedBody) {
-  PoseTrack rigid;
-  rigid.poses.push_back(Pose::Rest(skeleton_));
-  rigid.poses[0].root_position += Eigen::Vector3d(1, -2, 3);
-  rigid.poses[0].rotations[0] = QuaternionFromExponentialMap({0.5, 2.5, -0.4});
-  sequence_ = MakeSkinnedSequence(figure_, rigid);
+  Pose rigid = Pose::Rest(skeleton_);
+  rigid.root_position += Eigen::Vector3d(1, -2, 3);
+  rigid.rotations[0] = QuaternionFromExponentialMap({0.5, 2.5, -0.4});
+  sequence_ = MakeSkinnedSequence(figure_, PoseTrack::FromValid({.poses = {rigid}}));
   const FrameMoments frame = SetFrame(0);
   EXPECT_LT(Rms(ClosedFormWalk(moments_, frame, skeleton_)), 1e-5);
 }
@@ -74,7 +73,7 @@ TEST_F(PoseSolversTest, AllJointsRecoverTheTruth) {
     const PoseSolverSummary summary = MinimizePose(energy_, {}, &pose);
     EXPECT_TRUE(summary.converged);
     EXPECT_LT(Rms(pose), 1e-5) << "frame " << t;
-    const ChainPose truth = ToChainPose(skeleton_, track_.poses[t], frame.center);
+    const ChainPose truth = ToChainPose(skeleton_, track_.pose(t), frame.center);
     EXPECT_LT((pose.root_position - truth.root_position).norm(), 1e-4);
     for (int b = 1; b < skeleton_.num_joints(); ++b) {
       EXPECT_LT((pose.rotation(b) - truth.rotation(b)).norm(), 1e-3) << "bone " << b;

@@ -163,13 +163,13 @@ TEST_F(RigRefinementTest, RestMeshTakesTheMeanDetail) {
 
 TEST_F(RigRefinementTest, ThePriorHoldsJointsThatTheMotionDoesNotShow) {
   // Stiff knees: any knee position explains the motion; details pull at them all the same.
-  PoseTrack stiff = track_;
+  PoseTrack::Parts stiff = track_.parts();
   for (Pose& pose : stiff.poses) {
     pose.rotations[kLeftLowerLeg] = pose.rotations[kRightLowerLeg] = Eigen::Quaterniond::Identity();
     pose.rotations[kLeftFoot] = pose.rotations[kRightFoot] = Eigen::Quaterniond::Identity();
   }
   const MeshSequence sequence =
-      MakeSkinnedSequence(figure_, stiff, MakeWaveDetails(figure_, 60, 0.01));
+      MakeSkinnedSequence(figure_, PoseTrack::FromValid(stiff), MakeWaveDetails(figure_, 60, 0.01));
   RigRefinementSummary summary;
   PLEAT_ASSERT_OK_AND_ASSIGN(const Rig refined, Refine(sequence, figure_.rig, {}, &summary));
   EXPECT_LT(summary.joint_moved_m[kLeftLowerLeg], 0.01);
@@ -222,9 +222,9 @@ TEST_F(RigRefinementTest, WrongInputIsRefusedWithWords) {
               HasStatus(invalid, HasSubstr("vertices")));
   EXPECT_THAT(RefineRig(sequence, displaced_, PoseTrack{}, {}, nullptr),
               HasStatus(invalid, HasSubstr("0 frames")));
-  PoseTrack short_pose = track_;
-  short_pose.poses[3].rotations.pop_back();
-  EXPECT_THAT(RefineRig(sequence, displaced_, short_pose, {}, nullptr),
+  PoseTrack::Parts short_poses = track_.parts();
+  for (Pose& pose : short_poses.poses) pose.rotations.pop_back();
+  EXPECT_THAT(RefineRig(sequence, displaced_, PoseTrack::FromValid(short_poses), {}, nullptr),
               HasStatus(invalid, HasSubstr("17 rotations")));
   EXPECT_THAT(RefineRig(sequence, displaced_, track_, {.joint_prior = 0}, nullptr),
               HasStatus(invalid, HasSubstr("prior")));

@@ -7,7 +7,7 @@
 
 #include "pleat/base/random.h"
 #include "pleat/character/character_model.h"
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 
 namespace pleat {
 
@@ -32,13 +32,13 @@ class SmallModelBuilder {
     std::vector<VertexInfluences> influences(8);
     for (size_t v = 0; v < 8; ++v) influences[v] = {{1, 2, 0, 0}, {0.75f, 0.25f, 0, 0}};
     parts.rig.weights = *SkinWeights::Create(3, influences);
-    parts.options.learner = LearnerName(learner_);
+    parts.options.learner = *ParseChoice<LearnerChoice>("learner", LearnerName(learner_));
     parts.options.resolution_percent = learner_ == Learner::kSgplvm ? 50 : 100;
     parts.feature_reference = Vector(6);
     AddControl(&parts);
     parts.detail_model = std::make_shared<const DetailModel>(
         *DetailModel::FromParameters(Detail(static_cast<int>(parts.control_vertices.size()))));
-    parts.record.learner = parts.options.learner;
+    parts.record.learner = LearnerName(learner_);
     parts.record.num_frames = 3;
     parts.record.yaw_degrees = 90;
     parts.record.diagonal_m = 1.66;
@@ -69,13 +69,18 @@ class SmallModelBuilder {
       return;
     }
     parts->control_vertices = {1, 3, 4, 6};
-    RbfUpsampler::Matrix matrix(8, 4);
+    std::vector<int32_t> row_starts = {0}, columns;
+    std::vector<float> values;
     for (int v = 0; v < 8; ++v) {
-      matrix.insert(v, v / 2) = 0.75f;
-      if (v < 6) matrix.insert(v, v / 2 + 1) = 0.25f;
+      columns.push_back(v / 2);
+      values.push_back(0.75f);
+      if (v < 6) {
+        columns.push_back(v / 2 + 1);
+        values.push_back(0.25f);
+      }
+      row_starts.push_back(static_cast<int32_t>(columns.size()));
     }
-    matrix.makeCompressed();
-    parts->upsampler = *RbfUpsampler::FromMatrix(matrix);
+    parts->upsampler = *RbfUpsampler::FromRows(4, row_starts, columns, values);
   }
 
   GpRegressionParameters Stage(int num_inputs, int num_outputs) {

@@ -115,8 +115,8 @@ TEST_P(ModelFileTest, ForeignFilesAndVersionsAreTold) {
 }
 
 TEST_P(ModelFileTest, LimitsHold) {
-  ModelFileLimits limits;
-  limits.mesh.max_vertices = 7;
+  MeshLimits limits;
+  limits.max_vertices = 7;
   EXPECT_THAT(DecodeModel(bytes_, limits),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("section 'topology'")));
   limits = {};
@@ -127,7 +127,7 @@ TEST_P(ModelFileTest, LimitsHold) {
 
 TEST_P(ModelFileTest, FilesRoundTripAndErrorsNameThem) {
   const TemporaryFolder folder;
-  ASSERT_THAT(WriteModelFile(folder.File("a.pleat"), *model_), IsOk());
+  ASSERT_THAT(WriteFile(folder.File("a.pleat"), bytes_), IsOk());
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, ReadModelFile(folder.File("a.pleat")));
   EXPECT_EQ(EncodeModel(*read), bytes_);
   EXPECT_EQ(ModelId(bytes_).size(), 64u);

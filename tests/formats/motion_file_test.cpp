@@ -25,20 +25,20 @@ json Valid() {
                {"root_translation": [0, 1, 3], "rotations": [[0.6, 0, 0.8, 0], [1, 0, 0, 0]]}]})");
 }
 
-absl::StatusOr<Motion> Decode(const json& motion, const MotionLimits& limits = {}) {
+absl::StatusOr<Motion> Decode(const json& motion, const MeshLimits& limits = {}) {
   return DecodeMotion(motion.dump(), HumanTemplate(), limits);
 }
 
 TEST(MotionFileTest, JointsAreMatchedByNameInAnyOrder) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Motion motion, Decode(Valid()));
-  EXPECT_EQ(motion.track.fps, 25);
+  EXPECT_EQ(motion.track.fps(), 25);
   ASSERT_EQ(motion.track.num_frames(), 2);
-  const Pose& first = motion.track.poses[0];
+  const Pose& first = motion.track.pose(0);
   EXPECT_EQ(first.root_position, Eigen::Vector3d(0, 1, 2));
   ASSERT_EQ(first.rotations.size(), 18u);
   EXPECT_EQ(first.rotations[kHips].x(), 1);  // [0, 2, 0, 0] normalized; w comes first
   EXPECT_EQ(first.rotations[kHips].w(), 0);
-  EXPECT_EQ(motion.track.poses[1].rotations[kHead].y(), 0.8);
+  EXPECT_EQ(motion.track.pose(1).rotations[kHead].y(), 0.8);
   EXPECT_EQ(first.rotations[kLeftFoot].w(), 1);
   EXPECT_TRUE(motion.bone_scales.empty());
   EXPECT_THAT(motion.warnings, ElementsAre(AllOf(HasSubstr("stay at rest"), HasSubstr("leftFoot")),
@@ -60,9 +60,7 @@ TEST(MotionFileTest, ColumnsAreTheSameMotion) {
 }
 
 TEST(MotionFileTest, WrittenMotionReadsBack) {
-  PoseTrack track;
-  track.fps = 29.97;
-  track.clip_starts = {0, 2};
+  PoseTrack::Parts parts{.fps = 29.97, .clip_starts = {0, 2}};
   for (int t = 0; t < 4; ++t) {
     Pose pose = Pose::Rest(HumanTemplate());
     pose.root_position = {0.1 * t, 1.0 / 3, 2};
@@ -70,8 +68,9 @@ TEST(MotionFileTest, WrittenMotionReadsBack) {
       pose.rotations[j] =
           QuaternionFromExponentialMap({0.1 * t, 0.2 * static_cast<double>(j), 0.3});
     }
-    track.poses.push_back(pose);
+    parts.poses.push_back(pose);
   }
+  const PoseTrack track = PoseTrack::FromValid(std::move(parts));
   std::vector<double> scales(18, 1);
   scales[kLeftFoot] = 1.25;
   const TemporaryFolder folder;
@@ -79,12 +78,12 @@ TEST(MotionFileTest, WrittenMotionReadsBack) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Motion read, ReadMotion(folder.File("m.json"), HumanTemplate()));
   EXPECT_TRUE(read.warnings.empty());
   EXPECT_EQ(read.bone_scales, scales);
-  EXPECT_EQ(read.track.fps, 29.97);
-  EXPECT_THAT(read.track.clip_starts, ElementsAre(0, 2));
+  EXPECT_EQ(read.track.fps(), 29.97);
+  EXPECT_THAT(read.track.clip_starts(), ElementsAre(0, 2));
   for (int t = 0; t < 4; ++t) {
-    EXPECT_EQ(read.track.poses[t].root_position, track.poses[t].root_position);
+    EXPECT_EQ(read.track.pose(t).root_position, track.pose(t).root_position);
     for (int j = 0; j < 18; ++j) {
-      EXPECT_TRUE(read.track.poses[t].rotations[j].isApprox(track.poses[t].rotations[j], 1e-14));
+      EXPECT_TRUE(read.track.pose(t).rotations[j].isApprox(track.pose(t).rotations[j], 1e-14));
     }
   }
 }
@@ -151,7 +150,7 @@ TEST(MotionFileTest, TextThatIsNotJsonSaysWhere) {
 TEST(MotionFileTest, LimitsAndUnknownFields) {
   EXPECT_THAT(Decode(Valid(), {.max_frames = 1}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("2 frames")));
-  EXPECT_THAT(Decode(Valid(), {.max_bytes = 50}),
+  EXPECT_THAT(Decode(Valid(), {.max_document_bytes = 50}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit is 50")));
   json motion = Valid();
   motion["unit"] = "cm";
@@ -164,7 +163,7 @@ TEST(MotionFileTest, DamagedFilesFailCleanlyOrReadUnitRotations) {
   const auto decode = [](const std::string& damaged) {
     const absl::StatusOr<Motion> motion = DecodeMotion(damaged, HumanTemplate());
     if (!motion.ok()) return;
-    for (const Pose& pose : motion->track.poses) {
+    for (const Pose& pose : motion->track.poses()) {
       ASSERT_EQ(pose.rotations.size(), 18u);
       for (const Eigen::Quaterniond& q : pose.rotations) EXPECT_NEAR(q.norm(), 1, 1e-9);
     }

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 
-absl::StatusOr<MeshFile> Decode(std::string_view text, const MeshFileLimits& limits = {}) {
+absl::StatusOr<MeshFile> Decode(std::string_view text, const MeshLimits& limits = {}) {
   return DecodeObj(text, "m.obj", limits);
 }
 

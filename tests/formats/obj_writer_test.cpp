@@ -1,9 +1,10 @@
 #include "pleat/formats/obj_writer.h"
 
+#include "formats/obj_folder.h"
 #include "pleat/base/random.h"
 #include "pleat/formats/obj_reader.h"
 #include "pleat/formats/sequence_reader.h"
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -37,18 +38,10 @@ TEST(ObjWriterTest, SequenceFolderReadsBack) {
   for (int t = 0; t < 12; ++t) frames.push_back(box.positions.cast<float>() * (1 + 0.1f * t));
   const MeshSequence sequence = *MeshSequence::Create(box.topology, frames);
   const TemporaryFolder folder;
-  ASSERT_THAT(WriteObjSequence(folder.File("out"), sequence), IsOk());
+  ASSERT_THAT(WriteObjFolder(folder.File("out"), sequence), IsOk());
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence read, ReadSequence(folder.File("out")));
   ASSERT_EQ(read.num_frames(), 12);
   for (int t = 0; t < 12; ++t) EXPECT_EQ(read.frame(t), sequence.frame(t));
-}
-
-TEST(ObjWriterTest, CancellationStopsIt) {
-  const MeshShape box = MakeBox({1, 1, 1});
-  const MeshSequence sequence = *MeshSequence::Create(box.topology, {box.positions.cast<float>()});
-  const TemporaryFolder folder;
-  EXPECT_THAT(WriteObjSequence(folder.path(), sequence, Progress(nullptr, [] { return true; })),
-              HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 
-absl::StatusOr<MeshFile> Decode(std::string_view bytes, const MeshFileLimits& limits = {}) {
+absl::StatusOr<MeshFile> Decode(std::string_view bytes, const MeshLimits& limits = {}) {
   return DecodePly(bytes, "m.ply", limits);
 }
 

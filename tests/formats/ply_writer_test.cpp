@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "pleat/formats/ply_reader.h"
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 

@@ -1,8 +1,8 @@
 // The captured files beside the checkout, where there are any.
 #include <gtest/gtest.h>
 
+#include "formats/obj_folder.h"
 #include "pleat/formats/obj_reader.h"
-#include "pleat/formats/obj_writer.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/formats/sequence_reader.h"
 #include "support/shared_data.h"
@@ -66,7 +66,7 @@ TEST(RealSequenceTest, ObjFolderOfSambaReadsBackEqual) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence whole, ReadSequence(path));
   const MeshSequence sequence = whole.Subset({0, 20, 40, 60, 80, 100, 120, 140, 160, 170, 174});
   const TemporaryFolder folder;
-  ASSERT_THAT(WriteObjSequence(folder.File("samba"), sequence), IsOk());
+  ASSERT_THAT(WriteObjFolder(folder.File("samba"), sequence), IsOk());
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence read, ReadSequence(folder.File("samba")));
   EXPECT_EQ(EncodeSequence(read), EncodeSequence(sequence));
 }

@@ -127,7 +127,7 @@ TEST(RigFile, SaysWhatIsWrong) {
   expect_fault([](json& r) { r["joints"][2]["locked"] = "yes"; }, "joint 2");
   EXPECT_THAT(DecodeRigJson(std::string(1'000'000, '[')),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("nested")));
-  EXPECT_THAT(DecodeRigJson(kSmall, {.max_bytes = 10}),
+  EXPECT_THAT(DecodeRigJson(kSmall, {.max_document_bytes = 10}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit")));
   EXPECT_THAT(DecodeRigJson(kSmall, {.max_vertices = 1}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit")));

@@ -1,8 +1,8 @@
 #include "pleat/formats/sequence_file.h"
 
 #include "pleat/base/file.h"
-#include "pleat/mesh/shapes.h"
 #include "support/hostile_bytes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 

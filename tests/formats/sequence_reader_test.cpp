@@ -7,7 +7,7 @@
 #include "pleat/formats/obj_writer.h"
 #include "pleat/formats/pc2.h"
 #include "pleat/formats/sequence_file.h"
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 

@@ -7,7 +7,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   // With the right checksums, so that the fuzzer gets behind them.
-  pleat::SequenceDecoderLimits limits;
+  pleat::MeshLimits limits;
   limits.max_vertices = limits.max_faces = 20'000;
   limits.max_frames = 500;
   limits.max_field_bytes = 100'000'000;

@@ -31,7 +31,7 @@ void operator delete[](void* memory, size_t) noexcept { std::free(memory); }
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto geometry =
       pleat::DecodeDracoFile(std::string_view(reinterpret_cast<const char*>(data), size),
-                             {.max_vertices = 2000, .max_triangles = 4000});
+                             {.max_vertices = 2000, .max_faces = 4000});
   if (!geometry.ok()) return 0;
   if (geometry->triangles.size() > 0 &&
       (geometry->triangles.minCoeff() < 0 ||

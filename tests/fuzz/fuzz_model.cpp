@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   // With the right checksum, so that the fuzzer gets behind it.
   const std::string bytes = pleat::Reseal({reinterpret_cast<const char*>(data), size});
-  pleat::ModelFileLimits limits;
+  pleat::MeshLimits limits;
   limits.max_unfolded_bytes = 1 << 28;
   const auto model = pleat::DecodeModel(bytes, limits);
   if (!model.ok()) return 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -13,14 +14,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct Mesh {
-  Topology topology;
-  Eigen::Matrix3Xd positions;
-};
-
 // A rolled sheet of rows x columns vertices (open borders on all sides unless closed around).
-Mesh Sheet(int rows, int columns, bool closed) {
-  Mesh mesh;
+MeshShape Sheet(int rows, int columns, bool closed) {
+  MeshShape mesh;
   mesh.positions.resize(3, rows * columns);
   std::vector<int32_t> corners, sizes;
   for (int r = 0; r < rows; ++r) {
@@ -40,8 +36,8 @@ Mesh Sheet(int rows, int columns, bool closed) {
 }
 
 // Copies of `mesh` side by side, and `num_loose` vertices without faces.
-Mesh Copies(const Mesh& mesh, int count, int num_loose = 0) {
-  Mesh result;
+MeshShape Copies(const MeshShape& mesh, int count, int num_loose = 0) {
+  MeshShape result;
   const int size = mesh.topology.num_vertices();
   result.positions = Eigen::Matrix3Xd::Zero(3, size * count + num_loose);
   std::vector<int32_t> corners, sizes;
@@ -66,7 +62,7 @@ void ExpectSubset(const std::vector<int>& kept, int num_vertices) {
 
 TEST(ControlMeshTest, KeepsTheAskedShareAtAllLevels) {
   for (const bool closed : {true, false}) {
-    const Mesh mesh = Sheet(60, 50, closed);
+    const MeshShape mesh = Sheet(60, 50, closed);
     for (const double fraction : {1.0, .75, .5, .25, .1, .05, .001}) {
       PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<int> kept,
                                  SelectControlVertices(mesh.topology, mesh.positions, fraction));
@@ -77,7 +73,7 @@ TEST(ControlMeshTest, KeepsTheAskedShareAtAllLevels) {
 }
 
 TEST(ControlMeshTest, CoversTheSurface) {
-  const Mesh mesh = Sheet(60, 50, true);
+  const MeshShape mesh = Sheet(60, 50, true);
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<int> kept,
                              SelectControlVertices(mesh.topology, mesh.positions, .05));
   double farthest = 0;
@@ -92,13 +88,13 @@ TEST(ControlMeshTest, CoversTheSurface) {
 }
 
 TEST(ControlMeshTest, Deterministic) {
-  const Mesh mesh = Sheet(40, 40, true);
+  const MeshShape mesh = Sheet(40, 40, true);
   EXPECT_EQ(*SelectControlVertices(mesh.topology, mesh.positions, .1),
             *SelectControlVertices(mesh.topology, mesh.positions, .1));
 }
 
 TEST(ControlMeshTest, EveryComponentKeepsAVertex) {
-  const Mesh mesh = Copies(Sheet(4, 5, true), 30);
+  const MeshShape mesh = Copies(Sheet(4, 5, true), 30);
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<int> kept,
                              SelectControlVertices(mesh.topology, mesh.positions, .01));
   EXPECT_EQ(kept.size(), 30u);
@@ -108,7 +104,7 @@ TEST(ControlMeshTest, EveryComponentKeepsAVertex) {
 }
 
 TEST(ControlMeshTest, LooseVerticesAndPointCloudsAreServed) {
-  const Mesh mesh = Copies(Sheet(20, 20, true), 1, 5);
+  const MeshShape mesh = Copies(Sheet(20, 20, true), 1, 5);
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<int> kept,
                              SelectControlVertices(mesh.topology, mesh.positions, .1));
   EXPECT_EQ(kept.size(), 41u);  // round(40.5)
@@ -121,9 +117,9 @@ TEST(ControlMeshTest, LooseVerticesAndPointCloudsAreServed) {
 }
 
 TEST(ControlMeshTest, TrianglesThatShareNoVertexAreWeldedByPlace) {
-  const Mesh sheet = Sheet(20, 20, true);
+  const MeshShape sheet = Sheet(20, 20, true);
   const Eigen::Matrix3Xi triangles = sheet.topology.triangles();
-  Mesh soup;
+  MeshShape soup;
   soup.positions.resize(3, triangles.size());
   Eigen::Matrix3Xi separate(3, triangles.cols());
   for (Eigen::Index i = 0; i < triangles.size(); ++i) {
@@ -138,7 +134,7 @@ TEST(ControlMeshTest, TrianglesThatShareNoVertexAreWeldedByPlace) {
 }
 
 TEST(ControlMeshTest, AllVerticesAtOnePlace) {
-  Mesh mesh = Sheet(10, 10, true);
+  MeshShape mesh = Sheet(10, 10, true);
   mesh.positions.setOnes();
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<int> kept,
                              SelectControlVertices(mesh.topology, mesh.positions, .1));
@@ -147,7 +143,7 @@ TEST(ControlMeshTest, AllVerticesAtOnePlace) {
 }
 
 TEST(ControlMeshTest, WrongInputIsRefusedWithWords) {
-  const Mesh mesh = Sheet(5, 5, true);
+  const MeshShape mesh = Sheet(5, 5, true);
   for (const double fraction : {0.0, -0.5, 1.01, std::nan("")}) {
     EXPECT_THAT(SelectControlVertices(mesh.topology, mesh.positions, fraction),
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("fraction")));

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "pleat/mesh/adjacency.h"
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

@@ -7,6 +7,7 @@
 
 #include "pleat/base/random.h"
 #include "pleat/geometry/control_mesh.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -14,15 +15,10 @@ namespace {
 
 using ::testing::HasSubstr;
 
-struct Mesh {
-  Topology topology;
-  Eigen::Matrix3Xd positions;
-};
-
 // A tube of 40 rings x 30 vertices around y, 2 m long, radius 0.5 m; `offset` moves it along x.
-Mesh Tube(double offset = 0) {
+MeshShape Tube(double offset = 0) {
   constexpr int kRings = 40, kSides = 30;
-  Mesh mesh;
+  MeshShape mesh;
   mesh.positions.resize(3, kRings * kSides);
   std::vector<int32_t> corners, sizes;
   for (int r = 0; r < kRings; ++r) {
@@ -41,10 +37,10 @@ Mesh Tube(double offset = 0) {
 }
 
 // Two tubes 1 mm apart, no shared vertex.
-Mesh TwoTubes() {
-  const Mesh left = Tube(), right = Tube(1.001);
+MeshShape TwoTubes() {
+  const MeshShape left = Tube(), right = Tube(1.001);
   const int size = left.topology.num_vertices();
-  Mesh both;
+  MeshShape both;
   both.positions.resize(3, 2 * size);
   both.positions << left.positions, right.positions;
   std::vector<int32_t> corners = left.topology.corner_vertices();
@@ -79,7 +75,7 @@ double MeanError(const RbfUpsampler& upsampler, const Eigen::VectorXd& field,
 }
 
 TEST(RbfUpsamplingTest, ExactAtControlVerticesAndForConstants) {
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .1);
   PLEAT_ASSERT_OK_AND_ASSIGN(const RbfUpsampler upsampler,
                              RbfUpsampler::Build(mesh.topology, mesh.positions, controls));
@@ -98,7 +94,7 @@ TEST(RbfUpsamplingTest, ExactAtControlVerticesAndForConstants) {
 }
 
 TEST(RbfUpsamplingTest, SmoothFieldsAreInterpolatedBetterWithMoreControls) {
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   const Eigen::VectorXd field = SmoothField(mesh.positions);
   double last = 1;
   for (const double fraction : {.05, .1, .25, .5, 1.0}) {
@@ -115,7 +111,7 @@ TEST(RbfUpsamplingTest, SmoothFieldsAreInterpolatedBetterWithMoreControls) {
 
 TEST(RbfUpsamplingTest, NearlyAffineFieldsAreNearlyReproduced) {
   // The long kernel behaves like a polyharmonic spline inside the controls' hull.
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .1);
   PLEAT_ASSERT_OK_AND_ASSIGN(const RbfUpsampler upsampler,
                              RbfUpsampler::Build(mesh.topology, mesh.positions, controls));
@@ -127,7 +123,7 @@ TEST(RbfUpsamplingTest, NearlyAffineFieldsAreNearlyReproduced) {
 }
 
 TEST(RbfUpsamplingTest, NothingBleedsAcrossAGap) {
-  const Mesh mesh = TwoTubes();
+  const MeshShape mesh = TwoTubes();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .05);
   PLEAT_ASSERT_OK_AND_ASSIGN(const RbfUpsampler upsampler,
                              RbfUpsampler::Build(mesh.topology, mesh.positions, controls));
@@ -138,7 +134,7 @@ TEST(RbfUpsamplingTest, NothingBleedsAcrossAGap) {
 
 TEST(RbfUpsamplingTest, FeaturesSharpenATransition) {
   // A field that jumps where a feature does: kernel distances in the feature see the jump.
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .05);
   RbfUpsamplingOptions options;
   options.features.resize(1, 1200);
@@ -155,7 +151,7 @@ TEST(RbfUpsamplingTest, FeaturesSharpenATransition) {
 }
 
 TEST(RbfUpsamplingTest, RefinementLearnsFromAnAnimationAndGeneralizes) {
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .05);
   // Rough but linear in the motion: every vertex mixes two smooth fields with its own factors.
   Random random(3);
@@ -193,7 +189,7 @@ TEST(RbfUpsamplingTest, RefinementLearnsFromAnAnimationAndGeneralizes) {
 }
 
 TEST(RbfUpsamplingTest, SameForEveryThreadCountAndPrecision) {
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   const auto controls = *SelectControlVertices(mesh.topology, mesh.positions, .1);
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const RbfUpsampler one,
@@ -211,7 +207,7 @@ TEST(RbfUpsamplingTest, SameForEveryThreadCountAndPrecision) {
 }
 
 TEST(RbfUpsamplingTest, OddMeshesAreServed) {
-  const Mesh mesh = TwoTubes();
+  const MeshShape mesh = TwoTubes();
   // All controls on one tube: the other follows through the air. One control: constant.
   for (const std::vector<int>& controls : {std::vector<int>{5, 400, 900}, {7}}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const RbfUpsampler upsampler,
@@ -228,7 +224,7 @@ TEST(RbfUpsamplingTest, OddMeshesAreServed) {
 }
 
 TEST(RbfUpsamplingTest, WrongInputIsRefusedWithWords) {
-  const Mesh mesh = Tube();
+  const MeshShape mesh = Tube();
   auto build = [&](const std::vector<int>& controls, const RbfUpsamplingOptions& options = {}) {
     return RbfUpsampler::Build(mesh.topology, mesh.positions, controls, options);
   };
@@ -258,8 +254,6 @@ TEST(RbfUpsamplingTest, StoredRowsAreChecked) {
   EXPECT_EQ(good.num_vertices(), 3);
   EXPECT_EQ(good.matrix().coeff(0, 2), 0.75f);
   EXPECT_EQ(good.matrix().coeff(1, 1), 0);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const RbfUpsampler copy, RbfUpsampler::FromMatrix(good.matrix()));
-  EXPECT_TRUE(copy.matrix().isApprox(good.matrix(), 0));
 
   const float nan = std::numeric_limits<float>::quiet_NaN();
   auto refused = HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("upsampling matrix"));

@@ -80,7 +80,7 @@ TEST(SolidSurfaceTest, CountsHolesDegenerateTrianglesAndNonManifoldEdges) {
   fin.triangles.conservativeResize(3, 13);
   fin.triangles.col(12) << 0, 1, 8;
   PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface with_fin, Prepare(fin));
-  EXPECT_EQ(with_fin.report.num_nonmanifold_edges, 1);
+  EXPECT_EQ(with_fin.report.num_non_manifold_edges, 1);
   EXPECT_EQ(with_fin.report.num_components, 1);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "support/allocation_counter.h"
+#include "support/gp_predictions.h"
 #include "support/random_data.h"
 #include "support/status_matchers.h"
 
@@ -29,9 +30,7 @@ TEST(GpRegressionTest, LearnsASmoothFunctionAndItsNoise) {
   const Eigen::MatrixXd y = SmoothOutputs(x) + noise * RandomMatrix(150, 2, 3);
   GpRegressionSummary summary;
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, GpRegression::Train(x, y, {}, &summary));
-  Eigen::MatrixXd means;
-  Eigen::VectorXd variances;
-  gp.PredictBatch(x_new, &means, &variances);
+  const auto [means, variances] = PredictRows(gp, x_new);
   EXPECT_LT((means - SmoothOutputs(x_new)).norm() / std::sqrt(200), .05);
   const GpRegressionParameters& p = gp.parameters();
   EXPECT_NEAR(std::exp(.5 * p.kernel.noise) * p.output_scale, noise, .01);
@@ -112,9 +111,7 @@ TEST(GpRegressionTest, OrderOfOutputsDoesNotMatter) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression first, GpRegression::Train(x, y));
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression second,
                              GpRegression::Train(x, y.rowwise().reverse()));
-  Eigen::MatrixXd a, b;
-  first.PredictBatch(x, &a, nullptr);
-  second.PredictBatch(x, &b, nullptr);
+  const Eigen::MatrixXd a = PredictRows(first, x).means, b = PredictRows(second, x).means;
   EXPECT_LT((a - b.rowwise().reverse()).norm(), 1e-4 * a.norm());
 }
 
@@ -163,12 +160,9 @@ TEST(GpRegressionTest, ParametersRestoreTheSamePredictions) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, GpRegression::Train(x, SmoothOutputs(x)));
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression restored,
                              GpRegression::FromParameters(gp.parameters()));
-  Eigen::MatrixXd a, b;
-  Eigen::VectorXd va, vb;
-  gp.PredictBatch(x, &a, &va);
-  restored.PredictBatch(x, &b, &vb);
-  EXPECT_EQ((a - b).norm(), 0);
-  EXPECT_EQ((va - vb).norm(), 0);
+  const GpPredictions a = PredictRows(gp, x), b = PredictRows(restored, x);
+  EXPECT_EQ((a.means - b.means).norm(), 0);
+  EXPECT_EQ((a.variances - b.variances).norm(), 0);
   EXPECT_EQ(gp.prior_variance(), restored.prior_variance());
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/gp_predictions.h"
 #include "support/random_data.h"
 #include "support/status_matchers.h"
 
@@ -46,9 +47,8 @@ TEST(MarginalLikelihoodTest, WhatSaysNothingIsFoundOut) {
   EXPECT_EQ(scales[0], scales[1]);
   EXPECT_GT(scales[2], 3 * scales[0]);
   EXPECT_GT(scales[4], 3 * scales[0]);
-  Eigen::MatrixXd by_blind, by_seeing;
-  blind.PredictBatch(x_new, &by_blind, nullptr);
-  seeing.PredictBatch(x_new, &by_seeing, nullptr);
+  const Eigen::MatrixXd by_blind = PredictRows(blind, x_new).means;
+  const Eigen::MatrixXd by_seeing = PredictRows(seeing, x_new).means;
   EXPECT_LT((by_seeing - truth(x_new)).norm(), .5 * (by_blind - truth(x_new)).norm());
 }
 

@@ -189,10 +189,10 @@ TEST(TrainSharedGplvmTest, RefusesWrongDataWithWords) {
   };
   refused(motion.features.topRows(1), {0}, {}, "two frames");
   refused(motion.features.topRows(10), {0}, {}, "10 frames");
-  refused(motion.features, {1}, {}, "begin with row 0");
-  refused(motion.features, {0, 5, 5}, {}, "must rise");
-  refused(motion.features, {0, 20}, {}, "must rise");
-  refused(motion.features, {}, {}, "begin with row 0");
+  refused(motion.features, {1}, {}, "clip starts");
+  refused(motion.features, {0, 5, 5}, {}, "clip starts ascend");
+  refused(motion.features, {0, 20}, {}, "clip starts ascend");
+  refused(motion.features, {}, {}, "clip starts");
   refused(motion.features, {0}, {.latent_dimension = 0}, "latent dimension");
   refused(motion.features, {0}, {.dynamics_order = 3}, "order");
   Eigen::MatrixXd hole = motion.features;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <set>
@@ -64,11 +66,47 @@ RunJob Succeeds() {
   };
 }
 
+// How many jobs run now and have run at most, and a wait for them.
+class Running {
+ public:
+  void Enter() {
+    std::lock_guard lock(mutex_);
+    ++now_;
+    ++entered_;
+    most_ = std::max(most_, now_);
+    changed_.notify_all();
+  }
+  void Leave() {
+    std::lock_guard lock(mutex_);
+    --now_;
+  }
+  // Until `count` jobs have begun; false when that takes so long that they never will.
+  bool WaitForEntered(int count) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(30), [&] { return entered_ >= count; });
+  }
+  // A moment in which nothing is decided, between two looks at a flag that cannot notify.
+  void Pause() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, milliseconds(1));
+  }
+  int most() {
+    std::lock_guard lock(mutex_);
+    return most_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int now_ = 0, entered_ = 0, most_ = 0;
+};
+
 // Runs until it is cancelled.
-RunJob NeverEnds(std::atomic<int>* running) {
+RunJob NeverEnds(Running* running) {
   return [running](const JobInfo&, const Progress& progress) -> absl::StatusOr<JobOutcome> {
-    ++*running;
-    while (!progress.cancelled()) std::this_thread::sleep_for(milliseconds(5));
+    running->Enter();
+    while (!progress.cancelled()) running->Pause();
+    running->Leave();
     return absl::CancelledError("stopped");
   };
 }
@@ -105,27 +143,48 @@ TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
 
 TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {
   Journal journal;
-  std::atomic<int> running = 0;
-  JobManager jobs({.num_workers = 2}, NeverEnds(&running), journal.save());
-  jobs.Start();
+  Running running;
+  // The first two end only when both run, so one worker would never be done; a third worker would
+  // show in most().
+  JobManager jobs(
+      {.num_workers = 2},
+      [&](const JobInfo& info, const Progress&) -> absl::StatusOr<JobOutcome> {
+        running.Enter();
+        const bool both = running.WaitForEntered(2);
+        running.Leave();
+        if (!both) return absl::DeadlineExceededError("alone");
+        return JobOutcome{info.name, {}};
+      },
+      journal.save());
   std::vector<std::string> ids;
   for (int i = 0; i < 4; ++i) ids.push_back(jobs.Create(Named("x"))->id);
-  const auto deadline = steady_clock::now() + std::chrono::seconds(5);
-  while (running < 2 && steady_clock::now() < deadline)
-    std::this_thread::sleep_for(milliseconds(2));
-  std::this_thread::sleep_for(milliseconds(30));
-  EXPECT_EQ(running, 2);
+  jobs.Start();
+  for (const std::string& id : ids) EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kSucceeded);
+  EXPECT_EQ(running.most(), 2);
+}
+
+TEST(JobManagerTest, JobsBeyondTheWorkersStayQueued) {
+  Journal journal;
+  Running running;
+  JobManager jobs({.num_workers = 2}, NeverEnds(&running), journal.save());
+  std::vector<std::string> ids;
+  for (int i = 0; i < 3; ++i) ids.push_back(jobs.Create(Named("x"))->id);
+  jobs.Start();
+  ASSERT_TRUE(running.WaitForEntered(2));
   EXPECT_EQ(jobs.Get(ids[2])->state, JobState::kQueued);
+  EXPECT_THAT(jobs.Cancel(ids[0]), IsOk());
+  ASSERT_TRUE(running.WaitForEntered(3));  // it takes the place that became free
+  EXPECT_EQ(jobs.Get(ids[2])->state, JobState::kRunning);
 }
 
 TEST(JobManagerTest, CancellationActsWithinASecond) {
   Journal journal;
-  std::atomic<int> running = 0;
+  Running running;
   JobManager jobs({}, NeverEnds(&running), journal.save());
   jobs.Start();
   const std::string first = jobs.Create(Named("runs"))->id;
   const std::string second = jobs.Create(Named("waits"))->id;
-  while (running == 0) std::this_thread::sleep_for(milliseconds(1));
+  ASSERT_TRUE(running.WaitForEntered(1));
   EXPECT_THAT(jobs.Cancel(second), IsOk());
   EXPECT_EQ(jobs.Get(second)->state, JobState::kCancelled);
   EXPECT_EQ(journal.at(second).info.state, JobState::kCancelled);
@@ -164,13 +223,13 @@ TEST(JobManagerTest, FailuresAndExceptionsEndOneJobOnly) {
 
 TEST(JobManagerTest, ShutdownQueuesWhatWasRunning) {
   Journal journal;
-  std::atomic<int> running = 0;
+  Running running;
   std::string id;
   {
     JobManager jobs({}, NeverEnds(&running), journal.save());
     jobs.Start();
     id = jobs.Create(Named("x"))->id;
-    while (running == 0) std::this_thread::sleep_for(milliseconds(1));
+    ASSERT_TRUE(running.WaitForEntered(1));
     const auto start = steady_clock::now();
     jobs.Shutdown();
     EXPECT_LT(steady_clock::now() - start, std::chrono::seconds(1));
@@ -209,6 +268,48 @@ TEST(JobManagerTest, ACrashedJobRunsAgainThreeTimes) {
   jobs.Start();
   EXPECT_EQ(WaitForEnd(jobs, "job-crashed").state, JobState::kSucceeded);
   EXPECT_EQ(jobs.Find("job-crashed").value()->snapshot().attempts, 3);
+}
+
+TEST(JobManagerTest, WhoAsksDoesNotWaitForAJobThatIsSaved) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool blocked = false, waits = false;  // guarded by mutex
+  JobManager jobs({}, Succeeds(), [&](const JobInfo&, int) {
+    std::unique_lock lock(mutex);
+    waits = blocked;
+    changed.notify_all();
+    changed.wait(lock, [&] { return !blocked; });
+    return absl::OkStatus();
+  });
+  const auto while_one_is_saved = [&](auto&& change, auto&& ask) {
+    {
+      std::lock_guard lock(mutex);
+      blocked = true;
+      waits = false;
+    }
+    std::thread changer(change);
+    {
+      std::unique_lock lock(mutex);
+      changed.wait(lock, [&] { return waits; });
+    }
+    ask();
+    {
+      std::lock_guard lock(mutex);
+      blocked = false;
+      changed.notify_all();
+    }
+    changer.join();
+  };
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo first, jobs.Create({}));  // the workers do not run
+  while_one_is_saved([&] { EXPECT_THAT(jobs.Create({}), IsOk()); },
+                     [&] {
+                       EXPECT_THAT(jobs.Get(first.id), IsOk());
+                       EXPECT_EQ(jobs.List().size(), 1u);  // not yet saved, so not yet there
+                     });
+  EXPECT_EQ(jobs.List().size(), 2u);
+  while_one_is_saved([&] { EXPECT_THAT(jobs.Cancel(first.id), IsOk()); },
+                     [&] { EXPECT_EQ(jobs.List().size(), 2u); });
+  EXPECT_EQ(jobs.Get(first.id)->state, JobState::kCancelled);
 }
 
 TEST(JobManagerTest, RefusesWhenFullOrNotSaved) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/gp_predictions.h"
 #include "support/random_data.h"
 #include "support/status_matchers.h"
 
@@ -43,15 +44,13 @@ TEST(RidgeTest, AsAGaussianProcessItPredictsTheSameAndKnowsItsVariance) {
     for (const double penalty : {1e-3, 1e-1}) {
       PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge ridge, TrainRidge(x, y, {.penalty = penalty}));
       PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, TrainRidgeGp(x, y, {.penalty = penalty}));
-      Eigen::MatrixXd means;
-      Eigen::VectorXd variances;
-      gp.PredictBatch(queries, &means, &variances);
+      const Eigen::MatrixXd means = PredictRows(gp, queries).means;
       EXPECT_LT((means - ridge.Predict(queries)).norm(), 1e-4 * means.norm());
       // The variance of a linear map grows with the square of the distance from the mean.
       Eigen::MatrixXd ray(2, num_inputs);
       ray.row(0) = x.colwise().mean() + queries.row(0);
       ray.row(1) = x.colwise().mean() + 2 * queries.row(0);
-      gp.PredictBatch(ray, &means, &variances);
+      const Eigen::VectorXd variances = PredictRows(gp, ray).variances;
       EXPECT_GT(variances[0], 0);
       EXPECT_NEAR(variances[1], 4 * variances[0], 1e-2 * variances[1]);
     }

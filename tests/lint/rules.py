@@ -90,6 +90,8 @@ RULES = (
          files=(("lib/base/src/clock.cpp", "the one clock of the library"),
                 ("lib/store/src/upload_area.cpp", "what is left of old uploads is known by the age of its file"),
                 ("lib/jobs/src/job_state_machine.cpp", "the default of the clock that jobs take as an argument"),
+                ("lib/service/src/compression.cpp", "it reports how long coding took; no bytes depend on it"),
+                ("lib/local/src/local_pose_stream.cpp", "it reports how long a pose waited; no frame depends on it"),
                 ("lib/local/src/pose_batcher.cpp", "it reports how long a batch took; results never depend on it"),
                 ("lib/local/src/pose_session.cpp", "it reports how long a frame took; results never depend on it"))),
     Rule("randomness", "the same seed gives the same model everywhere: library code draws its own random numbers",

@@ -1,16 +1,17 @@
-// Whole live turns as the server plays them: pose -> queue -> batch -> evaluation -> encoding ->
-// bytes. In the steady state they allocate nothing. What is left to Draco does: every frame of the
-// encodings mesh and points, and of a stream of differences the key frames (the first one, those a
-// client asks for, those after a cut) and differences of meshes with too few vertices for
-// ResidualWriter. The messages of gRPC are not counted here; they belong to the transport.
+// Whole live turns as the server plays them, through a PoseStream: pose -> queue -> batch ->
+// evaluation -> encoding -> bytes. In the steady state they allocate nothing. What is left to Draco
+// does: every frame of the encodings mesh and points, and of a stream of differences the key frames
+// (the first one, those a client asks for, those after a cut) and differences of meshes with too
+// few vertices for ResidualWriter. The messages of gRPC are not counted here; they belong to the
+// transport.
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <semaphore>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "pleat/local/live_queue.h"
+#include "local_pose_stream.h"
 #include "pleat/local/pose_batcher.h"
 #include "pleat/local/pose_session.h"
 #include "support/allocation_counter.h"
@@ -43,55 +44,42 @@ std::vector<LivePose> SlowMotion(const CharacterModel& model) {
   return poses;
 }
 
-// A live session without its network: what LiveReactor does between its messages.
-class Client final : public PoseWork {
+// A live session without its network: what its handler does between its messages.
+class Client final : public LiveListener {
  public:
-  Client(const LiveRules& rules, PoseSessionOptions options)
-      : model_(LargeTube()),
-        session_(PoseSession::Open(model_, std::move(options)).value()),
-        queue_(rules, model_->options().history, model_->skeleton().num_joints()) {}
+  Client(const LiveRules& rules, PoseSessionOptions options, PoseBatcher* batcher)
+      : stream_(LocalPoseSession::Open(LargeTube(), std::move(options)).value(), rules, batcher,
+                this) {}
 
-  void Send(const LivePose& pose) { queue_.Push(pose, std::chrono::steady_clock::now()); }
-  void Submit(PoseBatcher* batcher) { batcher->Submit(model_.get(), this); }
-  // Takes the bytes of the turn as the transport does, which gives a string of its own in exchange.
+  void Send(const LivePose& pose) { stream_.Push(pose); }
+  void Answer() { stream_.Answer(); }
+  // Waits for the reply of a turn.
   void Receive() {
     done_.acquire();
-    sent_.swap(frame_.draco);
-    if (status_.ok()) status_ = queue_.Acknowledge(++num_received_);  // an expectation allocates
+    if (status_.ok()) status_ = stream_.Acknowledge(++num_received_);  // an expectation allocates
   }
 
   const absl::Status& status() const { return status_; }
   const EncodedFrame& frame() const { return frame_; }
-  const std::string& sent() const { return sent_; }
   int num_keyframes() const { return num_keyframes_; }
 
-  bool Prepare(PoseQuery* query) override {
-    queue_.Take(&turn_);
-    poses_.clear();
-    for (const Pose& pose : turn_.poses) poses_.push_back(&pose);
-    *query = session_->QueryOf(&poses_);
-    return turn_.status.ok();
-  }
-  PoseEvaluator& evaluator() override { return session_->evaluator(); }
-  void Evaluated(const PoseQuery* query, double evaluate_us, int) override {
-    if (turn_.keyframe) session_->RequestKeyframe();
-    status_ = query != nullptr ? session_->Encode(*query, evaluate_us, &frame_) : turn_.status;
-    num_keyframes_ += frame_.mark.keyframe;
+  // Takes the frame as the transport does, which gives one of its own in exchange.
+  void OnReply(LiveReply&& reply) override {
+    status_ = reply.frame.status();
+    if (status_.ok()) {
+      std::swap(frame_, *reply.frame);
+      num_keyframes_ += frame_.mark.keyframe;
+    }
     done_.release();
   }
 
  private:
-  std::shared_ptr<const CharacterModel> model_;
-  std::unique_ptr<PoseSession> session_;
-  LiveQueue queue_;
-  LiveTurn turn_;
-  std::vector<const Pose*> poses_;
   EncodedFrame frame_;
-  std::string sent_;
   absl::Status status_;
   uint64_t num_received_ = 0;
   int num_keyframes_ = 0;
   std::counting_semaphore<> done_{0};
+  LocalPoseStream stream_;
 };
 
 class LiveTurnAllocationTest : public testing::Test {
@@ -101,7 +89,7 @@ class LiveTurnAllocationTest : public testing::Test {
   }
 
   Client* Add(const LiveRules& rules, PoseSessionOptions options) {
-    clients_.push_back(std::make_unique<Client>(rules, std::move(options)));
+    clients_.push_back(std::make_unique<Client>(rules, std::move(options), &batcher_));
     return clients_.back().get();
   }
 
@@ -110,7 +98,7 @@ class LiveTurnAllocationTest : public testing::Test {
     const long before = NumAllocations();
     for (const auto& client : clients_) {
       for (int i = 0; i < poses_per_turn; ++i) client->Send(pose);
-      client->Submit(&batcher_);
+      client->Answer();
     }
     for (const auto& client : clients_) client->Receive();
     const long count = NumAllocations() - before;
@@ -140,7 +128,7 @@ TEST_F(LiveTurnAllocationTest, DifferencesOfTheMesh) {
   const Client* client = Add({}, {.encoder = kDifferences});
   EXPECT_EQ(TurnsAfterTheFirst(), 0);
   EXPECT_EQ(client->num_keyframes(), 1) << "the motion is too fast for this test";
-  EXPECT_FALSE(client->sent().empty());
+  EXPECT_FALSE(client->frame().draco.empty());
 }
 
 TEST_F(LiveTurnAllocationTest, DifferencesOfTheControlMesh) {

@@ -32,7 +32,7 @@ class LocalCharacterServiceTest : public testing::Test {
   }
   JobInfo RunToEnd(const std::string& job_id) {
     JobInfo last;
-    EXPECT_THAT(service_->WatchJob(job_id,
+    EXPECT_THAT(WatchJob(service_->jobs(), job_id,
                                    [&](const JobInfo& info) {
                                      last = info;
                                      return true;
@@ -41,8 +41,8 @@ class LocalCharacterServiceTest : public testing::Test {
     return last;
   }
   std::string TrainModel(const MeshSequence& sequence, const std::string& name = "") {
-    const std::string id = service_->UploadSequence(sequence, {})->id;
-    return RunToEnd(service_->CreateTrainingJob({.sequence_ids = {id}, .model_name = name})->id)
+    const std::string id = service_->sequences().Upload(sequence, {})->id;
+    return RunToEnd(service_->jobs().CreateTraining({.sequence_ids = {id}, .model_name = name})->id)
         .result_id;
   }
 
@@ -54,28 +54,28 @@ class LocalCharacterServiceTest : public testing::Test {
 TEST_F(LocalCharacterServiceTest, EverythingSurvivesARestart) {
   Open();
   const MeshSequence tube = MakeSwayingTube(5);
-  const std::string sequence_id = service_->UploadSequence(tube, {})->id;
+  const std::string sequence_id = service_->sequences().Upload(tube, {})->id;
   const JobInfo job = RunToEnd(
-      service_->CreateTrainingJob({.sequence_ids = {sequence_id}, .model_name = "mine"})->id);
+      service_->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "mine"})->id);
   ASSERT_EQ(job.state, JobState::kSucceeded);
-  const std::string bytes = service_->DownloadModel(job.result_id, {}).value();
+  const std::string bytes = service_->models().Download(job.result_id, {}).value();
   Open();
-  EXPECT_EQ(service_->GetSequence(sequence_id)->name, "tube");
-  EXPECT_EQ(service_->GetSequence(sequence_id)->num_frames, 5);
-  EXPECT_EQ(service_->GetJob(job.id)->state, JobState::kSucceeded);
-  EXPECT_EQ(service_->GetJob(job.id)->result_id, job.result_id);
-  EXPECT_EQ(service_->GetModel(job.result_id)->name, "mine");
-  EXPECT_EQ(service_->DownloadModel(job.result_id, {}).value(), bytes);
-  EXPECT_THAT(service_->AcquireModel(job.result_id), IsOk());
+  EXPECT_EQ(service_->sequences().Get(sequence_id)->name, "tube");
+  EXPECT_EQ(service_->sequences().Get(sequence_id)->num_frames, 5);
+  EXPECT_EQ(service_->jobs().Get(job.id)->state, JobState::kSucceeded);
+  EXPECT_EQ(service_->jobs().Get(job.id)->result_id, job.result_id);
+  EXPECT_EQ(service_->models().Get(job.result_id)->name, "mine");
+  EXPECT_EQ(service_->models().Download(job.result_id, {}).value(), bytes);
+  EXPECT_THAT(service_->models().Acquire(job.result_id), IsOk());
 }
 
 TEST_F(LocalCharacterServiceTest, AJobThatWasRunningGoesOnAfterARestart) {
   Open();
   trainer_.step_ms = 50;
-  const std::string sequence_id = service_->UploadSequence(MakeSwayingTube(5), {})->id;
-  const std::string running = service_->CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
+  const std::string sequence_id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
+  const std::string running = service_->jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   const std::string waiting =
-      service_->CreateTrainingJob({.sequence_ids = {sequence_id}, .options = {.seed = 2}})->id;
+      service_->jobs().CreateTraining({.sequence_ids = {sequence_id}, .options = {.seed = 2}})->id;
   while (trainer_.num_started == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   trainer_.step_ms = 0;
   Open();
@@ -87,9 +87,9 @@ TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays
   Open();
   const MeshSequence large = MakeSwayingTube(120, "large", 60, 40);
   const CompressOptions options{.max_error_mm = .2};
-  const std::string sequence_id = service_->UploadSequence(large, {})->id;
-  const std::string job = service_->CreateCompressionJob(sequence_id, options)->id;
-  while (service_->GetJob(job)->stage != "encode") {
+  const std::string sequence_id = service_->sequences().Upload(large, {})->id;
+  const std::string job = service_->jobs().CreateCompression(sequence_id, options)->id;
+  while (service_->jobs().Get(job)->stage != "encode") {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   Open();
@@ -97,77 +97,77 @@ TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays
   ASSERT_EQ(done.state, JobState::kSucceeded) << done.error;
   EXPECT_EQ(std::get<CompressOptions>(done.options).max_error_mm, .2);
   EXPECT_EQ(done.name, "large");
-  const std::string bytes = service_->DownloadCompressedSequence(done.result_id, {}).value();
+  const std::string bytes = service_->compressed_sequences().Download(done.result_id, {}).value();
   EXPECT_TRUE(bytes == CompressSequence(large, options, nullptr).value());
   Open();
-  EXPECT_EQ(service_->GetJob(job)->result_id, done.result_id);
-  EXPECT_TRUE(service_->DownloadCompressedSequence(done.result_id, {}).value() == bytes);
-  EXPECT_EQ(service_->GetCompressedSequence(done.result_id)->record->sequence_id, sequence_id);
+  EXPECT_EQ(service_->jobs().Get(job)->result_id, done.result_id);
+  EXPECT_TRUE(service_->compressed_sequences().Download(done.result_id, {}).value() == bytes);
+  EXPECT_EQ(service_->compressed_sequences().Get(done.result_id)->record->sequence_id, sequence_id);
   EXPECT_TRUE(service_->missing_files().empty());
 }
 
 TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
   Open();
   const std::string file = CompressSequence(MakeSwayingTube(20), {}, nullptr).value();
-  const std::string id = service_->UploadCompressedSequence(file, {})->id;
-  PLEAT_ASSERT_OK_AND_ASSIGN(auto session, service_->OpenDecode(id, {}));
-  const uint64_t one = service_->decoder_bytes();
+  const std::string id = service_->compressed_sequences().Upload(file, {})->id;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto session, service_->compressed_sequences().OpenDecode(id, {}));
+  const uint64_t one = service_->compressed_sequences().decoder_bytes();
   EXPECT_GT(one, file.size() + 96 * 12 * 16);
   session.reset();
-  EXPECT_EQ(service_->decoder_bytes(), 0u);
+  EXPECT_EQ(service_->compressed_sequences().decoder_bytes(), 0u);
 
   service_.reset();
   service_ =
       LocalCharacterService::Open(
           {.data_dir = folder_.path(), .decode_bytes = 5 * one / 2, .train = trainer_.function()})
           .value();
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto first, service_->OpenDecode(id, {}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(auto second, service_->OpenDecode(id, {5, 9}));
-  EXPECT_THAT(service_->OpenDecode(id, {}),
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto first, service_->compressed_sequences().OpenDecode(id, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto second, service_->compressed_sequences().OpenDecode(id, {5, 9}));
+  EXPECT_THAT(service_->compressed_sequences().OpenDecode(id, {}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("--decode-bytes")));
   second.reset();
-  EXPECT_THAT(service_->OpenDecode(id, {}), IsOk());
+  EXPECT_THAT(service_->compressed_sequences().OpenDecode(id, {}), IsOk());
 }
 
 TEST_F(LocalCharacterServiceTest, AnOwnRigSurvivesARestartAndGoesWithItsJob) {
   Open();
   trainer_.step_ms = 50;
   const MeshSequence tube = MakeSwayingTube(5);
-  const std::string id = service_->UploadSequence(tube, {})->id;
+  const std::string id = service_->sequences().Upload(tube, {})->id;
   const Rig known = MakeFakeModel(tube, {})->rig();
   const std::string rig = EncodeRig({known.skeleton, known.weights, 0, {1}});
-  const std::string first = service_->CreateTrainingJob({.sequence_ids = {id}})->id;
-  const JobInfo waiting = *service_->CreateTrainingJob(
-      {.sequence_ids = {id}, .options = {.learner = "gp"}, .rig = rig});
+  const std::string first = service_->jobs().CreateTraining({.sequence_ids = {id}})->id;
+  const JobInfo waiting = *service_->jobs().CreateTraining(
+      {.sequence_ids = {id}, .options = {.learner = LearnerChoice::kGp}, .rig = rig});
   EXPECT_EQ(waiting.state, JobState::kQueued);
   const std::string path =
       folder_.path() + "/blobs/" + waiting.rig_id.substr(0, 2) + "/" + waiting.rig_id;
   trainer_.step_ms = 0;
   Open();
-  EXPECT_TRUE(std::filesystem::exists(path) || IsFinal(service_->GetJob(waiting.id)->state));
+  EXPECT_TRUE(std::filesystem::exists(path) || IsFinal(service_->jobs().Get(waiting.id)->state));
   const JobInfo job = RunToEnd(waiting.id);
   ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
   EXPECT_EQ(job.rig_id, waiting.rig_id);
-  const Skeleton trained = service_->GetModel(job.result_id)->skeleton;
+  const Skeleton trained = service_->models().Get(job.result_id)->skeleton;
   EXPECT_EQ(trained.joint(1).name, "chest");
   EXPECT_EQ(trained.rest_position(1), known.skeleton.rest_position(1));  // locked
   EXPECT_TRUE(std::filesystem::exists(path));
   Open();
   EXPECT_FALSE(std::filesystem::exists(path));  // no job needs it any more
-  EXPECT_EQ(service_->GetJob(waiting.id)->rig_id, waiting.rig_id);
+  EXPECT_EQ(service_->jobs().Get(waiting.id)->rig_id, waiting.rig_id);
 }
 
 TEST_F(LocalCharacterServiceTest, TheModelHasTheNameOfTheJobAndTheSameBytesEachTime) {
   Open();
   const MeshSequence tube = MakeSwayingTube(5);
   const std::string first = TrainModel(tube);
-  EXPECT_EQ(service_->GetModel(first)->name, "tube");
+  EXPECT_EQ(service_->models().Get(first)->name, "tube");
   EXPECT_EQ(TrainModel(tube), first);
-  EXPECT_EQ(service_->ListModels()->size(), 1u);
+  EXPECT_EQ(service_->models().List()->size(), 1u);
   const std::string named = TrainModel(tube, "other");
   EXPECT_NE(named, first);
-  EXPECT_EQ(DecodeModel(service_->DownloadModel(named, {}).value()).value()->name(), "other");
-  const ModelInfo info = service_->GetModel(named).value();
+  EXPECT_EQ(DecodeModel(service_->models().Download(named, {}).value()).value()->name(), "other");
+  const ModelInfo info = service_->models().Get(named).value();
   EXPECT_EQ(info.skeleton.num_joints(), 3);
   EXPECT_EQ(info.num_control_vertices, tube.num_vertices());
   EXPECT_EQ(info.record.warnings, std::vector<std::string>{"made by a test"});
@@ -179,20 +179,20 @@ TEST_F(LocalCharacterServiceTest, UploadsGoOnWhereTheyStopped) {
   const std::string bytes = EncodeSequence(MakeSwayingTube(5));
   const std::string id = SequenceId(bytes);
   {
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->BeginUpload(id, bytes.size(), 0));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->sequences().BeginUpload(id, bytes.size(), 0));
     ASSERT_THAT(upload->Append(bytes.substr(0, 100)), IsOk());
   }
   Open();
-  EXPECT_EQ(service_->QueryUpload(id)->received_bytes, 100u);
-  EXPECT_FALSE(service_->QueryUpload(id)->complete);
+  EXPECT_EQ(service_->sequences().QueryUpload(id)->received_bytes, 100u);
+  EXPECT_FALSE(service_->sequences().QueryUpload(id)->complete);
   {
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->BeginUpload(id, bytes.size(), 100));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->sequences().BeginUpload(id, bytes.size(), 100));
     ASSERT_THAT(upload->Append(bytes.substr(100)), IsOk());
-    EXPECT_EQ(service_->FinishUpload(upload.get())->id, id);
+    EXPECT_EQ(upload->Finish()->id, id);
   }
-  EXPECT_TRUE(service_->QueryUpload(id)->complete);
-  EXPECT_EQ(service_->UploadSequence(MakeSwayingTube(5), {})->id, id);
-  EXPECT_EQ(service_->ListSequences()->size(), 1u);
+  EXPECT_TRUE(service_->sequences().QueryUpload(id)->complete);
+  EXPECT_EQ(service_->sequences().Upload(MakeSwayingTube(5), {})->id, id);
+  EXPECT_EQ(service_->sequences().List()->size(), 1u);
 }
 
 TEST_F(LocalCharacterServiceTest, BytesThatAreNoSequenceAreRefusedAndForgotten) {
@@ -201,49 +201,49 @@ TEST_F(LocalCharacterServiceTest, BytesThatAreNoSequenceAreRefusedAndForgotten) 
   for (const std::string& bytes :
        {std::string("this is no sequence file"), std::string("DRACO\x02\x02\x01\x01\0\0", 11)}) {
     const std::string id = SequenceId(bytes);
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->BeginUpload(id, bytes.size(), 0));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->sequences().BeginUpload(id, bytes.size(), 0));
     ASSERT_THAT(upload->Append(bytes), IsOk());
-    EXPECT_THAT(service_->FinishUpload(upload.get()),
+    EXPECT_THAT(upload->Finish(),
                 HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
-    EXPECT_EQ(service_->QueryUpload(id)->received_bytes, 0u);
+    EXPECT_EQ(service_->sequences().QueryUpload(id)->received_bytes, 0u);
   }
-  EXPECT_TRUE(service_->ListSequences()->empty());
+  EXPECT_TRUE(service_->sequences().List()->empty());
 }
 
 TEST_F(LocalCharacterServiceTest, LimitsAreNamed) {
   Open({.max_upload_bytes = 1 << 20, .max_vertices = 100, .max_frames = 4, .max_clips = 2});
-  EXPECT_THAT(service_->UploadSequence(MakeSwayingTube(5), {}),
+  EXPECT_THAT(service_->sequences().Upload(MakeSwayingTube(5), {}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-frames")));
-  EXPECT_THAT(service_->UploadSequence(MakeSwayingTube(2, "large", 20, 20), {}),
+  EXPECT_THAT(service_->sequences().Upload(MakeSwayingTube(2, "large", 20, 20), {}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-vertices")));
-  EXPECT_THAT(service_->BeginUpload(std::string(64, 'a'), (1 << 20) + 1, 0),
+  EXPECT_THAT(service_->sequences().BeginUpload(std::string(64, 'a'), (1 << 20) + 1, 0),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-upload-bytes")));
-  EXPECT_THAT(service_->BeginUpload(std::string(64, 'a'), 0, 0),
+  EXPECT_THAT(service_->sequences().BeginUpload(std::string(64, 'a'), 0, 0),
               HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
   const std::string bytes = EncodeSequence(MakeSwayingTube(5));  // through the other door
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload,
-                             service_->BeginUpload(SequenceId(bytes), bytes.size(), 0));
+                             service_->sequences().BeginUpload(SequenceId(bytes), bytes.size(), 0));
   ASSERT_THAT(upload->Append(bytes), IsOk());
-  EXPECT_THAT(service_->FinishUpload(upload.get()),
+  EXPECT_THAT(upload->Finish(),
               HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
-  const std::string id = service_->UploadSequence(MakeSwayingTube(2), {})->id;
-  EXPECT_THAT(service_->CreateTrainingJob({.sequence_ids = {id, id, id}}),
+  const std::string id = service_->sequences().Upload(MakeSwayingTube(2), {})->id;
+  EXPECT_THAT(service_->jobs().CreateTraining({.sequence_ids = {id, id, id}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("1 to 2")));
   const std::string model_id = TrainModel(MakeSwayingTube(2));
-  const PoseTrack track = MakeMotion(service_->GetModel(model_id)->skeleton, 5);
-  EXPECT_THAT(service_->OpenClip(model_id, track, {}),
+  const PoseTrack track = MakeMotion(service_->models().Get(model_id)->skeleton, 5);
+  EXPECT_THAT(service_->poses().OpenClip(model_id, track, {}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-frames")));
 }
 
 TEST_F(LocalCharacterServiceTest, ADeletedModelStaysUsableForThoseWhoHoldIt) {
   Open();
   const std::string id = TrainModel(MakeSwayingTube(5));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, service_->OpenSession(id, {}));
-  ASSERT_THAT(service_->DeleteModel(id), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, service_->poses().OpenSession(id, {}));
+  ASSERT_THAT(service_->models().Delete(id), IsOk());
   const Pose rest = Pose::Rest(MakeFakeModel(MakeSwayingTube(5), {})->skeleton());
   EXPECT_THAT(session->Show({&rest}), IsOk());
-  EXPECT_THAT(service_->AcquireModel(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_->DeleteModel(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_->models().Acquire(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_->models().Delete(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
 }
 
 TEST_F(LocalCharacterServiceTest, TheCacheGivesMemoryBack) {
@@ -252,10 +252,10 @@ TEST_F(LocalCharacterServiceTest, TheCacheGivesMemoryBack) {
   for (int frames = 2; frames < 8; ++frames) ids.push_back(TrainModel(MakeSwayingTube(frames)));
   EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), 6u);
   for (int round = 0; round < 3; ++round) {
-    for (const std::string& id : ids) ASSERT_THAT(service_->AcquireModel(id), IsOk());
-    EXPECT_LE(service_->cache_stats().used_bytes, 200'000u);
+    for (const std::string& id : ids) ASSERT_THAT(service_->models().Acquire(id), IsOk());
+    EXPECT_LE(service_->models().cache_stats().used_bytes, 200'000u);
   }
-  EXPECT_EQ(service_->cache_stats().num_pinned, 0);
+  EXPECT_EQ(service_->models().cache_stats().num_pinned, 0);
 }
 
 TEST_F(LocalCharacterServiceTest, DamagedFilesAreNoticed) {
@@ -264,22 +264,22 @@ TEST_F(LocalCharacterServiceTest, DamagedFilesAreNoticed) {
   const std::string path = folder_.path() + "/blobs/" + id.substr(0, 2) + "/" + id;
   ASSERT_TRUE(std::filesystem::exists(path));
   std::ofstream(path, std::ios::in | std::ios::binary).seekp(100).write("damage", 6);
-  EXPECT_THAT(service_->AcquireModel(id), HasStatus(absl::StatusCode::kDataLoss, testing::_));
+  EXPECT_THAT(service_->models().Acquire(id), HasStatus(absl::StatusCode::kDataLoss, testing::_));
   std::filesystem::remove(path);
-  EXPECT_FALSE(service_->AcquireModel(id).ok());
+  EXPECT_FALSE(service_->models().Acquire(id).ok());
   Open();
   EXPECT_EQ(service_->missing_files(), std::vector<std::string>{id});
-  EXPECT_THAT(service_->DeleteModel(id), IsOk());
+  EXPECT_THAT(service_->models().Delete(id), IsOk());
 }
 
 TEST_F(LocalCharacterServiceTest, AJobWhoseSequenceIsGoneFailsWithAReason) {
   Open();
   trainer_.step_ms = 5;
-  const std::string a = service_->UploadSequence(MakeSwayingTube(5), {})->id;
-  const std::string b = service_->UploadSequence(MakeSwayingTube(6), {})->id;
-  ASSERT_THAT(service_->CreateTrainingJob({.sequence_ids = {a}}), IsOk());
-  const std::string job = service_->CreateTrainingJob({.sequence_ids = {b}})->id;
-  ASSERT_THAT(service_->DeleteSequence(b), IsOk());
+  const std::string a = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
+  const std::string b = service_->sequences().Upload(MakeSwayingTube(6), {})->id;
+  ASSERT_THAT(service_->jobs().CreateTraining({.sequence_ids = {a}}), IsOk());
+  const std::string job = service_->jobs().CreateTraining({.sequence_ids = {b}})->id;
+  ASSERT_THAT(service_->sequences().Delete(b), IsOk());
   const JobInfo info = RunToEnd(job);
   EXPECT_EQ(info.state, JobState::kFailed);
   EXPECT_THAT(info.error, HasStatus(absl::StatusCode::kNotFound, HasSubstr("sequence")));
@@ -288,14 +288,14 @@ TEST_F(LocalCharacterServiceTest, AJobWhoseSequenceIsGoneFailsWithAReason) {
 TEST_F(LocalCharacterServiceTest, ShutdownEndsWatchers) {
   Open();
   trainer_.step_ms = 100;
-  const std::string id = service_->UploadSequence(MakeSwayingTube(5), {})->id;
-  ASSERT_THAT(service_->CreateTrainingJob({.sequence_ids = {id}}), IsOk());
-  const std::string waiting = service_->CreateTrainingJob({.sequence_ids = {id}})->id;
+  const std::string id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
+  ASSERT_THAT(service_->jobs().CreateTraining({.sequence_ids = {id}}), IsOk());
+  const std::string waiting = service_->jobs().CreateTraining({.sequence_ids = {id}})->id;
   std::thread stopper([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     service_->Shutdown();
   });
-  EXPECT_THAT(service_->WatchJob(waiting, [](const JobInfo&) { return true; }),
+  EXPECT_THAT(WatchJob(service_->jobs(), waiting, [](const JobInfo&) { return true; }),
               HasStatus(absl::StatusCode::kUnavailable, testing::_));
   stopper.join();
 }

@@ -66,7 +66,7 @@ class PoseBatcherTest : public testing::Test {
  protected:
   std::unique_ptr<Show> MakeShow(std::shared_ptr<const CharacterModel> model, int t) {
     const PoseTrack track = MakeMotion(model->skeleton(), t + 1);
-    return std::make_unique<Show>(std::move(model), track.poses[t], &order_);
+    return std::make_unique<Show>(std::move(model), track.pose(t), &order_);
   }
   std::vector<Show*> order_;  // of one thread
 };
@@ -147,7 +147,7 @@ TEST_F(PoseBatcherTest, ManyThreadsShareTheWork) {
   std::vector<std::unique_ptr<Show>> shows;
   for (int t = 0; t < 200; ++t) {
     const PoseTrack track = MakeMotion(model->skeleton(), t % 10 + 1);
-    shows.push_back(std::make_unique<Show>(model, track.poses.back(), nullptr));
+    shows.push_back(std::make_unique<Show>(model, track.poses().back(), nullptr));
   }
   {
     auto executor = std::make_unique<Executor>(4);

@@ -27,9 +27,8 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
   for (const FrameEncoding encoding :
        {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     for (const double fps : {25.0, 60.0}) {
-      PoseTrack track = track_;
-      track.fps = fps;
-      track.clip_starts = {0, 5};
+      const PoseTrack track =
+          PoseTrack::FromValid({.fps = fps, .poses = track_.poses(), .clip_starts = {0, 5}});
       std::vector<EvaluatedFrame> truth;
       PoseEvaluator evaluator(model_);
       ASSERT_THAT(evaluator.EvaluateClip(track, {},
@@ -39,7 +38,8 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
                                          }),
                   IsOk());
       PLEAT_ASSERT_OK_AND_ASSIGN(
-          const auto clip, ClipSession::Open(model_, track, {.encoder = {.encoding = encoding}}));
+          const auto clip,
+          LocalClipSession::Open(model_, track, {.encoder = {.encoding = encoding}}));
       PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(clip->header()));
       for (int t = 0; t < track.num_frames(); ++t) {
         ASSERT_FALSE(clip->done());
@@ -58,30 +58,31 @@ TEST_F(PoseSessionTest, ClipFramesDecodeToTheEvaluatorsPositions) {
 TEST_F(PoseSessionTest, SkinnedOnlyLeavesTheDetailOut) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const auto session,
-      PoseSession::Open(model_, {.skinned_only = true, .encoder = {.position_bits = 20}}));
+      LocalPoseSession::Open(model_, {.skinned_only = true, .encoder = {.position_bits = 20}}));
   PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(session->header()));
   EvaluatedFrame truth;
-  ASSERT_THAT(PoseEvaluator(model_).EvaluateSkinned(track_.poses[3], {}, &truth), IsOk());
+  ASSERT_THAT(PoseEvaluator(model_).EvaluateSkinned(track_.pose(3), {}, &truth), IsOk());
   Eigen::Matrix3Xf positions;
-  ASSERT_THAT(decoder.Decode(session->Show({&track_.poses[3]})->draco, &positions), IsOk());
+  ASSERT_THAT(decoder.Decode(session->Show({&track_.pose(3)})->draco, &positions), IsOk());
   EXPECT_LE((positions - truth.positions).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST_F(PoseSessionTest, RefusesWhatDoesNotFit) {
-  EXPECT_THAT(PoseSession::Open(model_, {.bone_scales = {1, 1}, .encoder = {}}),
+  EXPECT_THAT(LocalPoseSession::Open(model_, {.bone_scales = {1, 1}, .encoder = {}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("bone scales")));
-  EXPECT_THAT(PoseSession::Open(model_, {.bone_scales = {1, 1, 1000}, .encoder = {}}),
+  EXPECT_THAT(LocalPoseSession::Open(model_, {.bone_scales = {1, 1, 1000}, .encoder = {}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("1000")));
-  PoseTrack wrong = track_;
-  wrong.poses[4].rotations.pop_back();
-  EXPECT_THAT(ClipSession::Open(model_, wrong, {}),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 4")));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, PoseSession::Open(model_, {}));
+  PoseTrack::Parts wrong = track_.parts();
+  for (Pose& pose : wrong.poses) pose.rotations.pop_back();
+  EXPECT_THAT(LocalClipSession::Open(model_, PoseTrack::FromValid(wrong), {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("2 rotations")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, LocalPoseSession::Open(model_, {}));
   EXPECT_FALSE(session->Show({}).ok());
   EXPECT_FALSE(session->Show({&wrong.poses[4]}).ok());
-  PoseTrack far = track_;
+  PoseTrack::Parts far = track_.parts();
   far.poses[2].root_position.x() = 1e6;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto clip, ClipSession::Open(model_, far, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto clip,
+                             LocalClipSession::Open(model_, PoseTrack::FromValid(far), {}));
   ASSERT_THAT(clip->Next(), IsOk());
   ASSERT_THAT(clip->Next(), IsOk());
   EXPECT_THAT(clip->Next(), HasStatus(absl::StatusCode::kOutOfRange, HasSubstr("frame 2")));

@@ -14,10 +14,12 @@ Eigen::Matrix3Xd RandomPoints(int count, uint64_t seed) {
   return points;
 }
 
-const RigidTransform kMotion{RotationFromExponentialMap({0.4, -1.2, 2.0}), {3, -1, 0.5}};
+const RigidTransform kMotion{QuaternionFromExponentialMap({0.4, -1.2, 2.0}).toRotationMatrix(),
+                             {3, -1, 0.5}};
 
 TEST(RigidTest, ComposesAndInverts) {
-  const RigidTransform other{RotationFromExponentialMap({1, 0, 0.3}), {0, 2, 0}};
+  const RigidTransform other{QuaternionFromExponentialMap({1, 0, 0.3}).toRotationMatrix(),
+                             {0, 2, 0}};
   const Eigen::Vector3d point(0.1, 0.2, 0.3);
   EXPECT_TRUE(((kMotion * other) * point).isApprox(kMotion * (other * point)));
   EXPECT_TRUE((kMotion.Inverse() * (kMotion * point)).isApprox(point));
@@ -52,7 +54,9 @@ TEST(RigidTest, NoSmallMotionFitsBetter) {
   for (int i = 0; i < 3; ++i) {
     for (const double step : {-1e-3, 1e-3}) {
       RigidTransform other = fit;
-      other.rotation = fit.rotation * RotationFromExponentialMap(step * Eigen::Vector3d::Unit(i));
+      other.rotation =
+          fit.rotation *
+          QuaternionFromExponentialMap(step * Eigen::Vector3d::Unit(i)).toRotationMatrix();
       EXPECT_GT(energy(other), energy(fit));
       other = fit;
       other.translation[i] += step;

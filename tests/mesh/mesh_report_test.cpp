@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "pleat/mesh/shapes.h"
+#include "support/mesh_shapes.h"
 
 namespace pleat {
 namespace {

@@ -35,7 +35,7 @@ const Performer& SmallPerformer() {
 // Skinned truth of frame t, 3 x V.
 Eigen::Matrix3Xd SkinnedTruth(const Performer& performer, int t) {
   BoneTransforms bones;
-  ComputeBoneTransforms(performer.truth.rig.skeleton, performer.truth.track.poses[t], {}, &bones);
+  ComputeBoneTransforms(performer.truth.rig.skeleton, performer.truth.track.pose(t), {}, &bones);
   Eigen::Matrix3Xd positions;
   SkinVertices(performer.truth.rig.weights, performer.truth.rig.rest_positions, bones, &positions);
   return positions;
@@ -138,7 +138,7 @@ TEST(Performer, HasTheTemplatesSkeletonInsideTheBody) {
 TEST(Performer, FrameZeroIsTheRestShape) {
   const Performer& performer = SmallPerformer();
   EXPECT_TRUE(performer.sequence.FrameAsDouble(0) == performer.truth.rig.rest_positions);
-  for (const Eigen::Quaterniond& q : performer.truth.track.poses[0].rotations) {
+  for (const Eigen::Quaterniond& q : performer.truth.track.pose(0).rotations) {
     EXPECT_DOUBLE_EQ(q.w(), 1);
   }
   EXPECT_LT((SkinnedTruth(performer, 0) - performer.truth.rig.rest_positions).norm(), 1e-4);
@@ -229,10 +229,10 @@ TEST(Performer, WalkTravelsForward) {
   const PoseTrack& track = performer.truth.track;
   double along = 0;
   for (int t = 31; t < track.num_frames(); ++t) {
-    const Eigen::Vector3d step = track.poses[t].root_position - track.poses[t - 1].root_position;
-    along += step.dot(track.poses[t].rotations[0] * Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d step = track.pose(t).root_position - track.pose(t - 1).root_position;
+    along += step.dot(track.pose(t).rotations[0] * Eigen::Vector3d::UnitZ());
   }
-  const double meters_per_second = along / (track.num_frames() - 31) * track.fps;
+  const double meters_per_second = along / (track.num_frames() - 31) * track.fps();
   EXPECT_GT(meters_per_second, .5);
   EXPECT_LT(meters_per_second, 2.0);
 }
@@ -247,7 +247,7 @@ TEST(Performer, StandingFeetDoNotSlide) {
     Eigen::Matrix3Xd previous;
     int num_still = 0;
     for (int t = 40; t < 120; ++t) {
-      ComputeBoneTransforms(performer.truth.rig.skeleton, performer.truth.track.poses[t], {},
+      ComputeBoneTransforms(performer.truth.rig.skeleton, performer.truth.track.pose(t), {},
                             &bones);
       if (t > 40) {  // at least one foot stands, except in a jump
         double slowest = 1;
@@ -270,7 +270,7 @@ TEST(Performer, HeightAndFrameRateAreHonored) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Performer performer, GeneratePerformer(options));
   EXPECT_NEAR(ComputeBounds(performer.sequence.FrameAsDouble(0)).sizes().y(), 1.2, .04);
   EXPECT_EQ(performer.sequence.frame_rate(), (FrameRate{60, 1}));
-  EXPECT_DOUBLE_EQ(performer.truth.track.fps, 60);
+  EXPECT_DOUBLE_EQ(performer.truth.track.fps(), 60);
 }
 
 TEST(Performer, RefusesOptionsOutOfRange) {

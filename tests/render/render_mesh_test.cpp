@@ -152,7 +152,7 @@ TEST(Camera, AzimuthNinetyLooksAtTheSideThatFacesPlusX) {
   ViewOptions view = FrontView(100);
   view.azimuth_degrees = 90;
   const Camera camera = Camera::Fit(view, Square(0));
-  EXPECT_LT((camera.ToViewer(Eigen::Vector3d::Zero()) - Eigen::Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_LT((camera.camera_from_world().row(2) - Eigen::RowVector3d::UnitX()).norm(), 1e-12);
   EXPECT_LT(camera.Project(Eigen::Vector3d(5, 0, 0)).z(),
             camera.Project(Eigen::Vector3d(0, 0, 0)).z());
 }

@@ -34,7 +34,7 @@ std::vector<Eigen::Matrix3Xf> FramesOf(const MeshSequence& sequence) {
 // the template's spine, chest and head are no anatomical points.
 double LimbError(const Rig& rig, const PerformerTruth& truth, int frame) {
   BoneTransforms transforms;
-  ComputeBoneTransforms(truth.rig.skeleton, truth.track.poses[frame], {}, &transforms);
+  ComputeBoneTransforms(truth.rig.skeleton, truth.track.pose(frame), {}, &transforms);
   double sum = 0;
   int count = 0;
   for (int j = 0; j < kNumHumanJoints; ++j) {

@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-absl::Status DecodeAll(const std::string& bytes, const SequenceDecoderLimits& limits = {}) {
+absl::Status DecodeAll(const std::string& bytes, const MeshLimits& limits = {}) {
   absl::StatusOr<SequenceDecoder> decoder = SequenceDecoder::Open(bytes, limits);
   if (!decoder.ok()) return decoder.status();
   return decoder->DecodeAll().status();
@@ -80,7 +80,7 @@ TEST(SequenceDecoderTest, EveryTruncationAndEveryChangedByteIsSeen) {
 // Behind the checksums nothing may crash, hang or take much memory; wrong frames are refused.
 TEST(SequenceDecoderTest, DamageWithRightChecksumsIsHarmless) {
   const std::string bytes = SmallFile();
-  SequenceDecoderLimits limits;
+  MeshLimits limits;
   limits.max_vertices = 10'000;
   limits.max_faces = 10'000;
   limits.max_frames = 1000;
@@ -121,7 +121,7 @@ TEST(SequenceDecoderTest, OtherFilesAndVersionsAreNamed) {
 }
 
 TEST(SequenceDecoderTest, LimitsHold) {
-  SequenceDecoderLimits limits;
+  MeshLimits limits;
   limits.max_frames = 17;
   EXPECT_THAT(DecodeAll(SmallFile(), limits),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("17 frames")));

@@ -20,11 +20,11 @@ using ::testing::HasSubstr;
 
 class CompressionContractTest : public testing::TestWithParam<Reach> {
  protected:
-  JobInfo WatchToEnd(const std::string& id) { return pleat::WatchToEnd(service_, id); }
+  JobInfo WatchToEnd(const std::string& id) { return pleat::WatchToEnd(service_.jobs(), id); }
   // The id of the compressed sequence.
   std::string Compress(const MeshSequence& sequence, const CompressOptions& options) {
-    const std::string id = service_.UploadSequence(sequence, {})->id;
-    const JobInfo job = WatchToEnd(service_.CreateCompressionJob(id, options)->id);
+    const std::string id = service_.sequences().Upload(sequence, {})->id;
+    const JobInfo job = WatchToEnd(service_.jobs().CreateCompression(id, options)->id);
     EXPECT_EQ(job.state, JobState::kSucceeded) << job.error;
     return job.result_id;
   }
@@ -33,7 +33,7 @@ class CompressionContractTest : public testing::TestWithParam<Reach> {
                                                        std::optional<MeshSequence>* shape) {
     std::vector<Eigen::Matrix3Xf> frames;
     const absl::Status status =
-        service_.DecodeFrames(id, range,
+        DecodeFrames(service_.compressed_sequences(), id, range,
                               {.on_shape =
                                    [&](const MeshSequence& first) {
                                      if (shape != nullptr) shape->emplace(first);
@@ -66,9 +66,9 @@ TEST_P(CompressionContractTest, AJobGivesTheBytesAndTheReportOfALocalRun) {
     const std::string id = Compress(tube, options);
     EXPECT_EQ(id, ToHex(ComputeSha256(expected)));
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                               service_.DownloadCompressedSequence(id, {}));
+                               service_.compressed_sequences().Download(id, {}));
     EXPECT_TRUE(bytes == expected);
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto info, service_.GetCompressedSequence(id));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto info, service_.compressed_sequences().Get(id));
     EXPECT_EQ(info.name, "tube");
     EXPECT_EQ(info.num_frames, 40);
     EXPECT_EQ(info.num_vertices, 96);
@@ -87,19 +87,19 @@ TEST_P(CompressionContractTest, AJobGivesTheBytesAndTheReportOfALocalRun) {
     EXPECT_GT(info.record->encode_seconds, 0);
     EXPECT_GT(info.record->decode_seconds, 0);
   }
-  EXPECT_EQ(service_.ListCompressedSequences()->size(), 3u);
-  EXPECT_EQ(service_.ListJobs()->size(), 3u);
-  EXPECT_EQ(service_.ListModels()->size(), 0u);
+  EXPECT_EQ(service_.compressed_sequences().List()->size(), 3u);
+  EXPECT_EQ(service_.jobs().List()->size(), 3u);
+  EXPECT_EQ(service_.models().List()->size(), 0u);
 }
 
 TEST_P(CompressionContractTest, JobsOfBothKindsShareOneQueue) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(20), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(20), {})->id;
   running_.trainer().step_ms = 5;
   const std::string training =
-      service_.CreateTrainingJob({.sequence_ids = {id}, .model_name = "m"})->id;
-  const std::string compression = service_.CreateCompressionJob(id, {})->id;
+      service_.jobs().CreateTraining({.sequence_ids = {id}, .model_name = "m"})->id;
+  const std::string compression = service_.jobs().CreateCompression(id, {})->id;
   EXPECT_EQ(WatchToEnd(compression).state, JobState::kSucceeded);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, service_.ListJobs());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, service_.jobs().List());
   ASSERT_EQ(jobs.size(), 2u);
   EXPECT_EQ(jobs[0].id, training);
   EXPECT_EQ(jobs[0].state, JobState::kSucceeded);
@@ -114,7 +114,7 @@ TEST_P(CompressionContractTest, AnyRangeGivesTheFramesOfTheWholeFile) {
   const MeshSequence tube = MakeSwayingTube(600);
   const std::string id = Compress(tube, {.max_error_mm = 2});
   SequenceDecoder decoder =
-      SequenceDecoder::Open(service_.DownloadCompressedSequence(id, {}).value()).value();
+      SequenceDecoder::Open(service_.compressed_sequences().Download(id, {}).value()).value();
   const MeshSequence whole = decoder.DecodeAll().value();
   Random random(2);
   std::vector<FrameRange> ranges = {{0, 0}, {599, 600}, {510, 514}, {590, 0}};
@@ -135,14 +135,14 @@ TEST_P(CompressionContractTest, AnyRangeGivesTheFramesOfTheWholeFile) {
     EXPECT_EQ(shape->frame_rate(), tube.frame_rate());
     EXPECT_EQ(shape->frame(0), whole.frame(range.begin));
   }
-  EXPECT_EQ(running_.local().decoder_bytes(), 0u);
+  EXPECT_EQ(running_.local().compressed_sequences().decoder_bytes(), 0u);
 }
 
 TEST_P(CompressionContractTest, FramesAndShapesOfManyChunksArriveWhole) {
   const MeshSequence large = MakeSwayingTube(3, "large", 500, 100);  // 600 kB per frame
   const std::string id = Compress(large, {.goal = CompressionGoal::kGrid, .grid_bits = 10});
   SequenceDecoder decoder =
-      SequenceDecoder::Open(service_.DownloadCompressedSequence(id, {}).value()).value();
+      SequenceDecoder::Open(service_.compressed_sequences().Download(id, {}).value()).value();
   const MeshSequence whole = decoder.DecodeAll().value();
   std::optional<MeshSequence> shape;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto frames, Decode(id, {1, 3}, &shape));
@@ -155,20 +155,20 @@ TEST_P(CompressionContractTest, FramesAndShapesOfManyChunksArriveWhole) {
 TEST_P(CompressionContractTest, AFileCanBeUploadedAndDecodedThere) {
   const MeshSequence tube = MakeSwayingTube(20);
   const std::string file = CompressSequence(tube, {.max_error_mm = 1}, nullptr).value();
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto info, service_.UploadCompressedSequence(file, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto info, service_.compressed_sequences().Upload(file, {}));
   EXPECT_EQ(info.id, ToHex(ComputeSha256(file)));
   EXPECT_EQ(info.num_frames, 20);
   EXPECT_FALSE(info.record.has_value());
-  EXPECT_EQ(service_.UploadCompressedSequence(file, {})->id, info.id);
+  EXPECT_EQ(service_.compressed_sequences().Upload(file, {})->id, info.id);
   EXPECT_EQ(Decode(info.id, {3, 5}, nullptr)->size(), 2u);
   // A job that gives the same file adds its report, and an upload does not take it away.
   EXPECT_EQ(Compress(tube, {.max_error_mm = 1}), info.id);
-  EXPECT_TRUE(service_.GetCompressedSequence(info.id)->record.has_value());
-  EXPECT_TRUE(service_.UploadCompressedSequence(file, {})->record.has_value());
-  EXPECT_EQ(service_.ListCompressedSequences()->size(), 1u);
+  EXPECT_TRUE(service_.compressed_sequences().Get(info.id)->record.has_value());
+  EXPECT_TRUE(service_.compressed_sequences().Upload(file, {})->record.has_value());
+  EXPECT_EQ(service_.compressed_sequences().List()->size(), 1u);
 
-  EXPECT_THAT(service_.DeleteCompressedSequence(info.id), IsOk());
-  EXPECT_THAT(service_.DeleteCompressedSequence(info.id),
+  EXPECT_THAT(service_.compressed_sequences().Delete(info.id), IsOk());
+  EXPECT_THAT(service_.compressed_sequences().Delete(info.id),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(Decode(info.id, {}, nullptr), HasStatus(absl::StatusCode::kNotFound, testing::_));
 }
@@ -183,27 +183,27 @@ TEST_P(CompressionContractTest, HostileFilesAreRefusedAndForgotten) {
   for (const std::string& bytes :
        {std::string("x"), draco, damaged, good + "x", good.substr(0, good.size() - 5),
         EncodeSequence(MakeSwayingTube(3))}) {
-    EXPECT_FALSE(service_.UploadCompressedSequence(bytes, {}).ok());
-    EXPECT_EQ(running_.local().QueryUpload(ToHex(ComputeSha256(bytes)))->received_bytes, 0u);
+    EXPECT_FALSE(service_.compressed_sequences().Upload(bytes, {}).ok());
+    EXPECT_EQ(running_.local().sequences().QueryUpload(ToHex(ComputeSha256(bytes)))->received_bytes, 0u);
   }
-  EXPECT_TRUE(service_.ListCompressedSequences()->empty());
-  EXPECT_EQ(running_.local().decoder_bytes(), 0u);
+  EXPECT_TRUE(service_.compressed_sequences().List()->empty());
+  EXPECT_EQ(running_.local().compressed_sequences().decoder_bytes(), 0u);
 }
 
 TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
-  EXPECT_THAT(service_.CreateCompressionJob(unknown_, {}),
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
+  EXPECT_THAT(service_.jobs().CreateCompression(unknown_, {}),
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("sequence")));
-  EXPECT_THAT(service_.CreateCompressionJob(id, {.max_error_mm = 0}),
+  EXPECT_THAT(service_.jobs().CreateCompression(id, {.max_error_mm = 0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("max_error_mm")));
   EXPECT_THAT(
-      service_.CreateCompressionJob(id, {.goal = CompressionGoal::kKg, .kg_percent = 0.0 / 0.0}),
+      service_.jobs().CreateCompression(id, {.goal = CompressionGoal::kKg, .kg_percent = 0.0 / 0.0}),
       HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("kg_percent")));
-  EXPECT_THAT(service_.CreateCompressionJob(id, {.goal = CompressionGoal::kGrid, .grid_bits = 99}),
+  EXPECT_THAT(service_.jobs().CreateCompression(id, {.goal = CompressionGoal::kGrid, .grid_bits = 99}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("grid_bits")));
-  EXPECT_THAT(service_.GetCompressedSequence(unknown_),
+  EXPECT_THAT(service_.compressed_sequences().Get(unknown_),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.DownloadCompressedSequence(unknown_, {}),
+  EXPECT_THAT(service_.compressed_sequences().Download(unknown_, {}),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(Decode(unknown_, {}, nullptr), HasStatus(absl::StatusCode::kNotFound, testing::_));
   const std::string compressed = Compress(MakeSwayingTube(5), {});
@@ -212,30 +212,29 @@ TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("which has 5")));
   }
   // A promise that float32 cannot keep fails the job with its reason.
-  const JobInfo job = WatchToEnd(service_.CreateCompressionJob(id, {.max_error_mm = .001})->id);
+  const JobInfo job = WatchToEnd(service_.jobs().CreateCompression(id, {.max_error_mm = .001})->id);
   EXPECT_EQ(job.state, JobState::kFailed);
   EXPECT_THAT(job.error, HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("float32")));
 }
 
 TEST_P(CompressionContractTest, CancellationActsWithinASecond) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(200, "large", 100, 60), {})->id;
-  const std::string job = service_.CreateCompressionJob(id, {.max_error_mm = .1})->id;
-  while (service_.GetJob(job)->stage != "encode") {
-    ASSERT_FALSE(IsFinal(service_.GetJob(job)->state));
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(200, "large", 100, 60), {})->id;
+  const std::string job = service_.jobs().CreateCompression(id, {.max_error_mm = .1})->id;
+  while (service_.jobs().Get(job)->stage != "encode") {
+    ASSERT_FALSE(IsFinal(service_.jobs().Get(job)->state));
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_THAT(service_.CancelJob(job), IsOk());
+  EXPECT_THAT(service_.jobs().Cancel(job), IsOk());
   EXPECT_EQ(WatchToEnd(job).state, JobState::kCancelled);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
-  EXPECT_TRUE(service_.ListCompressedSequences()->empty());
+  EXPECT_TRUE(service_.compressed_sequences().List()->empty());
 }
 
 TEST_P(CompressionContractTest, TheSinkMayStopDecoding) {
   const std::string id = Compress(MakeSwayingTube(100), {});
   int num_frames = 0;
-  EXPECT_THAT(service_.DecodeFrames(
-                  id, {},
+  EXPECT_THAT(DecodeFrames(service_.compressed_sequences(), id, {},
                   {.on_shape = [](const MeshSequence&) { return absl::OkStatus(); },
                    .on_frame =
                        [&](int t, const Eigen::Matrix3Xf&) {

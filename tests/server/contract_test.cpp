@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 
 class ContractTest : public testing::TestWithParam<Reach> {
  protected:
-  JobInfo WatchToEnd(const std::string& id) { return pleat::WatchToEnd(service_, id); }
+  JobInfo WatchToEnd(const std::string& id) { return pleat::WatchToEnd(service_.jobs(), id); }
 
   RunningService running_{GetParam()};
   CharacterService& service_ = running_.service();
@@ -30,7 +30,7 @@ TEST_P(ContractTest, SequencesAreStoredOnceUnderTheirContent) {
   const MeshSequence tube = MakeSwayingTube(5);
   double fraction = 0;
   const Progress progress([&](const ProgressUpdate& update) { fraction = update.fraction; }, {});
-  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, service_.UploadSequence(tube, progress));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, service_.sequences().Upload(tube, progress));
   EXPECT_EQ(fraction, 1);
   EXPECT_EQ(info.id, SequenceId(EncodeSequence(tube)));
   EXPECT_EQ(info.name, "tube");
@@ -39,39 +39,39 @@ TEST_P(ContractTest, SequencesAreStoredOnceUnderTheirContent) {
   EXPECT_EQ(info.num_faces, 88);
   EXPECT_EQ(info.frame_rate, (FrameRate{25, 1}));
   EXPECT_EQ(info.size_bytes, EncodeSequence(tube).size());
-  EXPECT_EQ(service_.UploadSequence(tube, {})->id, info.id);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto list, service_.ListSequences());
+  EXPECT_EQ(service_.sequences().Upload(tube, {})->id, info.id);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto list, service_.sequences().List());
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0].id, info.id);
-  EXPECT_EQ(service_.GetSequence(info.id)->num_frames, 5);
-  EXPECT_THAT(service_.DeleteSequence(info.id), IsOk());
-  EXPECT_THAT(service_.GetSequence(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.DeleteSequence(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_EQ(service_.sequences().Get(info.id)->num_frames, 5);
+  EXPECT_THAT(service_.sequences().Delete(info.id), IsOk());
+  EXPECT_THAT(service_.sequences().Get(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.sequences().Delete(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
 }
 
 TEST_P(ContractTest, ASequenceOfManyChunksArrivesWhole) {
   const MeshSequence large = MakeSwayingTube(60, "large", 100, 30);  // 2 MB
-  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, service_.UploadSequence(large, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, service_.sequences().Upload(large, {}));
   EXPECT_GT(info.size_bytes, 2'000'000u);
-  EXPECT_EQ(running_.local().GetSequence(info.id)->num_vertices, 3000);
+  EXPECT_EQ(running_.local().sequences().Get(info.id)->num_vertices, 3000);
 }
 
 TEST_P(ContractTest, AnUploadCanBeCancelled) {
   const Progress cancelled({}, [] { return true; });
-  EXPECT_THAT(service_.UploadSequence(MakeSwayingTube(60, "large", 100, 30), cancelled),
+  EXPECT_THAT(service_.sequences().Upload(MakeSwayingTube(60, "large", 100, 30), cancelled),
               HasStatus(absl::StatusCode::kCancelled, testing::_));
-  EXPECT_TRUE(service_.ListSequences()->empty());
+  EXPECT_TRUE(service_.sequences().List()->empty());
 }
 
 TEST_P(ContractTest, AJobRunsToItsModel) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 2;
   TrainOptions options;
   options.seed = 7;
   options.history = 3;
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const JobInfo created,
-      service_.CreateTrainingJob(
+      service_.jobs().CreateTraining(
           {.sequence_ids = {id}, .options = options, .model_name = "swaying"}));
   EXPECT_EQ(created.state, JobState::kQueued);
   EXPECT_EQ(created.options, JobOptions(options));
@@ -81,34 +81,34 @@ TEST_P(ContractTest, AJobRunsToItsModel) {
   EXPECT_EQ(job.name, "swaying");
   EXPECT_EQ(job.warnings, std::vector<std::string>{"made by a test"});
   EXPECT_EQ(job.sequence_ids, std::vector<std::string>{id});
-  EXPECT_EQ(service_.GetJob(created.id)->result_id, job.result_id);
-  EXPECT_EQ(service_.ListJobs()->size(), 1u);
+  EXPECT_EQ(service_.jobs().Get(created.id)->result_id, job.result_id);
+  EXPECT_EQ(service_.jobs().List()->size(), 1u);
 
-  PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo model, service_.GetModel(job.result_id));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const ModelInfo model, service_.models().Get(job.result_id));
   EXPECT_EQ(model.name, "swaying");
   EXPECT_EQ(model.options.seed, 7u);
   EXPECT_EQ(model.skeleton.joint(1).name, "chest");
   EXPECT_EQ(model.num_vertices, 96);
-  EXPECT_EQ(service_.ListModels()->at(0).id, model.id);
+  EXPECT_EQ(service_.models().List()->at(0).id, model.id);
 
-  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, service_.DownloadModel(model.id, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, service_.models().Download(model.id, {}));
   EXPECT_EQ(bytes.size(), model.size_bytes);
   EXPECT_EQ(ModelId(bytes), model.id);
   EXPECT_THAT(DecodeModel(bytes), IsOk());
 
-  EXPECT_THAT(service_.DeleteModel(model.id), IsOk());
-  EXPECT_THAT(service_.GetModel(model.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.DownloadModel(model.id, {}),
+  EXPECT_THAT(service_.models().Delete(model.id), IsOk());
+  EXPECT_THAT(service_.models().Get(model.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.models().Download(model.id, {}),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
 }
 
 TEST_P(ContractTest, AWatchShowsStagesAndEndsWhenTheCallerHasSeenEnough) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 10;
-  const std::string job = service_.CreateTrainingJob({.sequence_ids = {id}})->id;
+  const std::string job = service_.jobs().CreateTraining({.sequence_ids = {id}})->id;
   std::set<std::string> stages;
   int num_calls = 0;
-  EXPECT_THAT(service_.WatchJob(job,
+  EXPECT_THAT(WatchJob(service_.jobs(), job,
                                 [&](const JobInfo& info) {
                                   stages.insert(info.stage);
                                   ++num_calls;
@@ -117,41 +117,41 @@ TEST_P(ContractTest, AWatchShowsStagesAndEndsWhenTheCallerHasSeenEnough) {
               IsOk());
   EXPECT_TRUE(stages.contains("learn"));
   EXPECT_GE(num_calls, 3);
-  EXPECT_FALSE(IsFinal(service_.GetJob(job)->state));
+  EXPECT_FALSE(IsFinal(service_.jobs().Get(job)->state));
 }
 
 TEST_P(ContractTest, CancellationActsWithinASecond) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 100;
-  const std::string running = service_.CreateTrainingJob({.sequence_ids = {id}})->id;
-  const std::string waiting = service_.CreateTrainingJob({.sequence_ids = {id}})->id;
-  EXPECT_THAT(service_.CancelJob(waiting), IsOk());
-  EXPECT_EQ(service_.GetJob(waiting)->state, JobState::kCancelled);
-  while (service_.GetJob(running)->state == JobState::kQueued) {
+  const std::string running = service_.jobs().CreateTraining({.sequence_ids = {id}})->id;
+  const std::string waiting = service_.jobs().CreateTraining({.sequence_ids = {id}})->id;
+  EXPECT_THAT(service_.jobs().Cancel(waiting), IsOk());
+  EXPECT_EQ(service_.jobs().Get(waiting)->state, JobState::kCancelled);
+  while (service_.jobs().Get(running)->state == JobState::kQueued) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_THAT(service_.CancelJob(running), IsOk());
+  EXPECT_THAT(service_.jobs().Cancel(running), IsOk());
   EXPECT_EQ(WatchToEnd(running).state, JobState::kCancelled);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
-  EXPECT_THAT(service_.CancelJob(running),
+  EXPECT_THAT(service_.jobs().Cancel(running),
               HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("cancelled")));
 }
 
 TEST_P(ContractTest, AJobFailsWithTheReasonOfItsTraining) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   TrainOptions fails;
   fails.iterations = 13;
   const JobInfo job =
-      WatchToEnd(service_.CreateTrainingJob({.sequence_ids = {id}, .options = fails})->id);
+      WatchToEnd(service_.jobs().CreateTraining({.sequence_ids = {id}, .options = fails})->id);
   EXPECT_EQ(job.state, JobState::kFailed);
   EXPECT_THAT(job.error, HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("rig")));
 }
 
 TEST_P(ContractTest, ABadRigIsRefusedBeforeAJobExists) {
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   const auto expect_refused = [&](const std::string& rig, absl::StatusCode code, const char* word) {
-    EXPECT_THAT(service_.CreateTrainingJob({.sequence_ids = {id}, .rig = rig}),
+    EXPECT_THAT(service_.jobs().CreateTraining({.sequence_ids = {id}, .rig = rig}),
                 HasStatus(code, HasSubstr(word)));
   };
   constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
@@ -167,54 +167,58 @@ TEST_P(ContractTest, ABadRigIsRefusedBeforeAJobExists) {
   expect_refused(head + R"(, "weights": {"vertices": [[7, 1]]}})", kInvalid, "vertex 0");
   expect_refused(head + std::string(12 << 20, ' ') + "}", absl::StatusCode::kResourceExhausted,
                  "limit");
-  EXPECT_TRUE(service_.ListJobs()->empty());
+  EXPECT_TRUE(service_.jobs().List()->empty());
 }
 
 TEST_P(ContractTest, BadRequestsAreRefusedAlike) {
-  EXPECT_THAT(service_.GetSequence(unknown_), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.GetJob("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.CancelJob("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.WatchJob("job-none", [](const JobInfo&) { return true; }),
+  EXPECT_THAT(service_.sequences().Get(unknown_), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.jobs().Get("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.jobs().Cancel("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(WatchJob(service_.jobs(), "job-none", [](const JobInfo&) { return true; }),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.CreateTrainingJob({.sequence_ids = {unknown_}}),
+  EXPECT_THAT(service_.jobs().CreateTraining({.sequence_ids = {unknown_}}),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.CreateTrainingJob({}),
+  EXPECT_THAT(service_.jobs().CreateTraining({}),
               HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
-  const std::string id = service_.UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   TrainOptions bad;
   bad.history = 99;
-  EXPECT_THAT(service_.CreateTrainingJob({.sequence_ids = {id}, .options = bad}),
+  EXPECT_THAT(service_.jobs().CreateTraining({.sequence_ids = {id}, .options = bad}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("history")));
   ClipQuery query{.model_id = unknown_,
                   .track = MakeMotion(MakeFakeModel(MakeSwayingTube(2), {})->skeleton(), 2),
                   .bone_scales = {}};
   const auto ignore = [](int, const EvaluatedFrame&) { return absl::OkStatus(); };
-  EXPECT_THAT(service_.EvaluateClip(query, ignore),
+  EXPECT_THAT(service_.poses().EvaluateClip(query, ignore),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   query.model_id = running_.TrainModel();
-  query.track.poses[1].rotations.pop_back();
-  EXPECT_THAT(service_.EvaluateClip(query, ignore),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 1")));
+  PoseTrack::Parts parts = query.track.parts();
+  for (Pose& pose : parts.poses) pose.rotations.pop_back();
+  query.track = PoseTrack::FromValid(std::move(parts));
+  EXPECT_THAT(service_.poses().EvaluateClip(query, ignore),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 0")));
 }
 
 TEST_P(ContractTest, AClipGivesEveryFrameInOrder) {
   const std::string model_id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(model_id).value();
+  const auto model = running_.local().models().Acquire(model_id).value();
   for (const bool skinned_only : {false, true}) {
-    ClipQuery query{.model_id = model_id,
-                    .track = MakeMotion(model->skeleton(), 30, 40),
-                    .bone_scales = {1, 1.2, .9},
-                    .skinned_only = skinned_only};
-    query.track.clip_starts = {0, 11};
+    ClipQuery query{
+        .model_id = model_id,
+        .track = PoseTrack::FromValid({.fps = 40,
+                                       .poses = MakeMotion(model->skeleton(), 30, 40).poses(),
+                                       .clip_starts = {0, 11}}),
+        .bone_scales = {1, 1.2, .9},
+        .skinned_only = skinned_only};
     std::vector<EvaluatedFrame> truth;
-    ASSERT_THAT(running_.local().EvaluateClip(query,
+    ASSERT_THAT(running_.local().poses().EvaluateClip(query,
                                               [&](int, const EvaluatedFrame& frame) {
                                                 truth.push_back(frame);
                                                 return absl::OkStatus();
                                               }),
                 IsOk());
     int next = 0;
-    ASSERT_THAT(service_.EvaluateClip(
+    ASSERT_THAT(service_.poses().EvaluateClip(
                     query,
                     [&](int t, const EvaluatedFrame& frame) {
                       EXPECT_EQ(t, next++);
@@ -230,11 +234,11 @@ TEST_P(ContractTest, AClipGivesEveryFrameInOrder) {
 
 TEST_P(ContractTest, TheConsumerMayStopAClip) {
   const std::string model_id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(model_id).value();
+  const auto model = running_.local().models().Acquire(model_id).value();
   const ClipQuery query{
       .model_id = model_id, .track = MakeMotion(model->skeleton(), 100), .bone_scales = {}};
   int num_frames = 0;
-  EXPECT_THAT(service_.EvaluateClip(query,
+  EXPECT_THAT(service_.poses().EvaluateClip(query,
                                     [&](int t, const EvaluatedFrame&) {
                                       ++num_frames;
                                       return t == 3 ? absl::AbortedError("seen enough")

@@ -109,10 +109,10 @@ class HostileRequestsTest : public testing::Test {
         stub_(channel_) {
     model_id_ = running_.TrainModel();
     ids_ = {model_id_,
-            running_.service().ListSequences()->at(0).id,
-            running_.service().ListJobs()->at(0).id,
+            running_.service().sequences().List()->at(0).id,
+            running_.service().jobs().List()->at(0).id,
             running_.service()
-                .UploadCompressedSequence(
+                .compressed_sequences().Upload(
                     CompressSequence(MakeSwayingTube(20), {}, nullptr).value(), {})
                 ->id,
             "",
@@ -158,7 +158,7 @@ class HostileRequestsTest : public testing::Test {
   }
 
   void ExpectAlive() {
-    EXPECT_THAT(running_.service().GetModel(model_id_), IsOk());
+    EXPECT_THAT(running_.service().models().Get(model_id_), IsOk());
     EXPECT_EQ(running_.TrainModel(), model_id_);
   }
 
@@ -229,7 +229,7 @@ TEST_F(HostileRequestsTest, PosesFarOutsideEverything) {
     v1::EvaluatePoseRequest request;
     request.mutable_character()->set_model_id(model_id_);
     *request.add_poses() =
-        ToProto(Pose::Rest(running_.local().AcquireModel(model_id_).value()->skeleton()));
+        ToProto(Pose::Rest(running_.local().models().Acquire(model_id_).value()->skeleton()));
     request.mutable_poses(0)->mutable_root_position()->set_x(x);
     v1::EvaluatePoseResponse response;
     const grpc::Status status = stub->EvaluatePose(&context, request, &response);

@@ -30,17 +30,17 @@ class LiveSessionTest : public testing::Test {
   LiveSessionTest() : id_(running_.TrainModel()), model_(Acquire()) {}
 
   std::shared_ptr<const CharacterModel> Acquire() {
-    return running_.local().AcquireModel(id_).value();
+    return running_.local().models().Acquire(id_).value();
   }
   absl::StatusOr<std::unique_ptr<LiveSession>> Open(const LiveSessionOptions& options = {}) {
-    return running_.remote().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
+    return running_.remote().poses().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
                                              options);
   }
   // What pose t of `track` looks like, its history being the poses before it.
   Eigen::Matrix3Xf Truth(const PoseTrack& track, int t, double* confidence = nullptr) const {
     EvaluatedFrame frame;
     const absl::Status status = PoseEvaluator(model_).Evaluate(
-        {&track.poses[t], &track.poses[std::max(0, t - 1)]}, {}, &frame);
+        {&track.pose(t), &track.pose(std::max(0, t - 1))}, {}, &frame);
     EXPECT_THAT(status, IsOk());
     if (confidence != nullptr) *confidence = frame.confidence;
     return frame.positions;
@@ -74,7 +74,7 @@ class LiveSessionTest : public testing::Test {
   std::unique_ptr<LiveSession> OpenStalled(const std::string& model_id) {
     auto session =
         running_.remote()
-            .OpenLiveSession({.model_id = model_id, .track = {}, .bone_scales = {}},
+            .poses().OpenLiveSession({.model_id = model_id, .track = {}, .bone_scales = {}},
                              {.stream = {.position_bits = 20, .speed = 10}, .max_in_flight = 64})
             .value();
     for (int i = 0; i < 64; ++i) {
@@ -91,7 +91,7 @@ class LiveSessionTest : public testing::Test {
   }
 
   RunningService running_{
-      Reach::kSocket, {}, {.num_pose_threads = 2, .max_receive_bytes = 4 << 20}};
+      Reach::kSocket, {}, {.max_receive_bytes = 4 << 20}};
   const std::string id_;
   const std::shared_ptr<const CharacterModel> model_;
   const std::unique_ptr<v1::PoseService::Stub> stub_ = v1::PoseService::NewStub(
@@ -106,7 +106,7 @@ TEST_F(LiveSessionTest, ShowsEveryPoseAndSaysWhatItCost) {
     EXPECT_EQ(session->decoder().header().num_vertices, 96);
     uint64_t last_cpu_us = 0;
     for (int t = 0; t < track.num_frames(); ++t) {
-      ASSERT_THAT(session->Send(1000 + t, track.poses[t]), IsOk());
+      ASSERT_THAT(session->Send(1000 + t, track.pose(t)), IsOk());
       LiveFrame frame;
       ASSERT_THAT(session->Receive(&frame), IsOk());
       EXPECT_EQ(frame.number, 1000u + t);
@@ -124,7 +124,7 @@ TEST_F(LiveSessionTest, ShowsEveryPoseAndSaysWhatItCost) {
     LiveFrame frame;
     EXPECT_THAT(session->Receive(&frame), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
     EXPECT_TRUE(session->ended());
-    EXPECT_THAT(session->Send(1, track.poses[0]),
+    EXPECT_THAT(session->Send(1, track.pose(0)),
                 HasStatus(absl::StatusCode::kUnavailable, testing::_));
   }
 }
@@ -134,12 +134,12 @@ TEST_F(LiveSessionTest, ABadPoseIsAnsweredWithAReasonAndTheSessionGoesOn) {
        {FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, Open({.stream = {.encoding = encoding}}));
     const PoseTrack track = MakeMotion(model_->skeleton(), 2);
-    Pose missing = track.poses[1], far = track.poses[1], skewed = track.poses[1];
+    Pose missing = track.pose(1), far = track.pose(1), skewed = track.pose(1);
     missing.rotations.pop_back();
     far.root_position.x() = 1e6;
     skewed.rotations[1].w() = 7;
     LiveFrame frame;
-    ASSERT_THAT(session->Send(0, track.poses[0]), IsOk());
+    ASSERT_THAT(session->Send(0, track.pose(0)), IsOk());
     ASSERT_THAT(session->Receive(&frame), IsOk());
     ASSERT_THAT(session->Send(7, missing), IsOk());
     EXPECT_THAT(session->Receive(&frame),
@@ -153,7 +153,7 @@ TEST_F(LiveSessionTest, ABadPoseIsAnsweredWithAReasonAndTheSessionGoesOn) {
     EXPECT_THAT(session->Receive(&frame),
                 HasStatus(absl::StatusCode::kOutOfRange, HasSubstr("box")));
     // Good poses in between are history, bad ones are not. `far` was a good pose, too far away.
-    ASSERT_THAT(session->Send(10, track.poses[1], {track.poses[0]}), IsOk());
+    ASSERT_THAT(session->Send(10, track.pose(1), {track.pose(0)}), IsOk());
     ASSERT_THAT(session->Receive(&frame), IsOk());
     EXPECT_EQ(frame.number, 10u);
     EXPECT_LE(Steps(*session, frame, Truth(track, 1)), .505);
@@ -161,7 +161,7 @@ TEST_F(LiveSessionTest, ABadPoseIsAnsweredWithAReasonAndTheSessionGoesOn) {
 }
 
 TEST_F(LiveSessionTest, RequestsThatMakeNoSenseEndTheSession) {
-  EXPECT_THAT(running_.remote().OpenLiveSession(
+  EXPECT_THAT(running_.remote().poses().OpenLiveSession(
                   {.model_id = std::string(64, '0'), .track = {}, .bone_scales = {}}),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(Open({.max_in_flight = 65}),
@@ -200,7 +200,7 @@ TEST_F(LiveSessionTest, TheLatestPoseWinsWhereTheReaderIsSlow) {
                                    .max_in_flight = 2,
                                    .latest_wins = true}));
   for (int t = 0; t < track.num_frames(); ++t) {  // nobody reads
-    ASSERT_THAT(session->Send(t, track.poses[t]), IsOk());
+    ASSERT_THAT(session->Send(t, track.pose(t)), IsOk());
   }
   std::this_thread::sleep_for(milliseconds(100));
   int num_frames = 0, num_superseded = 0;
@@ -216,7 +216,7 @@ TEST_F(LiveSessionTest, TheLatestPoseWinsWhereTheReaderIsSlow) {
   EXPECT_LE(num_frames, 4) << "two under way, and what the acknowledgements let through";
   // A pose at a time is answered at once, whatever the credits.
   for (int t = 0; t < 10; ++t) {
-    ASSERT_THAT(session->Send(t, track.poses[t], {}, t == 0), IsOk());
+    ASSERT_THAT(session->Send(t, track.pose(t), {}, t == 0), IsOk());
     ASSERT_THAT(session->Receive(&frame), IsOk());
     EXPECT_EQ(frame.number, static_cast<uint64_t>(t));
   }
@@ -256,7 +256,7 @@ TEST_F(LiveSessionTest, ASenderWaitsForItsCreditsAndEveryPoseIsAnswered) {
   std::atomic<int> num_sent = 0;
   std::thread sender([&] {
     for (int t = 0; t < track.num_frames(); ++t) {
-      EXPECT_THAT(session->Send(t, track.poses[t]), IsOk());
+      EXPECT_THAT(session->Send(t, track.pose(t)), IsOk());
       ++num_sent;
     }
     session->SendDone();
@@ -284,9 +284,9 @@ TEST_F(LiveSessionTest, AReaderThatStopsDelaysNobodyAndGoesAway) {
     ASSERT_THAT(session->Receive(&frame), IsOk());
   }
   EXPECT_LT(SecondsSince(start), 5);
-  EXPECT_EQ(running_.local().cache_stats().num_pinned, 2);
+  EXPECT_EQ(running_.local().models().cache_stats().num_pinned, 2);
   stalled.clear();
-  EXPECT_TRUE(Eventually([&] { return running_.local().cache_stats().num_pinned == 1; }));
+  EXPECT_TRUE(Eventually([&] { return running_.local().models().cache_stats().num_pinned == 1; }));
 }
 
 // One client floods the server with calls, 24 at a time; another one edits.
@@ -332,12 +332,12 @@ TEST_F(LiveSessionTest, GoesOnAfterTheServerWasStartedAgain) {
     LiveFrame frame;
     int num_resumed = 0;
     for (int t = 0; t < track.num_frames(); ++t) {
-      ASSERT_THAT(session->Send(t, track.poses[t]), IsOk());
+      ASSERT_THAT(session->Send(t, track.pose(t)), IsOk());
       if (t % 20 == 10) {
         // Three poses under way when the server goes; with and without a word to its clients.
         for (int more = 0; more < 3; ++more) {
           ++t;
-          ASSERT_THAT(session->Send(t, track.poses[t]), IsOk());
+          ASSERT_THAT(session->Send(t, track.pose(t)), IsOk());
         }
         running_.RestartServer(t < 20 ? 5 : 0);
       }

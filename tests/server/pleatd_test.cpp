@@ -100,9 +100,9 @@ TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
     const std::string address = daemon.WaitForAddress();
     ASSERT_THAT(address, HasSubstr("127.0.0.1:"));
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
-    sequence_id = client->UploadSequence(MakeSwayingTube(40), {})->id;
+    sequence_id = client->sequences().Upload(MakeSwayingTube(40), {})->id;
     // A tube is no human: the job fails with a reason, whichever side of the restart it runs on.
-    job_id = client->CreateTrainingJob({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
+    job_id = client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
     daemon.Signal(SIGTERM);
     EXPECT_EQ(daemon.Wait(), 0) << daemon.output();
     EXPECT_THAT(daemon.output(), HasSubstr("pleatd has ended"));
@@ -110,9 +110,9 @@ TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
   Daemon daemon(Flags(folder));
   const std::string address = daemon.WaitForAddress();
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
-  EXPECT_EQ(client->GetSequence(sequence_id)->name, "tube");
+  EXPECT_EQ(client->sequences().Get(sequence_id)->name, "tube");
   JobInfo job;
-  EXPECT_THAT(client->WatchJob(job_id,
+  EXPECT_THAT(WatchJob(client->jobs(), job_id,
                                [&](const JobInfo& info) {
                                  job = info;
                                  return true;
@@ -129,16 +129,16 @@ TEST(PleatdTest, AKillLosesNothing) {
     Daemon daemon(Flags(folder));
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
                                RemoteCharacterService::Connect(daemon.WaitForAddress()));
-    sequence_id = client->UploadSequence(MakeSwayingTube(40), {})->id;
-    job_id = client->CreateTrainingJob({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
+    sequence_id = client->sequences().Upload(MakeSwayingTube(40), {})->id;
+    job_id = client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
     daemon.Signal(SIGKILL);
     EXPECT_EQ(daemon.Wait(), -SIGKILL);
   }
   Daemon daemon(Flags(folder));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
                              RemoteCharacterService::Connect(daemon.WaitForAddress()));
-  EXPECT_THAT(client->GetSequence(sequence_id), IsOk());
-  EXPECT_THAT(client->GetJob(job_id), IsOk());
+  EXPECT_THAT(client->sequences().Get(sequence_id), IsOk());
+  EXPECT_THAT(client->jobs().Get(job_id), IsOk());
 }
 
 TEST(PleatdTest, RefusesAFolderAndAPortInUse) {

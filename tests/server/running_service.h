@@ -25,13 +25,17 @@ inline std::string ReachName(Reach reach) {
 class RunningService {
  public:
   explicit RunningService(Reach reach, ServiceLimits limits = {},
-                          GrpcServerOptions grpc = {.num_pose_threads = 2})
+                          GrpcServerOptions grpc = {})
       : grpc_(std::move(grpc)) {
     local_ = LocalCharacterService::Open(
-                 {.data_dir = folder_.path(), .limits = limits, .train = trainer_.function()})
+                 {.data_dir = folder_.path(),
+                  .num_pose_threads = 2,
+                  .limits = limits,
+                  .train = trainer_.function()})
                  .value();
     if (reach == Reach::kLocal) return;
     spdlog::set_level(spdlog::level::err);  // refused requests are what these tests are about
+    grpc_.pose_executor = local_->poses().executor();
     server_ = GrpcServer::Start(local_.get(), grpc_).value();
     remote_ = reach == Reach::kInProcess
                   ? RemoteCharacterService::OverChannel(server_->InProcessChannel())
@@ -56,10 +60,10 @@ class RunningService {
   }
 
   std::string TrainModel(const MeshSequence& clip = MakeSwayingTube(5)) {
-    const std::string sequence_id = service().UploadSequence(clip, {})->id;
-    const std::string job_id = service().CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
+    const std::string sequence_id = service().sequences().Upload(clip, {})->id;
+    const std::string job_id = service().jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
     std::string model_id;
-    const absl::Status status = service().WatchJob(job_id, [&](const JobInfo& info) {
+    const absl::Status status = WatchJob(service().jobs(), job_id, [&](const JobInfo& info) {
       model_id = info.result_id;
       return true;
     });
@@ -67,7 +71,7 @@ class RunningService {
   }
 
  private:
-  const GrpcServerOptions grpc_;
+  GrpcServerOptions grpc_;
   TemporaryFolder folder_;
   FakeTrainer trainer_;
   std::unique_ptr<LocalCharacterService> local_;

@@ -19,7 +19,7 @@ class StreamContentTest : public testing::Test {
   }
   std::vector<EvaluatedFrame> Truth(const ClipQuery& query) {
     std::vector<EvaluatedFrame> frames;
-    EXPECT_THAT(running_.local().EvaluateClip(query,
+    EXPECT_THAT(running_.local().poses().EvaluateClip(query,
                                               [&](int, const EvaluatedFrame& frame) {
                                                 frames.push_back(frame);
                                                 return absl::OkStatus();
@@ -30,7 +30,7 @@ class StreamContentTest : public testing::Test {
 
   RunningService running_{Reach::kSocket};
   const std::string id_ = running_.TrainModel(MakeSwayingTube(5, "tube", 40, 30));
-  const std::shared_ptr<const CharacterModel> model_ = running_.local().AcquireModel(id_).value();
+  const std::shared_ptr<const CharacterModel> model_ = running_.local().models().Acquire(id_).value();
   const PoseTrack track_ = MakeMotion(model_->skeleton(), 12);
 };
 
@@ -45,7 +45,7 @@ TEST_F(StreamContentTest, ParametersAreEvaluatedHereToTheServersMesh) {
     // What a frame is on the wire, and the server's own evaluation of it.
     std::vector<Eigen::Matrix3Xf> shown;
     PoseEvaluator evaluator(model_);
-    ASSERT_THAT(client->StreamClip(query, {.content = StreamContent::kParameters},
+    ASSERT_THAT(StreamClip(client->poses(), query, {.content = StreamContent::kParameters},
                                    {.on_header =
                                         [&](const StreamHeader& header) {
                                           EXPECT_EQ(header.content, StreamContent::kParameters);
@@ -69,7 +69,7 @@ TEST_F(StreamContentTest, ParametersAreEvaluatedHereToTheServersMesh) {
                 IsOk());
     ASSERT_EQ(shown.size(), 12u);
     int next = 0;
-    ASSERT_THAT(client->EvaluateClip(
+    ASSERT_THAT(client->poses().EvaluateClip(
                     query,
                     [&](int t, const EvaluatedFrame& frame) {
                       EXPECT_EQ(t, next++);
@@ -82,10 +82,10 @@ TEST_F(StreamContentTest, ParametersAreEvaluatedHereToTheServersMesh) {
     EXPECT_EQ(next, 12);
   }
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluatedFrame one,
-                             client->EvaluatePose({.model_id = id_, .track = {}, .bone_scales = {}},
-                                                  {track_.poses[3], track_.poses[2]}));
+                             client->poses().EvaluatePose({.model_id = id_, .track = {}, .bone_scales = {}},
+                                                  {track_.pose(3), track_.pose(2)}));
   EvaluatedFrame truth;
-  ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.poses[3], &track_.poses[2]}, {}, &truth),
+  ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.pose(3), &track_.pose(2)}, {}, &truth),
               IsOk());
   EXPECT_LE((one.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-6);
 }
@@ -95,15 +95,15 @@ TEST_F(StreamContentTest, ALiveSessionOfParametersEvaluatesWithItsModel) {
   for (const bool with_model : {true, false}) {
     LiveSessionOptions options{.stream = {.content = StreamContent::kParameters}};
     if (with_model) {
-      options.model = DecodeModel(running_.service().DownloadModel(id_, {}).value()).value();
+      options.model = DecodeModel(running_.service().models().Download(id_, {}).value()).value();
     }
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const auto session,
-        running_.remote().OpenLiveSession(
+        running_.remote().poses().OpenLiveSession(
             {.model_id = id_, .track = {}, .bone_scales = {1, 1.1, 1.2}}, options));
     EXPECT_EQ(session->header().num_vertices, 1200);
     for (int t = 0; t < 12; ++t) {
-      ASSERT_THAT(session->Send(t, track_.poses[t], {}, false, t == 5), IsOk());
+      ASSERT_THAT(session->Send(t, track_.pose(t), {}, false, t == 5), IsOk());
       LiveFrame frame;
       ASSERT_THAT(session->Receive(&frame), IsOk());
       EXPECT_EQ(frame.number, static_cast<uint64_t>(t));
@@ -111,7 +111,7 @@ TEST_F(StreamContentTest, ALiveSessionOfParametersEvaluatesWithItsModel) {
       ASSERT_TRUE(frame.parameters.has_value());
       EvaluatedFrame own, truth;
       ASSERT_THAT(evaluator.Show(*frame.parameters, {1, 1.1, 1.2}, &own), IsOk());
-      ASSERT_THAT(evaluator.Evaluate({&track_.poses[t], &track_.poses[std::max(0, t - 1)]},
+      ASSERT_THAT(evaluator.Evaluate({&track_.pose(t), &track_.pose(std::max(0, t - 1))},
                                      {1, 1.1, 1.2}, &truth),
                   IsOk());
       EXPECT_LE((own.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-6);
@@ -131,8 +131,7 @@ TEST_F(StreamContentTest, TheControlMeshIsATwentiethOfTheCharacter) {
        {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     const FrameEncoderOptions stream{.encoding = encoding, .content = StreamContent::kControlMesh};
     std::optional<FrameDecoder> decoder;
-    ASSERT_THAT(running_.remote().StreamClip(
-                    query, stream,
+    ASSERT_THAT(StreamClip(running_.remote().poses(), query, stream,
                     {.on_header =
                          [&](const StreamHeader& header) {
                            decoder.emplace(FrameDecoder::Create(header).value());
@@ -155,9 +154,9 @@ TEST_F(StreamContentTest, TheControlMeshIsATwentiethOfTheCharacter) {
                 IsOk());
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const auto session,
-        running_.remote().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
+        running_.remote().poses().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
                                           {.stream = stream}));
-    ASSERT_THAT(session->Send(1, track_.poses[0]), IsOk());
+    ASSERT_THAT(session->Send(1, track_.pose(0)), IsOk());
     LiveFrame frame;
     ASSERT_THAT(session->Receive(&frame), IsOk());
     EXPECT_EQ(frame.positions.cols(), 60);
@@ -167,7 +166,7 @@ TEST_F(StreamContentTest, TheControlMeshIsATwentiethOfTheCharacter) {
 TEST_F(StreamContentTest, ForeignParametersAreRefused) {
   PoseEvaluator evaluator(model_);
   FrameParameters good;
-  ASSERT_THAT(evaluator.Predict({&track_.poses[0]}, false, &good), IsOk());
+  ASSERT_THAT(evaluator.Predict({&track_.pose(0)}, false, &good), IsOk());
   EvaluatedFrame frame;
   ASSERT_THAT(evaluator.Show(good, {}, &frame), IsOk());
   FrameParameters bad = good;
@@ -183,7 +182,7 @@ TEST_F(StreamContentTest, ForeignParametersAreRefused) {
   EXPECT_FALSE(evaluator.Show(bad, {}, &frame).ok());
   EXPECT_FALSE(evaluator.Predict({}, false, &bad).ok());
   // Without somebody who takes them, parameters are no stream.
-  EXPECT_THAT(running_.remote().StreamClip({.model_id = id_, .track = track_, .bone_scales = {}},
+  EXPECT_THAT(StreamClip(running_.remote().poses(), {.model_id = id_, .track = track_, .bone_scales = {}},
                                            {.content = StreamContent::kParameters}, {}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("on_parameters")));
 }

@@ -38,26 +38,25 @@ class StreamingTest : public testing::Test {
   RunningService running_{
       Reach::kSocket,
       {},
-      {.num_pose_threads = 2, .max_receive_bytes = 4 << 20, .max_open_streams = 8}};
+      {.max_receive_bytes = 4 << 20, .max_open_streams = 8}};
 };
 
 TEST_F(StreamingTest, OnePoseGivesOneFrame) {
   const std::string id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(id).value();
+  const auto model = running_.local().models().Acquire(id).value();
   const PoseTrack track = MakeMotion(model->skeleton(), 3);
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const EvaluatedFrame frame,
-      running_.remote().EvaluatePose({.model_id = id, .track = {}, .bone_scales = {}},
-                                     {track.poses[2], track.poses[1]}));
+      running_.remote().poses().EvaluatePose({.model_id = id, .track = {}, .bone_scales = {}},
+                                     {track.pose(2), track.pose(1)}));
   EvaluatedFrame truth;
-  ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.poses[2], &track.poses[1]}, {}, &truth),
-              IsOk());
+  ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.pose(2), &track.pose(1)}, {}, &truth), IsOk());
   EXPECT_LE((frame.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-5);
 }
 
 TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
   const std::string id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(id).value();
+  const auto model = running_.local().models().Acquire(id).value();
   const auto stub = v1::PoseService::NewStub(channel());
   v1::EvaluateClipRequest request;
   request.mutable_character()->set_model_id(id);
@@ -69,7 +68,7 @@ TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
     ASSERT_TRUE(reader->Read(&response));
     EXPECT_TRUE(response.has_header());
     std::this_thread::sleep_for(milliseconds(100));
-    EXPECT_EQ(running_.local().cache_stats().num_pinned, 1);
+    EXPECT_EQ(running_.local().models().cache_stats().num_pinned, 1);
     context.TryCancel();
     reader->Finish();
   }
@@ -78,10 +77,10 @@ TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
 }
 
 TEST_F(StreamingTest, AWatcherThatDoesNotReadGetsTheNewestStateLater) {
-  const std::string sequence_id = running_.service().UploadSequence(MakeSwayingTube(5), {})->id;
+  const std::string sequence_id = running_.service().sequences().Upload(MakeSwayingTube(5), {})->id;
   running_.trainer().step_ms = 5;
   const std::string job_id =
-      running_.service().CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
+      running_.service().jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   const auto stub = v1::JobService::NewStub(channel());
   grpc::ClientContext context;
   v1::WatchJobRequest request;
@@ -111,7 +110,7 @@ TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
   data.set_data(bytes.substr(0, 1'000'000));
   ASSERT_TRUE(writer->Write(data));
   ASSERT_TRUE(
-      Eventually([&] { return running_.local().QueryUpload(id)->received_bytes == 1'000'000; }));
+      Eventually([&] { return running_.local().sequences().QueryUpload(id)->received_bytes == 1'000'000; }));
   {
     grpc::ClientContext second_context;
     v1::UploadSequenceResponse second_response;
@@ -122,7 +121,7 @@ TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
   }
   context.TryCancel();  // the connection breaks
   writer->Finish();
-  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, running_.service().UploadSequence(large, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, running_.service().sequences().Upload(large, {}));
   EXPECT_EQ(info.id, id);
 }
 
@@ -131,25 +130,25 @@ TEST_F(StreamingTest, TooManyStreamsAreRefused) {
   std::vector<std::unique_ptr<LiveSession>> sessions;
   for (int i = 0; i < 8; ++i) {
     sessions.push_back(running_.remote()
-                           .OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
+                           .poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
                            .value());
   }
-  EXPECT_THAT(running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}),
+  EXPECT_THAT(running_.remote().poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-open-streams")));
   sessions.pop_back();
   EXPECT_TRUE(Eventually([&] {
-    return running_.remote().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}).ok();
+    return running_.remote().poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}).ok();
   }));
 }
 
 TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
   const std::string id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(id).value();
+  const auto model = running_.local().models().Acquire(id).value();
   for (const auto& [num_frames, limit] :
        {std::pair(60'000, "larger than max"), std::pair(20'001, "max-frames")}) {
     const ClipQuery query{
         .model_id = id, .track = MakeMotion(model->skeleton(), num_frames), .bone_scales = {}};
-    EXPECT_THAT(running_.service().EvaluateClip(
+    EXPECT_THAT(running_.service().poses().EvaluateClip(
                     query, [](int, const EvaluatedFrame&) { return absl::OkStatus(); }),
                 HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr(limit)));
   }
@@ -157,11 +156,11 @@ TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
 
 TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   const std::string id = running_.TrainModel();
-  const auto model = running_.local().AcquireModel(id).value();
-  const std::string sequence_id = running_.service().ListSequences()->at(0).id;
+  const auto model = running_.local().models().Acquire(id).value();
+  const std::string sequence_id = running_.service().sequences().List()->at(0).id;
   running_.trainer().step_ms = 200;
   const std::string job_id =
-      running_.service().CreateTrainingJob({.sequence_ids = {sequence_id}})->id;
+      running_.service().jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   std::atomic<bool> watching = false;
   const auto stub = v1::JobService::NewStub(channel());
   grpc::Status watched;
@@ -178,7 +177,7 @@ TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   std::thread clip([&] {
     const ClipQuery query{
         .model_id = id, .track = MakeMotion(model->skeleton(), 400), .bone_scales = {}};
-    EXPECT_THAT(running_.service().EvaluateClip(query,
+    EXPECT_THAT(running_.service().poses().EvaluateClip(query,
                                                 [&](int, const EvaluatedFrame&) {
                                                   std::this_thread::sleep_for(milliseconds(1));
                                                   ++num_frames;

@@ -8,6 +8,7 @@
 #include "pleat/formats/rig_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/grpc/grpc_server.h"
+#include "pleat/local/local_character_service.h"
 #include "pleat/performer/performer.h"
 #include "pleat/remote/remote_character_service.h"
 #include "support/status_matchers.h"
@@ -24,7 +25,7 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence,
                              DecodeSequence(EncodeSequence(performer.sequence)));
   TrainOptions options;
-  options.learner = "gp";
+  options.learner = LearnerChoice::kGp;
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
                              TrainCharacter({sequence}, options, {.num_threads = 1}));
 
@@ -35,23 +36,24 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(
                                                     "127.0.0.1:" + std::to_string(server->port())));
   PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo uploaded,
-                             client->UploadSequence(performer.sequence, {}));
+                             client->sequences().Upload(performer.sequence, {}));
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const JobInfo created,
-      client->CreateTrainingJob({.sequence_ids = {uploaded.id}, .options = options}));
+      client->jobs().CreateTraining({.sequence_ids = {uploaded.id}, .options = options}));
   JobInfo job;
-  ASSERT_THAT(client->WatchJob(created.id,
-                               [&](const JobInfo& info) {
-                                 job = info;
-                                 return true;
-                               }),
+  ASSERT_THAT(WatchJob(client->jobs(), created.id,
+                       [&](const JobInfo& info) {
+                         job = info;
+                         return true;
+                       }),
               IsOk());
   ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, client->DownloadModel(job.result_id, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, client->models().Download(job.result_id, {}));
   EXPECT_TRUE(bytes == EncodeModel(*model)) << "the model bytes differ";
 
-  ClipQuery query{.model_id = job.result_id, .track = performer.truth.track, .bone_scales = {}};
-  query.track.poses.resize(10);
+  ClipQuery query{.model_id = job.result_id,
+                  .track = performer.truth.track.Subset({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}),
+                  .bone_scales = {}};
   std::vector<EvaluatedFrame> truth;
   ASSERT_THAT(PoseEvaluator(model).EvaluateClip(query.track, {},
                                                 [&](int, const EvaluatedFrame& frame) {
@@ -63,24 +65,24 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
        {FrameEncoding::kDracoMesh, FrameEncoding::kDracoPointCloud, FrameEncoding::kDracoDelta}) {
     std::optional<FrameDecoder> decoder;
     double worst_steps = 0;
-    ASSERT_THAT(client->StreamClip(
-                    query, {.encoding = encoding},
-                    {.on_header =
-                         [&](const StreamHeader& header) {
-                           decoder.emplace(FrameDecoder::Create(header).value());
-                           return absl::OkStatus();
-                         },
-                     .on_frame =
-                         [&](int t, std::string_view draco, const FrameMark& mark, double) {
-                           Eigen::Matrix3Xf positions;
-                           const absl::Status status = decoder->Decode(draco, mark, &positions);
-                           if (!status.ok()) return status;
-                           worst_steps = std::max<double>(
-                               worst_steps, (positions - truth[t].positions).cwiseAbs().maxCoeff() /
-                                                decoder->header().box.step_m());
-                           return absl::OkStatus();
-                         }}),
-                IsOk());
+    ASSERT_THAT(
+        StreamClip(client->poses(), query, {.encoding = encoding},
+                   {.on_header =
+                        [&](const StreamHeader& header) {
+                          decoder.emplace(FrameDecoder::Create(header).value());
+                          return absl::OkStatus();
+                        },
+                    .on_frame =
+                        [&](int t, std::string_view draco, const FrameMark& mark, double) {
+                          Eigen::Matrix3Xf positions;
+                          const absl::Status status = decoder->Decode(draco, mark, &positions);
+                          if (!status.ok()) return status;
+                          worst_steps = std::max<double>(
+                              worst_steps, (positions - truth[t].positions).cwiseAbs().maxCoeff() /
+                                               decoder->header().box.step_m());
+                          return absl::OkStatus();
+                        }}),
+        IsOk());
     EXPECT_LE(worst_steps, .505);
     EXPECT_GE(worst_steps, .4);  // the grid is really what the header says
   }
@@ -95,14 +97,14 @@ TEST(TrainingOverNetworkTest, AnOwnRigGivesTheBytesOfALocalRun) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence,
                              DecodeSequence(EncodeSequence(performer.sequence)));
   TrainOptions options;
-  options.learner = "gp";
+  options.learner = LearnerChoice::kGp;
   TemporaryFolder folder;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto service,
                              LocalCharacterService::Open({.data_dir = folder.path()}));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto server, GrpcServer::Start(service.get(), {}));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(
                                                     "127.0.0.1:" + std::to_string(server->port())));
-  const std::string sequence_id = client->UploadSequence(performer.sequence, {})->id;
+  const std::string sequence_id = client->sequences().Upload(performer.sequence, {})->id;
   const UserRig full{performer.truth.rig.skeleton, performer.truth.rig.weights, 0, {5, 9}};
   UserRig skeleton_only = full;
   skeleton_only.weights.reset();
@@ -114,17 +116,17 @@ TEST(TrainingOverNetworkTest, AnOwnRigGivesTheBytesOfALocalRun) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
                                TrainCharacterWithRig({sequence}, rig, options));
     PLEAT_ASSERT_OK_AND_ASSIGN(
-        JobInfo job, client->CreateTrainingJob(
+        JobInfo job, client->jobs().CreateTraining(
                          {.sequence_ids = {sequence_id}, .options = options, .rig = text}));
     EXPECT_EQ(job.rig_id, ToHex(ComputeSha256(text)));
-    ASSERT_THAT(client->WatchJob(job.id,
-                                 [&](const JobInfo& info) {
-                                   job = info;
-                                   return true;
-                                 }),
+    ASSERT_THAT(WatchJob(client->jobs(), job.id,
+                         [&](const JobInfo& info) {
+                           job = info;
+                           return true;
+                         }),
                 IsOk());
     ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
-    EXPECT_TRUE(*client->DownloadModel(job.result_id, {}) == EncodeModel(*model));
+    EXPECT_TRUE(*client->models().Download(job.result_id, {}) == EncodeModel(*model));
   }
 }
 

@@ -5,15 +5,15 @@
 
 #include <string>
 
-#include "pleat/service/character_service.h"
+#include "pleat/service/job_service.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
 
 // The job's last state; its progress must never fall.
-inline JobInfo WatchToEnd(CharacterService& service, const std::string& id) {
+inline JobInfo WatchToEnd(JobService& jobs, const std::string& id) {
   JobInfo last;
-  EXPECT_THAT(service.WatchJob(id,
+  EXPECT_THAT(WatchJob(jobs, id,
                                [&](const JobInfo& info) {
                                  EXPECT_GE(info.fraction, last.fraction);
                                  last = info;

@@ -32,7 +32,7 @@ TEST(PoseFeaturesTest, RowsHoldThePoseThenItsPredecessor) {
   const Eigen::MatrixXd rows = Rows({}, track);
   for (int t = 0; t < 6; ++t) {
     for (int j = 1; j < 18; ++j) {
-      const Eigen::Vector3d w = ExponentialMapFromQuaternion(track.poses[t].rotations[j]);
+      const Eigen::Vector3d w = ExponentialMapFromQuaternion(track.pose(t).rotations[j]);
       EXPECT_LT((rows.block<1, 3>(t, 3 * (j - 1)).transpose() - w).norm(), 1e-9);
     }
     if (t == 0) continue;
@@ -45,11 +45,12 @@ TEST(PoseFeaturesTest, RowsHoldThePoseThenItsPredecessor) {
 
 TEST(PoseFeaturesTest, RootDoesNotMatter) {
   const PoseTrack track = MakeSmoothPoses(HumanTemplate(), 8, 1);
-  PoseTrack moved = track;
-  for (Pose& pose : moved.poses) {
+  PoseTrack::Parts parts = track.parts();
+  for (Pose& pose : parts.poses) {
     pose.root_position += Eigen::Vector3d(5, 6, 7);
     pose.rotations[0] = QuaternionFromExponentialMap({1, 2, 3}) * pose.rotations[0];
   }
+  const PoseTrack moved = PoseTrack::FromValid(std::move(parts));
   for (const RotationRepresentation representation : kAll) {
     EXPECT_EQ(Rows({representation}, track), Rows({representation}, moved));
   }
@@ -57,10 +58,11 @@ TEST(PoseFeaturesTest, RootDoesNotMatter) {
 
 TEST(PoseFeaturesTest, QuaternionSignDoesNotMatter) {
   const PoseTrack track = MakeSmoothPoses(HumanTemplate(), 8, 1);
-  PoseTrack flipped = track;
-  for (size_t t = 0; t < flipped.poses.size(); t += 2) {
-    for (Eigen::Quaterniond& rotation : flipped.poses[t].rotations) rotation.coeffs() *= -1;
+  PoseTrack::Parts parts = track.parts();
+  for (size_t t = 0; t < parts.poses.size(); t += 2) {
+    for (Eigen::Quaterniond& rotation : parts.poses[t].rotations) rotation.coeffs() *= -1;
   }
+  const PoseTrack flipped = PoseTrack::FromValid(std::move(parts));
   for (const RotationRepresentation representation : kAll) {
     EXPECT_LT((Rows({representation}, track) - Rows({representation}, flipped)).norm(), 1e-9);
   }
@@ -68,26 +70,24 @@ TEST(PoseFeaturesTest, QuaternionSignDoesNotMatter) {
 
 TEST(PoseFeaturesTest, ARotationBeyondPiStaysContinuous) {
   // One arm turns slowly through 270 degrees about one axis.
-  PoseTrack track;
+  PoseTrack::Parts parts;
   for (int t = 0; t < 28; ++t) {
     Pose pose = Pose::Rest(HumanTemplate());
     pose.rotations[kLeftHand] = QuaternionFromExponentialMap({0, 0, 0.17 * t});
-    track.poses.push_back(pose);
+    parts.poses.push_back(pose);
   }
-  const Eigen::MatrixXd rows = Rows({.history = 1}, track);
+  const Eigen::MatrixXd rows = Rows({.history = 1}, PoseTrack::FromValid(std::move(parts)));
   const Eigen::VectorXd angle = rows.col(3 * (kLeftHand - 1) + 2);
   for (int t = 1; t < 28; ++t) EXPECT_NEAR(angle[t] - angle[t - 1], 0.17, 1e-9);
 }
 
 TEST(PoseFeaturesTest, HistoryStaysInsideItsClip) {
-  PoseTrack track = MakeSmoothPoses(HumanTemplate(), 10, 1);
+  const PoseTrack whole = MakeSmoothPoses(HumanTemplate(), 10, 1);
   const PoseFeatureOptions options;
-  const Eigen::VectorXd reference = PoseFeatures::Reference(options, track);
-  track.clip_starts = {0, 6};
-  const Eigen::MatrixXd both = PoseFeatures(options, 18, reference).ComputeTrack(track);
-  PoseTrack second = track;
-  second.poses.erase(second.poses.begin(), second.poses.begin() + 6);
-  second.clip_starts = {0};
+  const Eigen::VectorXd reference = PoseFeatures::Reference(options, whole);
+  const PoseTrack cut = PoseTrack::FromValid({.poses = whole.poses(), .clip_starts = {0, 6}});
+  const Eigen::MatrixXd both = PoseFeatures(options, 18, reference).ComputeTrack(cut);
+  const PoseTrack second = whole.Subset({6, 7, 8, 9});
   const Eigen::MatrixXd alone = PoseFeatures(options, 18, reference).ComputeTrack(second);
   EXPECT_EQ(both.bottomRows(4), alone);
 }

@@ -10,15 +10,14 @@ namespace {
 
 // Constant velocity: frame t stands at x = t / fps and one joint has turned by t / fps radians.
 PoseTrack UniformMotion(int num_frames, double fps) {
-  PoseTrack track;
-  track.fps = fps;
+  PoseTrack::Parts track{.fps = fps};
   for (int t = 0; t < num_frames; ++t) {
     Pose pose = Pose::Rest(HumanTemplate());
     pose.root_position.x() = t / fps;
     pose.rotations[kHead] = QuaternionFromExponentialMap({0, t / fps, 0});
     track.poses.push_back(pose);
   }
-  return track;
+  return PoseTrack::FromValid(std::move(track));
 }
 
 double Turn(const Pose& pose) { return ExponentialMapFromQuaternion(pose.rotations[kHead]).y(); }
@@ -29,9 +28,9 @@ TEST(PoseHistoryTest, SameRateGivesThePosesThemselves) {
   std::vector<const Pose*> poses;
   history.At(5, &poses);
   ASSERT_EQ(poses.size(), 3u);
-  EXPECT_EQ(poses[0], &track.poses[5]);
-  EXPECT_EQ(poses[1], &track.poses[4]);
-  EXPECT_EQ(poses[2], &track.poses[3]);
+  EXPECT_EQ(poses[0], &track.pose(5));
+  EXPECT_EQ(poses[1], &track.pose(4));
+  EXPECT_EQ(poses[2], &track.pose(3));
 }
 
 TEST(PoseHistoryTest, IntervalsAreThoseOfTheModelAtAnyRate) {
@@ -55,15 +54,16 @@ TEST(PoseHistoryTest, TheFirstFrameContinuesItsMotionBackwards) {
 }
 
 TEST(PoseHistoryTest, ClipsAreSeparate) {
-  PoseTrack track = UniformMotion(10, 30);
-  track.clip_starts = {0, 4, 9};
-  for (int t = 4; t < 10; ++t) track.poses[t].root_position.x() += 100;
+  PoseTrack::Parts parts = UniformMotion(10, 30).Take();
+  parts.clip_starts = {0, 4, 9};
+  for (int t = 4; t < 10; ++t) parts.poses[t].root_position.x() += 100;
+  const PoseTrack track = PoseTrack::FromValid(std::move(parts));
   PoseHistory history(track, 30, 2);
   std::vector<const Pose*> poses;
   history.At(4, &poses);
   EXPECT_NEAR(poses[1]->root_position.x(), 100 + 3 / 30.0, 1e-9);
   history.At(9, &poses);  // a clip of one frame stands still
-  EXPECT_EQ(poses[1]->root_position, track.poses[9].root_position);
+  EXPECT_EQ(poses[1]->root_position, track.pose(9).root_position);
 }
 
 TEST(PoseHistoryTest, SamplePoseInterpolates) {
@@ -71,7 +71,7 @@ TEST(PoseHistoryTest, SamplePoseInterpolates) {
   const Pose pose = SamplePose(track, 0, 10, 2.25);
   EXPECT_NEAR(pose.root_position.x(), 0.225, 1e-12);
   EXPECT_NEAR(Turn(pose), 0.225, 1e-9);
-  EXPECT_EQ(SamplePose(track, 0, 10, 99).root_position, track.poses[9].root_position);
+  EXPECT_EQ(SamplePose(track, 0, 10, 99).root_position, track.pose(9).root_position);
 }
 
 }  // namespace

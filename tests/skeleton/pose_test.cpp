@@ -41,7 +41,7 @@ TEST(PoseTest, ChainsAreConnectedAndRigid) {
   const Skeleton& skeleton = HumanTemplate();
   const PoseTrack track = MakeSmoothPoses(skeleton, 10, 3, 1.0);
   BoneTransforms transforms;
-  for (const Pose& pose : track.poses) {
+  for (const Pose& pose : track.poses()) {
     ComputeBoneTransforms(skeleton, pose, {}, &transforms);
     EXPECT_LT((transforms.joint_positions.col(0) - pose.root_position).norm(), 1e-12);
     for (int b = 1; b < skeleton.num_joints(); ++b) {
@@ -64,7 +64,7 @@ TEST(PoseTest, ChainsAreConnectedAndRigid) {
 
 TEST(PoseTest, BoneScalesLengthenBonesAlongTheirAxis) {
   const Skeleton& skeleton = HumanTemplate();
-  const Pose pose = MakeSmoothPoses(skeleton, 5, 3).poses[4];
+  const Pose pose = MakeSmoothPoses(skeleton, 5, 3).pose(4);
   std::vector<double> scales(skeleton.num_joints(), 1.0);
   scales[kLeftLowerLeg] = 1.5;
   BoneTransforms plain, scaled;

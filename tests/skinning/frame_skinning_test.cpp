@@ -18,8 +18,8 @@ namespace {
 class FrameSkinningTest : public ::testing::Test {
  protected:
   FrameSkinningTest() {
-    ComputeBoneTransforms(figure_.rig.skeleton,
-                          MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5], {}, &transforms_);
+    ComputeBoneTransforms(figure_.rig.skeleton, MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5),
+                          {}, &transforms_);
     skinning_.SetMotions(transforms_, transforms_.rotation, &motions_);
     details_.resize(3 * num_blocks_ * kSkinningLanes);
     for (size_t i = 0; i < details_.size(); ++i) {

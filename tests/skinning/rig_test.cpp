@@ -32,7 +32,7 @@ TEST_F(RigTest, RestPoseIsTheRestMesh) {
 }
 
 TEST_F(RigTest, AgreesWithTheDenseFormula) {
-  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5];
+  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5);
   const Eigen::Matrix3Xd skinned = Skin(pose, &transforms_);
   const Eigen::MatrixXd weights = figure_.rig.weights.ToDense();
   Eigen::Matrix3Xd expected = Eigen::Matrix3Xd::Zero(3, skinned.cols());
@@ -45,7 +45,7 @@ TEST_F(RigTest, AgreesWithTheDenseFormula) {
 }
 
 TEST_F(RigTest, RigidMotionOfTheBodyMovesTheMeshRigidly) {
-  Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).poses[5];
+  Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5);
   BoneTransforms before_transforms;
   const Eigen::Matrix3Xd before = Skin(pose, &before_transforms);
   const Eigen::Quaterniond turn = QuaternionFromExponentialMap({1, -0.5, 2});
@@ -63,7 +63,7 @@ TEST_F(RigTest, RigidMotionOfTheBodyMovesTheMeshRigidly) {
 }
 
 TEST_F(RigTest, BlendRotationOfOneBoneIsItsRotation) {
-  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).poses[5];
+  const Pose pose = MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).pose(5);
   Skin(pose, &transforms_);
   std::vector<VertexInfluences> influences(2);
   influences[0] = {{kLeftHand}, {1}};
@@ -75,8 +75,8 @@ TEST_F(RigTest, BlendRotationOfOneBoneIsItsRotation) {
   EXPECT_LT(
       (rotations[1].toRotationMatrix() - transforms_.rotation[kLeftHand]).cwiseAbs().maxCoeff(),
       1e-9);
-  const Eigen::Quaterniond half = MeanRotation(Eigen::Quaterniond(transforms_.rotation[kChest]),
-                                               Eigen::Quaterniond(transforms_.rotation[kHead]));
+  const Eigen::Quaterniond half = Eigen::Quaterniond(transforms_.rotation[kChest])
+                                      .slerp(0.5, Eigen::Quaterniond(transforms_.rotation[kHead]));
   EXPECT_LT(rotations[0].angularDistance(half), 1e-6);
 }
 
@@ -84,8 +84,10 @@ TEST_F(RigTest, BlendRotationsDoNotDependOnQuaternionSigns) {
   // Two bones turned by 170 and 190 degrees: their quaternions come out with opposite signs.
   BoneTransforms transforms;
   transforms.rotation.assign(3, Eigen::Matrix3d::Identity());
-  transforms.rotation[1] = RotationFromExponentialMap({0, M_PI * 170 / 180, 0});
-  transforms.rotation[2] = RotationFromExponentialMap({0, M_PI * 190 / 180, 0});
+  transforms.rotation[1] =
+      QuaternionFromExponentialMap({0, M_PI * 170 / 180, 0}).toRotationMatrix();
+  transforms.rotation[2] =
+      QuaternionFromExponentialMap({0, M_PI * 190 / 180, 0}).toRotationMatrix();
   const SkinWeights weights = *SkinWeights::Create(3, {{{1, 2}, {.5f, .5f}}});
   std::vector<Eigen::Quaterniond> rotations;
   BlendRotations(weights, {0}, transforms, &rotations);

@@ -9,12 +9,14 @@
 
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
+#include "store/sync_gate.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST(BlobStoreTest, KeepsContentUnderItsHash) {
@@ -70,6 +72,40 @@ TEST(BlobStoreTest, KeepsTheReserve) {
   EXPECT_THAT(blobs.Put("hello"),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("reserve")));
   EXPECT_TRUE(blobs.List()->empty());
+}
+
+TEST(BlobStoreTest, AStagedFileIsSeenOnlyWhenItIsPublished) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  std::string path;
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const StagedFile unpublished, blobs.Stage("hello"));
+    path = unpublished.path();
+    EXPECT_TRUE(std::filesystem::exists(path));
+    EXPECT_FALSE(blobs.Contains(unpublished.id()));
+    EXPECT_TRUE(blobs.List()->empty());
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));  // nobody wanted it
+  PLEAT_ASSERT_OK_AND_ASSIGN(StagedFile file, blobs.Stage("hello"));
+  const std::string id = file.id();
+  ASSERT_THAT(blobs.Publish(std::move(file)), IsOk());
+  EXPECT_EQ(blobs.Get(id).value(), "hello");
+  PLEAT_ASSERT_OK_AND_ASSIGN(StagedFile again, blobs.Stage("hello"));
+  EXPECT_TRUE(again.already_stored());
+  ASSERT_THAT(blobs.Delete(id), IsOk());
+  EXPECT_THAT(blobs.Publish(std::move(again)),
+              HasStatus(absl::StatusCode::kAborted, HasSubstr("deleted")));
+}
+
+TEST(BlobStoreTest, SyncsTheContentBeforeTheNames) {
+  TemporaryFolder folder;
+  SyncGate gate;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0, gate.hook()));
+  PLEAT_ASSERT_OK_AND_ASSIGN(StagedFile file, blobs.Stage("hello"));
+  EXPECT_THAT(gate.TakePaths(), ElementsAre(file.path()));
+  const std::string shard = folder.File(file.id().substr(0, 2));
+  ASSERT_THAT(blobs.Publish(std::move(file)), IsOk());
+  EXPECT_THAT(gate.TakePaths(), ElementsAre(shard, folder.path()));
 }
 
 TEST(BlobStoreTest, ManyWritersOfTheSameContent) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "store/sync_gate.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -82,6 +83,45 @@ TEST(CatalogueTest, RefusesDamageAndNewerVersions) {
   EXPECT_THAT(Catalogue::Open(folder.File("damaged.db")),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("catalogue")));
   EXPECT_FALSE(Catalogue::Open(folder.File("no/such/folder.db")).ok());
+  ASSERT_THAT(Catalogue::Open(folder.File("newer.db")), IsOk());
+  {
+    // user_version: four bytes, big-endian, at offset 60 of the file (sqlite.org/fileformat.html).
+    std::fstream file(folder.File("newer.db"), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(60).write("\0\0\0\x09", 4);
+  }
+  EXPECT_THAT(Catalogue::Open(folder.File("newer.db")),
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("version 9")));
+}
+
+TEST(CatalogueTest, AReadDoesNotWaitForTheSyncOfAWrite) {
+  TemporaryFolder folder;
+  SyncGate gate;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db"), gate.hook()));
+  ASSERT_THAT(catalogue->Put(EntryKind::kModel, {"a", "old", 0}), IsOk());
+  gate.Close(PathEndsWith("c.db-wal"));
+  std::thread writer([&] {
+    EXPECT_THAT(catalogue->Put(EntryKind::kModel, {"a", "new", 0}), IsOk());
+  });
+  gate.WaitForOneThatWaits();
+  // What is not durable yet cannot be seen.
+  EXPECT_EQ(catalogue->Get(EntryKind::kModel, "a")->record, "old");
+  EXPECT_EQ(catalogue->List(EntryKind::kModel)->size(), 1u);
+  gate.Open();
+  writer.join();
+  EXPECT_EQ(catalogue->Get(EntryKind::kModel, "a")->record, "new");
+}
+
+TEST(CatalogueTest, EveryWriteIsSynced) {
+  TemporaryFolder folder;
+  SyncGate gate;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db"), gate.hook()));
+  gate.TakePaths();
+  ASSERT_THAT(catalogue->Put(EntryKind::kModel, {"a", "r", 0}), IsOk());
+  EXPECT_FALSE(gate.TakePaths().empty());
+  ASSERT_THAT(catalogue->Delete(EntryKind::kModel, "a"), IsOk());
+  EXPECT_FALSE(gate.TakePaths().empty());
+  ASSERT_THAT(catalogue->List(EntryKind::kModel), IsOk());
+  EXPECT_TRUE(gate.TakePaths().empty());
 }
 
 TEST(CatalogueTest, ManyThreads) {

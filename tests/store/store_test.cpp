@@ -3,7 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
+#include <thread>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "pleat/base/sha256.h"
+#include "store/sync_gate.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -12,6 +18,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(StoreTest, OneProcessPerFolder) {
   TemporaryFolder folder;
@@ -38,6 +45,120 @@ TEST(StoreTest, RemovesFilesWithoutRowAndReportsRowsWithoutFile) {
   EXPECT_TRUE(store->blobs().Contains(kept));
   EXPECT_FALSE(store->blobs().Contains(orphan));
   EXPECT_THAT(store->missing_files(), ElementsAre(lost));
+}
+
+class StoreSyncTest : public testing::Test {
+ protected:
+  static std::string IdOf(const std::string& bytes) { return ToHex(ComputeSha256(bytes)); }
+  absl::Status AddModel(const std::string& bytes) {
+    return store_->Add(EntryKind::kModel, {IdOf(bytes), "record"}, bytes);
+  }
+
+  TemporaryFolder folder_;
+  SyncGate gate_;
+  std::unique_ptr<Store> store_ =
+      Store::Open({.data_dir = folder_.path(), .before_sync = gate_.hook()}).value();
+};
+
+TEST_F(StoreSyncTest, TheFileIsDurableBeforeItsRow) {
+  const std::string id = IdOf("bytes");
+  const std::string shard = folder_.File("blobs/" + id.substr(0, 2));
+  gate_.TakePaths();
+  ASSERT_THAT(AddModel("bytes"), IsOk());
+  EXPECT_THAT(gate_.TakePaths(),
+              ElementsAre(StartsWith(shard + "/" + id + ".tmp-"), shard, folder_.File("blobs"),
+                          folder_.File("catalogue.db-wal")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, store_->uploads().Begin(IdOf("upload"), 6, 0));
+  ASSERT_THAT(upload->Append("upload"), IsOk());
+  ASSERT_THAT(upload->ReadComplete(), IsOk());
+  ASSERT_THAT(store_->Add(EntryKind::kSequence, {upload->id(), "record"}, upload.get()), IsOk());
+  EXPECT_THAT(gate_.TakePaths(),
+              ElementsAre(folder_.File("uploads/" + upload->id() + ".part"),
+                          folder_.File("blobs/" + upload->id().substr(0, 2)), folder_.File("blobs"),
+                          folder_.File("catalogue.db-wal")));
+  EXPECT_EQ(store_->blobs().Get(upload->id()).value(), "upload");
+  EXPECT_THAT(store_->catalogue().Get(EntryKind::kSequence, upload->id()), IsOk());
+}
+
+TEST_F(StoreSyncTest, NoReadWaitsForASync) {
+  ASSERT_THAT(AddModel("old"), IsOk());
+  int num_added = 0;
+  for (const std::function<bool(const std::string&)>& slow :
+       std::vector<std::function<bool(const std::string&)>>{
+           PathContains(".tmp-"), PathEndsWith("/blobs"), PathEndsWith("/catalogue.db-wal")}) {
+    const std::string added = absl::StrCat("new ", ++num_added);
+    gate_.Close(slow);
+    std::thread writer([&] { EXPECT_THAT(AddModel(added), IsOk()); });
+    gate_.WaitForOneThatWaits();
+    EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf("old")), IsOk());
+    EXPECT_THAT(store_->catalogue().List(EntryKind::kModel), IsOk());
+    EXPECT_EQ(store_->blobs().Get(IdOf("old")).value(), "old");
+    EXPECT_EQ(store_->uploads().ReceivedBytes(IdOf("old")), 0u);
+    EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf(added)),
+                HasStatus(absl::StatusCode::kNotFound, testing::_));
+    gate_.Open();
+    writer.join();
+    EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf(added)), IsOk());
+  }
+}
+
+TEST_F(StoreSyncTest, NoChangeWaitsForTheContentOfAnother) {
+  ASSERT_THAT(AddModel("old"), IsOk());
+  gate_.Close(PathContains("/" + IdOf("large") + ".tmp-"));
+  std::thread writer([&] { EXPECT_THAT(AddModel("large"), IsOk()); });
+  gate_.WaitForOneThatWaits();
+  EXPECT_THAT(AddModel("small"), IsOk());
+  EXPECT_THAT(store_->Delete(EntryKind::kModel, IdOf("old")), IsOk());
+  // Not even a change of the same id: the lock is not taken yet.
+  EXPECT_THAT(store_->Delete(EntryKind::kModel, IdOf("large")),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  gate_.Open();
+  writer.join();
+  EXPECT_EQ(store_->blobs().Get(IdOf("large")).value(), "large");
+}
+
+// Add finds the content there, and then a Delete that was faster takes it away.
+TEST_F(StoreSyncTest, AnAddedEntryHasItsFileWhateverADeleteDoes) {
+  ASSERT_THAT(AddModel("bytes"), IsOk());
+  gate_.Close(PathEndsWith("/catalogue.db-wal"));
+  std::thread deleter(
+      [&] { EXPECT_THAT(store_->Delete(EntryKind::kModel, IdOf("bytes")), IsOk()); });
+  gate_.WaitForOneThatWaits();
+  std::thread adder([&] { EXPECT_THAT(AddModel("bytes"), IsOk()); });
+  gate_.Open();
+  deleter.join();
+  adder.join();
+  EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf("bytes")), IsOk());
+  EXPECT_EQ(store_->blobs().Get(IdOf("bytes")).value(), "bytes");
+}
+
+TEST_F(StoreSyncTest, ARowAlwaysHasItsFile) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      for (int round = 0; round < 10; ++round) {
+        if ((i + round) % 2 == 0) {
+          EXPECT_THAT(AddModel("bytes"), IsOk());
+        } else {
+          store_->Delete(EntryKind::kModel, IdOf("bytes")).IgnoreError();
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(store_->catalogue().Get(EntryKind::kModel, IdOf("bytes")).ok(),
+            store_->blobs().Contains(IdOf("bytes")));
+}
+
+TEST_F(StoreSyncTest, RefusesAnIdThatIsNotTheContents) {
+  EXPECT_THAT(store_->Add(EntryKind::kModel, {IdOf("a"), ""}, "b"),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("SHA-256")));
+  EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf("a")),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_TRUE(store_->blobs().List()->empty());
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, store_->uploads().Begin(IdOf("a"), 1, 0));
+  EXPECT_THAT(store_->Add(EntryKind::kModel, {IdOf("b"), ""}, upload.get()),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("upload")));
 }
 
 TEST(StoreTest, SaysWhyItCannotStart) {

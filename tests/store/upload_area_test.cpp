@@ -6,6 +6,7 @@
 
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
+#include "pleat/store/blob_store.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -37,9 +38,19 @@ TEST_F(UploadAreaTest, GoesOnAfterABreakAndARestart) {
               HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("7 of 25")));
   ASSERT_THAT(upload->Append(content_.substr(7)), IsOk());
   EXPECT_EQ(upload->ReadComplete().value(), content_);
-  ASSERT_THAT(upload->MoveTo(&blobs_), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(StagedFile file, upload->Stage());
+  ASSERT_THAT(blobs_.Publish(std::move(file)), IsOk());
   EXPECT_EQ(blobs_.Get(id_).value(), content_);
   EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
+}
+
+// An upload that could not be stored is not sent again.
+TEST_F(UploadAreaTest, StagingKeepsTheBytesUntilTheyArePublished) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id_, content_.size(), 0));
+  ASSERT_THAT(upload->Append(content_), IsOk());
+  { PLEAT_ASSERT_OK_AND_ASSIGN(const StagedFile unpublished, upload->Stage()); }
+  EXPECT_EQ(area_->ReceivedBytes(id_), content_.size());
+  EXPECT_EQ(upload->ReadComplete().value(), content_);
 }
 
 TEST_F(UploadAreaTest, OneWriterAtATime) {

@@ -69,7 +69,7 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
   parts.topology = clip.topology();
   parts.appearance = clip.appearance();
   parts.options = options;
-  parts.options.learner = "gp";
+  parts.options.learner = LearnerChoice::kGp;
   parts.rig.rest_positions = clip.FrameAsDouble(0);
   parts.rig.skeleton =
       Skeleton::Create(
@@ -81,7 +81,7 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
     weights.row(v) << 0, 1 - upper, upper;
   }
   parts.rig.weights = SkinWeights::FromDense(weights).value();
-  const int num_values = options.rotations == "quaternion" ? 8 : 6;  // 2 bones
+  const int num_values = 2 * NumCoordinates(options.rotations);  // 2 bones
   parts.feature_reference = Eigen::VectorXd::Zero(num_values);
   for (int v = 0; v < num_vertices; ++v) parts.control_vertices.push_back(v);
   GpRegressionParameters stage;
@@ -137,8 +137,7 @@ class FakeTrainer {
 
 // A motion of a model's skeleton.
 inline PoseTrack MakeMotion(const Skeleton& skeleton, int num_frames, double fps = 25) {
-  PoseTrack track;
-  track.fps = fps;
+  PoseTrack::Parts track{.fps = fps};
   for (int t = 0; t < num_frames; ++t) {
     Pose pose = Pose::Rest(skeleton);
     pose.root_position += Eigen::Vector3d(.02 * t, 0, .01 * t);
@@ -149,7 +148,7 @@ inline PoseTrack MakeMotion(const Skeleton& skeleton, int num_frames, double fps
     }
     track.poses.push_back(pose);
   }
-  return track;
+  return PoseTrack::FromValid(std::move(track));
 }
 
 }  // namespace pleat

@@ -103,7 +103,7 @@ inline MeshSequence MakeSkinnedSequence(const SkinnedFigure& figure, const PoseT
   std::vector<Eigen::Matrix3Xf> frames;
   for (int t = 0; t < track.num_frames(); ++t) {
     BoneTransforms transforms;
-    ComputeBoneTransforms(figure.rig.skeleton, track.poses[t], {}, &transforms);
+    ComputeBoneTransforms(figure.rig.skeleton, track.pose(t), {}, &transforms);
     Eigen::Matrix3Xd positions;
     SkinVertices(figure.rig.weights, figure.rig.rest_positions, transforms, &positions);
     if (local_details.size() > 0) {

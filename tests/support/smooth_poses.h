@@ -8,7 +8,7 @@
 
 #include "pleat/base/random.h"
 #include "pleat/math/rotations.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 
@@ -16,7 +16,7 @@ namespace pleat {
 inline PoseTrack MakeSmoothPoses(const Skeleton& skeleton, int num_frames, uint64_t seed,
                                  double amplitude_rad = 0.4) {
   Random random(seed);
-  PoseTrack track;
+  PoseTrack::Parts track;
   const int num_joints = skeleton.num_joints();
   std::vector<Eigen::Matrix<double, 3, 4>> waves(num_joints);  // amplitude, frequency, phase, rate
   for (auto& wave : waves) {
@@ -40,7 +40,7 @@ inline PoseTrack MakeSmoothPoses(const Skeleton& skeleton, int num_frames, uint6
     }
     track.poses.push_back(std::move(pose));
   }
-  return track;
+  return PoseTrack::FromValid(std::move(track));
 }
 
 }  // namespace pleat

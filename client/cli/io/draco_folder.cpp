@@ -98,8 +98,8 @@ absl::StatusOr<DracoFolder> ParseHeader(const std::string& text, const std::stri
 absl::StatusOr<DracoGeometry> ReadGeometry(const StreamHeader& header, int num_positions,
                                            const std::string& path, const Progress& progress) {
   DracoProcessOptions options;
-  options.limits.max_vertices = static_cast<uint32_t>(header.num_points);
-  options.limits.max_triangles = static_cast<uint32_t>(header.num_triangles);
+  options.limits.max_vertices = header.num_points;
+  options.limits.max_faces = header.num_triangles;
   PLEAT_ASSIGN_OR_RETURN(DracoGeometry geometry, DecodeDracoInChild(path, progress, options));
   if (geometry.positions.cols() == num_positions) return geometry;
   return absl::DataLossError(absl::StrCat(path, ": ", geometry.positions.cols(),

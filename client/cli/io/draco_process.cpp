@@ -90,7 +90,7 @@ class Child {
     const std::string program = ChildPath();
     std::vector<std::string> words = {
         program, absl::StrCat(options_.memory_bytes), absl::StrCat(options_.cpu_seconds),
-        absl::StrCat(options_.limits.max_vertices), absl::StrCat(options_.limits.max_triangles)};
+        absl::StrCat(options_.limits.max_vertices), absl::StrCat(options_.limits.max_faces)};
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -190,13 +190,13 @@ class Child {
   uint64_t peak_memory_bytes_ = 0;
 };
 
-absl::StatusOr<DracoGeometry> ReadGeometry(const DracoFileLimits& limits, Child* child) {
+absl::StatusOr<DracoGeometry> ReadGeometry(const MeshLimits& limits, Child* child) {
   DracoReplyHeader header;
   PLEAT_RETURN_IF_ERROR(child->ReadAll(&header, sizeof header));
   // Points of edgebreaker meshes may be split, so there are up to twice as many.
   if (header.magic != kDracoReplyMagic ||
-      header.num_positions > 2 * uint64_t{limits.max_vertices} ||
-      header.num_triangles > limits.max_triangles || header.has_numbers > 1) {
+      header.num_positions > 2 * static_cast<uint64_t>(limits.max_vertices) ||
+      header.num_triangles > static_cast<uint64_t>(limits.max_faces) || header.has_numbers > 1) {
     return absl::DataLossError("pleat-draco says something impossible");
   }
   DracoGeometry geometry;

@@ -15,7 +15,7 @@ struct DracoProcessOptions {
   uint64_t memory_bytes = uint64_t{1} << 30;  // addresses of the child
   int cpu_seconds = 20;                       // of the child
   double wall_seconds = 60;                   // until it is killed
-  DracoFileLimits limits{};
+  MeshLimits limits{};
 };
 
 struct DracoProcessUsage {

@@ -21,11 +21,11 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> LoadModel(const Session& s
                                                                 const std::string& model) {
   if (IsModelFile(model)) return ReadModelFile(model);
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  PLEAT_ASSIGN_OR_RETURN(const std::string id, FindModel(*service, model));
+  PLEAT_ASSIGN_OR_RETURN(const std::string id, FindModel(service->models(), model));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   PLEAT_ASSIGN_OR_RETURN(
       const std::string bytes,
-      service->DownloadModel(id, InterruptibleProgress(&display).Stage("download", 0, 1)));
+      service->models().Download(id, InterruptibleProgress(&display).Stage("download", 0, 1)));
   return DecodeModel(bytes);
 }
 

@@ -10,7 +10,7 @@
 #include "pleat/character/character_model.h"
 #include "pleat/formats/motion_file.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skeleton/skeleton.h"
 
 namespace pleat {

@@ -62,13 +62,13 @@ absl::StatusOr<Eigen::Vector3d> ParseVector(const std::string& value, const std:
 }
 
 absl::Status ScaleRotations(const std::vector<std::string>& joint_names,
-                            const std::vector<std::string>& texts, PoseTrack* track) {
+                            const std::vector<std::string>& texts, std::vector<Pose>* poses) {
   for (const std::string& text : texts) {
     PLEAT_ASSIGN_OR_RETURN(const JointValue given, SplitJointValue(joint_names, text));
     PLEAT_ASSIGN_OR_RETURN(const double factor, ParseNumber(given.value, text));
     for (const int j : given.joints) {
       Eigen::Vector3d previous = Eigen::Vector3d::Zero();
-      for (Pose& pose : track->poses) {
+      for (Pose& pose : *poses) {
         // Unwrapped along time, or a turn past 180 degrees would jump when it is scaled.
         previous = UnwrapExponentialMap(ExponentialMapFromQuaternion(pose.rotations[j]), previous);
         pose.rotations[j] = QuaternionFromExponentialMap(factor * previous);
@@ -79,13 +79,13 @@ absl::Status ScaleRotations(const std::vector<std::string>& joint_names,
 }
 
 absl::Status OffsetRotations(const std::vector<std::string>& joint_names,
-                             const std::vector<std::string>& texts, PoseTrack* track) {
+                             const std::vector<std::string>& texts, std::vector<Pose>* poses) {
   for (const std::string& text : texts) {
     PLEAT_ASSIGN_OR_RETURN(const JointValue given, SplitJointValue(joint_names, text));
     PLEAT_ASSIGN_OR_RETURN(const Eigen::Vector3d degrees, ParseVector(given.value, text));
     const Eigen::Quaterniond offset(RotationFromEulerXyz(degrees * (std::numbers::pi / 180)));
     for (const int j : given.joints) {
-      for (Pose& pose : track->poses) {
+      for (Pose& pose : *poses) {
         pose.rotations[j] = (offset * pose.rotations[j]).normalized();
       }
     }
@@ -103,33 +103,31 @@ absl::StatusOr<PoseTrack> ScaleTime(const PoseTrack& track, double time_scale) {
     return UsageError(
         absl::StrCat("--time-scale ", time_scale, " makes more than ", kMaxFrames, " frames"));
   }
-  PoseTrack scaled;
-  scaled.fps = track.fps;
-  scaled.clip_starts.clear();
-  for (size_t clip = 0; clip < track.clip_starts.size(); ++clip) {
-    const int begin = track.clip_starts[clip];
-    const int end =
-        clip + 1 < track.clip_starts.size() ? track.clip_starts[clip + 1] : track.num_frames();
-    scaled.clip_starts.push_back(scaled.num_frames());
+  PoseTrack::Parts scaled{.fps = track.fps(), .clip_starts = {}};
+  for (const int begin : track.clip_starts()) {
+    const int end = track.ClipOf(begin).end;
+    scaled.clip_starts.push_back(static_cast<int>(scaled.poses.size()));
     const long last = std::lround((end - begin - 1) * time_scale);
     for (long t = 0; t <= last; ++t) {
       const double position = std::min<double>(begin + t / time_scale, end - 1);
       scaled.poses.push_back(SamplePose(track, begin, end, position));
     }
   }
-  return scaled;
+  return PoseTrack::Create(std::move(scaled));
 }
 
 }  // namespace
 
 absl::StatusOr<PoseTrack> EditMotion(const std::vector<std::string>& joint_names, PoseTrack track,
                                      const MotionEdits& edits) {
-  PLEAT_RETURN_IF_ERROR(ScaleRotations(joint_names, edits.scale_rotation, &track));
-  PLEAT_RETURN_IF_ERROR(OffsetRotations(joint_names, edits.offset_rotation, &track));
+  PoseTrack::Parts edited = std::move(track).Take();
+  PLEAT_RETURN_IF_ERROR(ScaleRotations(joint_names, edits.scale_rotation, &edited.poses));
+  PLEAT_RETURN_IF_ERROR(OffsetRotations(joint_names, edits.offset_rotation, &edited.poses));
   for (const std::string& text : edits.offset_root) {
     PLEAT_ASSIGN_OR_RETURN(const Eigen::Vector3d offset_m, ParseVector(text, text));
-    for (Pose& pose : track.poses) pose.root_position += offset_m;
+    for (Pose& pose : edited.poses) pose.root_position += offset_m;
   }
+  PLEAT_ASSIGN_OR_RETURN(track, PoseTrack::Create(std::move(edited)));
   return ScaleTime(track, edits.time_scale);
 }
 

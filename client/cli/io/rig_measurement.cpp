@@ -33,7 +33,7 @@ absl::StatusOr<Eigen::Matrix3Xd> JointsInFrame(const MeshSequence& sequence, con
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track,
                          FitPoses(sequence.Subset({frame}), rig, options, nullptr));
   BoneTransforms transforms;
-  ComputeBoneTransforms(rig.skeleton, track.poses[0], {}, &transforms);
+  ComputeBoneTransforms(rig.skeleton, track.pose(0), {}, &transforms);
   return transforms.joint_positions;
 }
 

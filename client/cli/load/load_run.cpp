@@ -152,14 +152,14 @@ std::vector<double> SendTimes(const LoadOptions& options, int client) {
   }
 }
 
-absl::StatusOr<LoadResult> RunLoad(RemoteCharacterService& service, const ClipQuery& character,
+absl::StatusOr<LoadResult> RunLoad(RemotePoses& remote, const ClipQuery& character,
                                    const std::vector<Pose>& poses, const LoadOptions& options,
                                    const std::function<bool()>& interrupted) {
   std::atomic<bool> stop = false;
   std::vector<std::unique_ptr<Client>> clients;
   for (int i = 0; i < options.num_clients; ++i) {
     PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<LiveSession> session,
-                           service.OpenLiveSession(character, options.session));
+                           remote.OpenLiveSession(character, options.session));
     clients.push_back(std::make_unique<Client>(
         std::move(session), poses, SendTimes(options, i),
         poses.size() * static_cast<size_t>(i) / static_cast<size_t>(options.num_clients), &stop));

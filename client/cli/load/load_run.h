@@ -8,7 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/remote/live_session.h"
-#include "pleat/remote/remote_character_service.h"
+#include "pleat/remote/remote_poses.h"
 #include "pleat/skeleton/pose.h"
 
 namespace pleat {
@@ -47,7 +47,7 @@ struct LoadResult {
 std::vector<double> SendTimes(const LoadOptions& options, int client);
 
 // Plays `poses` to and fro in every session. kCancelled as soon as `interrupted` says so.
-absl::StatusOr<LoadResult> RunLoad(RemoteCharacterService& service, const ClipQuery& character,
+absl::StatusOr<LoadResult> RunLoad(RemotePoses& remote, const ClipQuery& character,
                                    const std::vector<Pose>& poses, const LoadOptions& options,
                                    const std::function<bool()>& interrupted);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <vector>
 
 namespace pleat {
@@ -70,7 +71,13 @@ ordered_json ValidationJson(const LearnerValidation& validation) {
 
 ordered_json OptionsJson(const TrainOptions& options) {
   ordered_json json;
-  VisitTrainOptions(options, [&json](const char* name, const auto& value) { json[name] = value; });
+  VisitTrainOptions(options, [&json](const char* name, const auto& value) {
+    if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>) {
+      json[name] = ChoiceName(value);
+    } else {
+      json[name] = value;
+    }
+  });
   return json;
 }
 

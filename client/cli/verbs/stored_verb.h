@@ -24,11 +24,11 @@ template <typename Info>
 struct StoredThings {
   std::string verb, description;
   std::string kind;  // "model": for messages and --help
-  absl::StatusOr<std::vector<Info>> (CharacterService::*list)();
-  absl::Status (CharacterService::*remove)(const std::string& id);
+  absl::StatusOr<std::vector<Info>> (*list)(CharacterService& service);
+  absl::Status (*remove)(CharacterService& service, const std::string& id);
   // Null where there is none.
-  absl::StatusOr<std::string> (CharacterService::*download)(const std::string& id,
-                                                            const Progress& progress);
+  absl::StatusOr<std::string> (*download)(CharacterService& service, const std::string& id,
+                                          const Progress& progress);
   nlohmann::ordered_json (*json)(const Info&);
   std::vector<std::string> header;
   std::vector<std::string> (*row)(const Info&);
@@ -42,7 +42,7 @@ template <typename Info>
 absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOptions& options,
                            const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<Info> infos, (service.get()->*things.list)());
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<Info> infos, things.list(*service));
   if (options.action == "list") {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     std::vector<std::vector<std::string>> rows;
@@ -55,13 +55,13 @@ absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOpt
   }
   if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
   PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(infos, options.id, things.kind));
-  if (options.action == "delete") return (service.get()->*things.remove)(id);
+  if (options.action == "delete") return things.remove(*service, id);
   if (options.action == "download") {
     if (options.output.empty()) return UsageError("'download' needs -o FILE");
     ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-    PLEAT_ASSIGN_OR_RETURN(const std::string bytes,
-                           (service.get()->*things.download)(
-                               id, InterruptibleProgress(&display).Stage("download", 0, 1)));
+    PLEAT_ASSIGN_OR_RETURN(
+        const std::string bytes,
+        things.download(*service, id, InterruptibleProgress(&display).Stage("download", 0, 1)));
     return WriteFile(options.output, bytes);
   }
   for (const Info& info : infos) {

@@ -16,6 +16,7 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
+#include "pleat/remote/remote_character_service.h"
 #include "pleat/stream/frame_encoder.h"
 
 namespace pleat {
@@ -63,13 +64,13 @@ double ThreadSeconds() {
 }
 
 // Frames of `poses` as a client sees them.
-absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SomeFrames(RemoteCharacterService& service,
+absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SomeFrames(RemotePoses& remote,
                                                          const ClipQuery& character,
                                                          const std::vector<Pose>& poses,
                                                          FrameEncoderOptions stream,
                                                          Topology* topology) {
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<LiveSession> session,
-                         service.OpenLiveSession(character, {.stream = stream}));
+                         remote.OpenLiveSession(character, {.stream = stream}));
   *topology = session->decoder().topology();
   std::vector<Eigen::Matrix3Xf> frames;
   LiveFrame frame;
@@ -108,11 +109,10 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
   if (options.closed_loop) report.options.arrivals = Arrivals::kClosed;
   report.encoding = options.encoding;
 
-  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  auto* remote = dynamic_cast<RemoteCharacterService*>(service.get());
-  if (remote == nullptr) return UsageError("bench measures a server: it has no --local");
-  PLEAT_ASSIGN_OR_RETURN(report.model_id, FindModel(*service, options.model));
-  PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, service->GetModel(report.model_id));
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<RemoteCharacterService> service,
+                         OpenRemoteService(session, "bench"));
+  PLEAT_ASSIGN_OR_RETURN(report.model_id, FindModel(service->models(), options.model));
+  PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, service->models().Get(report.model_id));
   report.num_vertices = info.num_vertices;
   ClipQuery character;
   character.model_id = report.model_id;
@@ -124,7 +124,7 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
                            LoadModel(session, report.model_id));
     PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options.motion, options.fps, *model, session));
     character.bone_scales = std::move(motion.bone_scales);
-    poses = std::move(motion.track.poses);
+    poses = std::move(motion.track).Take().poses;
   }
   if (poses.empty()) return absl::InvalidArgumentError("the motion has no frames");
 
@@ -134,7 +134,7 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
   stream.content = StreamContent::kMesh;
   Topology topology;
   PLEAT_ASSIGN_OR_RETURN(const std::vector<Eigen::Matrix3Xf> frames,
-                         SomeFrames(*remote, character, poses, stream, &topology));
+                         SomeFrames(service->poses(), character, poses, stream, &topology));
   PLEAT_ASSIGN_OR_RETURN(report.draco, MeasureDraco(frames, topology, stream));
   if (session.talkative()) {
     *session.err << "sending poses from " << options.load.num_clients << " clients for "
@@ -142,7 +142,7 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
                  << std::flush;
   }
   PLEAT_ASSIGN_OR_RETURN(report.result,
-                         RunLoad(*remote, character, poses, report.options, Interrupted));
+                         RunLoad(service->poses(), character, poses, report.options, Interrupted));
   report.Summarize();
   return report;
 }

@@ -14,8 +14,8 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
-#include "pleat/local/compression.h"
 #include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/service/compression.h"
 
 namespace pleat {
 namespace {
@@ -67,17 +67,18 @@ absl::StatusOr<Compressed> CompressOnService(const MeshSequence& sequence,
                                              const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
   PLEAT_ASSIGN_OR_RETURN(const SequenceInfo uploaded,
-                         UploadWithProgress(*service, sequence, session));
-  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->CreateCompressionJob(uploaded.id, options));
+                         UploadWithProgress(service->sequences(), sequence, session));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job,
+                         service->jobs().CreateCompression(uploaded.id, options));
   PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
-                         WatchJobToEnd(*service, job.id, session, true, nullptr));
+                         WatchJobToEnd(service->jobs(), job.id, session, true, nullptr));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   PLEAT_ASSIGN_OR_RETURN(
       std::string bytes,
-      service->DownloadCompressedSequence(done.result_id,
-                                          InterruptibleProgress(&display).Stage("download", 0, 1)));
+      service->compressed_sequences().Download(
+          done.result_id, InterruptibleProgress(&display).Stage("download", 0, 1)));
   PLEAT_ASSIGN_OR_RETURN(CompressedSequenceInfo info,
-                         service->GetCompressedSequence(done.result_id));
+                         service->compressed_sequences().Get(done.result_id));
   if (!info.record) return absl::InternalError("the service kept no report of the compression");
   return Compressed{std::move(bytes), *std::move(info.record)};
 }

@@ -24,9 +24,13 @@ void AddCompressedVerb(CLI::App& app, Session& session) {
       {.verb = "compressed",
        .description = "list, show, delete or download compressed sequences",
        .kind = "compressed sequence",
-       .list = &CharacterService::ListCompressedSequences,
-       .remove = &CharacterService::DeleteCompressedSequence,
-       .download = &CharacterService::DownloadCompressedSequence,
+       .list = [](CharacterService& service) { return service.compressed_sequences().List(); },
+       .remove = [](CharacterService& service,
+                    const std::string& id) { return service.compressed_sequences().Delete(id); },
+       .download =
+           [](CharacterService& service, const std::string& id, const Progress& progress) {
+             return service.compressed_sequences().Download(id, progress);
+           },
        .json = CompressedSequenceJson,
        .header = {"id", "name", "frames", "vertices", "max mm", "KG %", "size"},
        .row = Row});

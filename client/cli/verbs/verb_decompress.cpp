@@ -14,7 +14,7 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
-#include "pleat/local/decode_session.h"
+#include "pleat/service/compression.h"
 
 namespace pleat {
 namespace {
@@ -93,8 +93,8 @@ absl::Status DecodeHere(const std::string& input, FrameRange range, Output* outp
   }
   const int num_frames = decoder->num_frames();
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<DecodeSession> decode,
-                         DecodeSession::Open(*std::move(decoder), range, Reservation()));
-  return DecodeInto(decode.get(), output->Sink(NumFrames(range, num_frames)));
+                         MakeDecodeSession(*std::move(decoder), range));
+  return DecodeInto(*decode, range, output->Sink(NumFrames(range, num_frames)));
 }
 
 // input: a file, which is uploaded, or the id of a stored compressed sequence.
@@ -106,14 +106,15 @@ absl::Status DecodeOnService(const std::string& input, FrameRange range, const S
   if (std::filesystem::is_regular_file(input, error)) {
     PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(input));
     ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-    PLEAT_ASSIGN_OR_RETURN(info, service->UploadCompressedSequence(
+    PLEAT_ASSIGN_OR_RETURN(info, service->compressed_sequences().Upload(
                                      bytes, InterruptibleProgress(&display).Stage("upload", 0, 1)));
   } else {
-    PLEAT_ASSIGN_OR_RETURN(const auto infos, service->ListCompressedSequences());
+    PLEAT_ASSIGN_OR_RETURN(const auto infos, service->compressed_sequences().List());
     PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(infos, input, "compressed sequence"));
-    PLEAT_ASSIGN_OR_RETURN(info, service->GetCompressedSequence(id));
+    PLEAT_ASSIGN_OR_RETURN(info, service->compressed_sequences().Get(id));
   }
-  return service->DecodeFrames(info.id, range, output->Sink(NumFrames(range, info.num_frames)));
+  return DecodeFrames(service->compressed_sequences(), info.id, range,
+                      output->Sink(NumFrames(range, info.num_frames)));
 }
 
 absl::Status RunDecompress(const DecompressVerbOptions& flags, const Session& session) {

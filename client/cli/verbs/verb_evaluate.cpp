@@ -27,6 +27,7 @@ namespace {
 struct EvaluateVerbOptions {
   std::vector<std::string> inputs;
   std::string test_input, protocol, report, fps, experiment, out;
+  std::vector<std::string> measured;  // learners
   TrainFlags flags;
   EvaluateOptions evaluate;
 };
@@ -76,6 +77,12 @@ absl::Status ResolveFlags(EvaluateVerbOptions* options) {
     return UsageError("--experiment and --out FOLDER go together");
   }
   PLEAT_ASSIGN_OR_RETURN(options->evaluate.train, ResolveTrainFlags(options->flags));
+  options->evaluate.learners.clear();
+  for (const std::string& name : options->measured) {
+    PLEAT_ASSIGN_OR_RETURN(const LearnerChoice learner,
+                           ParseChoice<LearnerChoice>("measure", name));
+    options->evaluate.learners.push_back(learner);
+  }
   options->evaluate.clock_seconds = MonotonicSeconds;
   return absl::OkStatus();
 }
@@ -168,8 +175,10 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
   verb->add_option("--out", options->out,
                    "folder for the experiment's table (JSON, Markdown) and plots (PNG)");
   verb->add_option("--report", options->report, "JSON report (pleat.evaluate/1)");
-  verb->add_option("--measure", options->evaluate.learners,
-                   "learners to measure beside the chosen one")
+  for (const LearnerChoice learner : options->evaluate.learners) {
+    options->measured.push_back(ChoiceName(learner));
+  }
+  verb->add_option("--measure", options->measured, "learners to measure beside the chosen one")
       ->check(CLI::IsMember(LearnerNames()))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");

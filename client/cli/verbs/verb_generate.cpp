@@ -26,7 +26,7 @@ nlohmann::ordered_json TruthJson(const PerformerOptions& options, const Performe
   json["schema"] = "pleat.performer_truth/1";
   json["seed"] = options.seed;
   json["character_seed"] = options.character_seed;
-  json["fps"] = truth.track.fps;
+  json["fps"] = truth.track.fps();
   json["joints"] = JointsJson(truth.rig.skeleton);
   json["skirt_vertices"] = nlohmann::ordered_json::array();
   for (size_t v = 0; v < truth.is_skirt.size(); ++v) {

@@ -29,16 +29,16 @@ void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
   out << FormatTable({"id", "state", "stage", "done", "kind", "name", "result"}, rows);
 }
 
-absl::Status WatchJob(CharacterService& service, const std::string& id, const Session& session) {
+absl::Status RunWatch(JobService& jobs, const std::string& id, const Session& session) {
   ExitOnInterrupt();  // watching stops, the job goes on
-  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, WatchJobToEnd(service, id, session, false, nullptr));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, WatchJobToEnd(jobs, id, session, false, nullptr));
   *session.out << (session.json ? JobJson(job).dump(2) : job.result_id) << "\n";
   return absl::OkStatus();
 }
 
 absl::Status RunJobs(const JobsOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> jobs, service->ListJobs());
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> jobs, service->jobs().List());
   if (options.action == "list") {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const JobInfo& job : jobs) json.push_back(JobJson(job));
@@ -50,9 +50,9 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
   }
   if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
   PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(jobs, options.id, "job"));
-  if (options.action == "cancel") return service->CancelJob(id);
-  if (options.action == "watch") return WatchJob(*service, id, session);
-  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->GetJob(id));
+  if (options.action == "cancel") return service->jobs().Cancel(id);
+  if (options.action == "watch") return RunWatch(service->jobs(), id, session);
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->jobs().Get(id));
   *session.out << JobJson(job).dump(2) << "\n";
   return absl::OkStatus();
 }

@@ -21,7 +21,6 @@
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/motion_file.h"
-#include "pleat/remote/remote_character_service.h"
 #include "pleat/stream/frame_encoder.h"
 
 namespace pleat {
@@ -80,16 +79,9 @@ using ConsumeFrame = std::function<absl::Status(int t, const EvaluatedFrame& fra
 absl::Status EvaluateHere(std::shared_ptr<const CharacterModel> model, const ClipQuery& query,
                           const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
-  if (!query.skinned_only) {
-    return evaluator.EvaluateClip(query.track, query.bone_scales, consume);
-  }
-  EvaluatedFrame frame;
-  for (int t = 0; t < query.track.num_frames(); ++t) {
-    PLEAT_RETURN_IF_ERROR(
-        evaluator.EvaluateSkinned(query.track.poses[t], query.bone_scales, &frame));
-    PLEAT_RETURN_IF_ERROR(consume(t, frame));
-  }
-  return absl::OkStatus();
+  return query.skinned_only
+             ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
+             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }
 
 void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, int num_vertices,
@@ -123,7 +115,7 @@ absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
                          const std::function<absl::Status(const ConsumeFrame&)>& evaluate,
                          const Progress& progress, Confidence* confidence) {
   AnimationOptions animation;
-  animation.frame_rate = FrameRateFromFps(query.track.fps);
+  animation.frame_rate = FrameRateFromFps(query.track.fps());
   animation.appearance = model.parts().appearance;
   animation.name = model.name();
   animation.encoder = EncoderOptions(options);
@@ -139,10 +131,10 @@ absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
 }
 
 // The server's Draco bytes as they come. The number of their vertices.
-absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, RemoteCharacterService& service,
+absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, PoseService& poses,
                                 const ClipQuery& query, const Progress& progress,
                                 Confidence* confidence) {
-  DracoFolderWriter writer(options.output, FrameRateFromFps(query.track.fps));
+  DracoFolderWriter writer(options.output, FrameRateFromFps(query.track.fps()));
   StreamHeader header;
   ClipStreamSink sink;
   sink.on_header = [&](const StreamHeader& received) {
@@ -154,14 +146,13 @@ absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, RemoteCharacterS
     PLEAT_RETURN_IF_ERROR(writer.AddFrame(draco));
     return progress.Report((t + 1.0) / query.track.num_frames());
   };
-  PLEAT_RETURN_IF_ERROR(service.StreamClip(query, EncoderOptions(options), sink));
+  PLEAT_RETURN_IF_ERROR(StreamClip(poses, query, EncoderOptions(options), sink));
   PLEAT_RETURN_IF_ERROR(writer.Finish(header));
   return header.num_vertices;
 }
 
 // Poses and coefficients from the server, shown by the model here.
-absl::Status EvaluateByParameters(RemoteCharacterService& service,
-                                  std::shared_ptr<const CharacterModel> model,
+absl::Status EvaluateByParameters(PoseService& poses, std::shared_ptr<const CharacterModel> model,
                                   const ClipQuery& query, const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
   EvaluatedFrame frame;
@@ -170,7 +161,7 @@ absl::Status EvaluateByParameters(RemoteCharacterService& service,
     PLEAT_RETURN_IF_ERROR(evaluator.Show(parameters, query.bone_scales, &frame));
     return consume(t, frame);
   };
-  return service.StreamClip(query, {.content = StreamContent::kParameters}, sink);
+  return StreamClip(poses, query, {.content = StreamContent::kParameters}, sink);
 }
 
 // What a server can send for this output, and only a server.
@@ -209,24 +200,23 @@ absl::StatusOr<int> PoseFromService(const PoseVerbOptions& options, AnimationFor
                                     const Session& session, const Progress& progress,
                                     Confidence* confidence) {
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  PLEAT_ASSIGN_OR_RETURN(const std::string id, FindModel(*service, options.model));
-  PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, service->GetModel(id));
+  PLEAT_ASSIGN_OR_RETURN(const std::string id, FindModel(service->models(), options.model));
+  PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, service->models().Get(id));
   PLEAT_ASSIGN_OR_RETURN(ClipQuery query, ReadQuery(options, info.skeleton, session));
   query.model_id = id;
-  auto* remote = dynamic_cast<RemoteCharacterService*>(service.get());
-  PLEAT_RETURN_IF_ERROR(CheckContent(options.content, format, remote != nullptr));
-  if (remote != nullptr && format == AnimationFormat::kDraco) {
-    return WriteStream(options, *remote, query, progress, confidence);
+  PLEAT_RETURN_IF_ERROR(CheckContent(options.content, format, !session.local));
+  if (!session.local && format == AnimationFormat::kDraco) {
+    return WriteStream(options, service->poses(), query, progress, confidence);
   }
   // Polygons and texture coordinates are not in a stream.
-  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, service->DownloadModel(id, {}));
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, service->models().Download(id, {}));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
   PLEAT_RETURN_IF_ERROR(WriteFrames(
       options, format, *model, query,
       [&](const ConsumeFrame& consume) {
         return options.content == StreamContent::kParameters
-                   ? EvaluateByParameters(*remote, model, query, consume)
-                   : service->EvaluateClip(query, consume);
+                   ? EvaluateByParameters(service->poses(), model, query, consume)
+                   : service->poses().EvaluateClip(query, consume);
       },
       progress, confidence));
   return info.num_vertices;

@@ -135,7 +135,7 @@ absl::StatusOr<RigSheetRow> SequenceRigRow(const std::string& label, const MeshS
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitPoses(sequence.Subset(frames), rig, {}, nullptr,
                                                          InterruptibleProgress(&display)));
   for (size_t k = 0; k < frames.size(); ++k) {
-    row.views.push_back(ViewOf(absl::StrCat("frame ", frames[k]), rig, track.poses[k],
+    row.views.push_back(ViewOf(absl::StrCat("frame ", frames[k]), rig, track.pose(k),
                                sequence.FrameAsDouble(frames[k])));
   }
   return row;

@@ -83,21 +83,22 @@ absl::StatusOr<JobInfo> CreateJob(CharacterService& service, const std::vector<M
   TrainingRequest request{.options = options};
   if (rig) request.rig = EncodeRig(*rig);
   for (const MeshSequence& clip : clips) {
-    PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, UploadWithProgress(service, clip, session));
+    PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info,
+                           UploadWithProgress(service.sequences(), clip, session));
     request.sequence_ids.push_back(info.id);
   }
-  return service.CreateTrainingJob(request);
+  return service.jobs().CreateTraining(request);
 }
 
 absl::StatusOr<TrainedModel> TrainOnService(CharacterService& service, const JobInfo& job,
                                             const Session& session) {
   TrainedModel trained;
   PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
-                         WatchJobToEnd(service, job.id, session, true, &trained.seconds));
+                         WatchJobToEnd(service.jobs(), job.id, session, true, &trained.seconds));
   trained.id = done.result_id;
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   PLEAT_ASSIGN_OR_RETURN(
-      trained.bytes, service.DownloadModel(
+      trained.bytes, service.models().Download(
                          done.result_id, InterruptibleProgress(&display).Stage("download", 0, 1)));
   PLEAT_ASSIGN_OR_RETURN(trained.model, DecodeModel(trained.bytes));
   return trained;

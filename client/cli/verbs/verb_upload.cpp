@@ -22,7 +22,8 @@ absl::Status RunUpload(const UploadOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
                          ReadInput(session, options.input, options.fps));
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, UploadWithProgress(*service, sequence, session));
+  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info,
+                         UploadWithProgress(service->sequences(), sequence, session));
   if (session.json) {
     *session.out << SequenceJson(info).dump(2) << "\n";
   } else {

@@ -11,7 +11,7 @@
 
 #include "absl/status/status.h"
 #include "pleat/base/progress.h"
-#include "pleat/remote/remote_character_service.h"
+#include "pleat/remote/remote_options.h"
 
 namespace pleat {
 

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "channel.h"
 #include "pleat/base/status.h"
+#include "pleat/service/limits.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
@@ -20,8 +21,7 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxInFlight = 64;
-constexpr size_t kMaxEarlierPoses = 7;  // history of one pose
+constexpr size_t kMaxEarlierPoses = kMaxPosesPerQuery - 1;  // history of one pose
 constexpr auto kConnectTime = std::chrono::seconds(2);
 
 using Stream = grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>;
@@ -312,9 +312,9 @@ class RemoteLiveSession final : public LiveSession {
 absl::StatusOr<std::unique_ptr<LiveSession>> OpenRemoteLiveSession(
     std::shared_ptr<grpc::Channel> channel, v1::Character character,
     const LiveSessionOptions& options) {
-  if (options.max_in_flight < 1 || options.max_in_flight > kMaxInFlight) {
+  if (options.max_in_flight < 1 || options.max_in_flight > kMaxPosesInFlight) {
     return absl::InvalidArgumentError(absl::StrCat("max_in_flight is ", options.max_in_flight,
-                                                   ", allowed are 1 to ", kMaxInFlight));
+                                                   ", allowed are 1 to ", kMaxPosesInFlight));
   }
   v1::LiveSessionRequest request;
   v1::LiveSessionRequest::Start* start = request.mutable_start();

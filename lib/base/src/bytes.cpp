@@ -7,6 +7,7 @@ namespace pleat {
 
 absl::Status ByteReader::Require(uint64_t count, uint64_t item_bytes,
                                  absl::string_view what) const {
+  // The division keeps a hostile count from overflowing the product.
   if (item_bytes == 0 || count <= remaining() / item_bytes) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat(
       "truncated at byte ", offset_, ": ", what, " needs ", count, " items of ", item_bytes,

@@ -30,11 +30,13 @@ class FileDescriptor {
   int fd_;
 };
 
+// Takes the code from errno, so it must be called directly after the failing call.
 absl::Status FileError(absl::string_view action, const std::string& path) {
   const int code = errno;
   return absl::ErrnoToStatus(code, absl::StrCat("cannot ", action, " '", path, "'"));
 }
 
+// write() may take fewer bytes than it was given, or be interrupted by a signal.
 absl::Status WriteAll(int fd, std::string_view bytes, const std::string& path) {
   while (!bytes.empty()) {
     const ssize_t written = write(fd, bytes.data(), bytes.size());
@@ -84,6 +86,10 @@ absl::Status WriteFile(const std::string& path, std::string_view bytes) {
                                  absl::StrCat("cannot create '", parent.string(), "'"));
     }
   }
+  // The temporary file has to be in the same folder: a rename is atomic only within a file system.
+  // mkostemp makes it readable by its owner alone, hence the fchmod. The sync comes before the
+  // rename, since some file systems order a rename before the data and would leave an empty file
+  // after a crash.
   std::string temporary = absl::StrCat(path, ".tmp-XXXXXX");
   {
     FileDescriptor file(mkostemp(temporary.data(), O_CLOEXEC));
@@ -99,7 +105,8 @@ absl::Status WriteFile(const std::string& path, std::string_view bytes) {
       return status;
     }
   }
-  // The rename itself is durable only once the folder is synced.
+  // The rename itself is durable only once the folder is synced. A folder that cannot be opened or
+  // synced is no error: the file is complete.
   FileDescriptor folder(open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY));
   if (folder.get() >= 0) fsync(folder.get());
   return absl::OkStatus();

@@ -16,6 +16,8 @@ void ParallelFor(int num_items, int num_threads, const std::function<void(int)>&
     for (int item = 0; item < num_items; ++item) body(item);
     return;
   }
+  // One shared counter instead of a fixed share for each thread: items differ in cost, and a thread
+  // that is done early takes more of them.
   std::atomic<int> next{0};
   std::exception_ptr failure;
   std::mutex failure_mutex;
@@ -26,7 +28,7 @@ void ParallelFor(int num_items, int num_threads, const std::function<void(int)>&
       } catch (...) {
         std::lock_guard lock(failure_mutex);
         if (!failure) failure = std::current_exception();
-        next = num_items;
+        next = num_items;  // hands out nothing more
       }
     }
   };

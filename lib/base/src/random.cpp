@@ -29,6 +29,8 @@ uint64_t Random::NextBits() {
   return result;
 }
 
+// The upper 53 bits are as many as a double has, so every multiple of 2^-53 below 1 is equally
+// likely.
 double Random::Uniform() { return static_cast<double>(NextBits() >> 11) * 0x1.0p-53; }
 
 double Random::Uniform(double low, double high) { return low + (high - low) * Uniform(); }
@@ -38,6 +40,8 @@ int Random::UniformInt(int count) {
   return static_cast<int>(Uniform() * count);
 }
 
+// Only one of the two numbers of Box-Muller is used, so that no state is left between calls. The
+// argument of the logarithm is in (0, 1], never 0.
 double Random::Normal() {
   const double radius = std::sqrt(-2 * std::log(1 - Uniform()));
   return radius * std::cos(2 * std::numbers::pi * Uniform());

@@ -61,7 +61,7 @@ absl::Status CheckParts(const CharacterModel::Parts& parts) {
                     num_joints);
   }
   PLEAT_RETURN_IF_ERROR(CheckControlVertices(parts, num_vertices));
-  const int values = parts.options.rotations == "quaternion" ? 4 : 3;
+  const int values = NumCoordinates(parts.options.rotations);
   if (parts.feature_reference.size() != values * (num_joints - 1)) {
     return Mismatch("the size of the feature reference", parts.feature_reference.size(),
                     values * (num_joints - 1));

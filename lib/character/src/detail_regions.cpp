@@ -3,7 +3,7 @@
 #include <set>
 #include <utility>
 
-#include "option_values.h"
+#include "pleat/skeleton/pose_features.h"
 
 namespace pleat {
 namespace {
@@ -28,7 +28,7 @@ std::set<int> Grown(const Skeleton& skeleton, const std::set<int>& bones) {
 // The columns of the feature row that belong to `bone` (not the root, which has none) in pose `h`
 // of the history.
 std::vector<int> ColumnsOf(int h, int bone, int num_joints, const TrainOptions& options) {
-  const int values = options.rotations == "quaternion" ? 4 : 3;
+  const int values = NumCoordinates(options.rotations);
   std::vector<int> columns;
   for (int i = 0; i < values; ++i) {
     columns.push_back((h * (num_joints - 1) + bone - 1) * values + i);

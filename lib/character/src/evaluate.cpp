@@ -49,11 +49,11 @@ class LapTimer {
 };
 
 // The learners to measure: those asked for and the chosen one, each once.
-std::vector<std::string> LearnersToMeasure(const EvaluateOptions& options,
-                                           const std::string& chosen) {
-  std::vector<std::string> learners = options.learners;
+std::vector<LearnerChoice> LearnersToMeasure(const EvaluateOptions& options, LearnerChoice chosen) {
+  std::vector<LearnerChoice> learners = options.learners;
   learners.push_back(chosen);
-  std::sort(learners.begin(), learners.end());
+  std::sort(learners.begin(), learners.end(),
+            [](LearnerChoice a, LearnerChoice b) { return ChoiceName(a) < ChoiceName(b); });
   learners.erase(std::unique(learners.begin(), learners.end()), learners.end());
   return learners;
 }
@@ -84,9 +84,9 @@ absl::Status CheckTestSequence(const MeshSequence& sequence,
 
 using ModelsByLearner = std::map<std::string, std::shared_ptr<const CharacterModel>>;
 
-// `learners`: each once; "regional" after "gp", whose Gaussian process it shares.
+// `learners`: each once; regional after gp, whose Gaussian process it shares.
 absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const LearningData& data,
-                                            const std::vector<std::string>& learners,
+                                            const std::vector<LearnerChoice>& learners,
                                             const TrainOptions& options, double diagonal_m,
                                             const Progress& progress) {
   ModelsByLearner models;
@@ -97,8 +97,9 @@ absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const Le
     PLEAT_ASSIGN_OR_RETURN(
         const std::shared_ptr<const DetailModel> detail_model,
         LearnDetails(data, learners[i], options, progress.Stage("learn", begin, end), &direct_gp));
-    PLEAT_ASSIGN_OR_RETURN(models[learners[i]], AssembleModel(rigged, data, options, learners[i],
-                                                              detail_model, diagonal_m));
+    PLEAT_ASSIGN_OR_RETURN(
+        models[ChoiceName(learners[i])],
+        AssembleModel(rigged, data, options, learners[i], detail_model, diagonal_m));
   }
   return models;
 }
@@ -128,6 +129,10 @@ absl::StatusOr<EvaluationSetup> PrepareEvaluation(const MeshSequence& sequence,
                                                   const EvaluateOptions& options,
                                                   const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options.train));
+  if (std::count(options.learners.begin(), options.learners.end(), LearnerChoice::kAuto) > 0) {
+    return absl::InvalidArgumentError(
+        "auto is no learner to measure; name the learners, the chosen one is measured anyway");
+  }
   PLEAT_RETURN_IF_ERROR(CheckTestSequence(sequence, test_sequence, options));
   PLEAT_ASSIGN_OR_RETURN(FrameSplit split, SplitFrames(options.protocol, sequence.num_frames()));
   LapTimer timer(options.clock_seconds);
@@ -168,12 +173,13 @@ absl::StatusOr<EvaluateReport> EvaluateLearning(const EvaluationSetup& setup,
                          ComputeLearningData(setup.rigged, setup.train_track, train,
                                              options.resources, progress.Stage("detail", 0, .1)));
   report.num_control_vertices = static_cast<int>(data.control_vertices.size());
-  PLEAT_ASSIGN_OR_RETURN(report.learner,
+  PLEAT_ASSIGN_OR_RETURN(const LearnerChoice learner,
                          ChooseLearner(data, train, report.diagonal_m, &report.validation,
                                        progress.Stage("validate", .1, .25)));
+  report.learner = ChoiceName(learner);
   PLEAT_ASSIGN_OR_RETURN(const ModelsByLearner models,
-                         LearnModels(setup.rigged, data, LearnersToMeasure(options, report.learner),
-                                     train, report.diagonal_m, progress.Stage("learn", .25, .55)));
+                         LearnModels(setup.rigged, data, LearnersToMeasure(options, learner), train,
+                                     report.diagonal_m, progress.Stage("learn", .25, .55)));
   std::map<std::string, DetailPredictor> baselines;
   if (options.measure_baselines) {
     PLEAT_ASSIGN_OR_RETURN(baselines, TrainBaselines(data));

@@ -22,30 +22,31 @@ constexpr std::array<std::pair<Experiment, const char*>, 4> kExperiments = {{
 std::vector<ExperimentVariant> FullVsFine(const TrainOptions& base) {
   // Neither side may win by how many components its energy is cut to.
   TrainOptions fine = base;
-  fine.deformation = "fine";
+  fine.deformation = DetailBase::kSkinned;
   fine.detail_energy = 1;
   fine.max_components = 1024;
   TrainOptions full = fine;
-  full.deformation = "full";
+  full.deformation = DetailBase::kRoot;
   // The own axes of a vertex turn by as much as the deformation that they would have to describe.
-  if (full.detail_axes == "local") full.detail_axes = "root";
+  if (full.detail_axes == DetailAxes::kLocal) full.detail_axes = DetailAxes::kRoot;
   return {{"deformation", "fine (details)", fine}, {"deformation", "full deformation", full}};
 }
 
 std::vector<ExperimentVariant> Representations(const TrainOptions& base) {
   std::vector<ExperimentVariant> variants;
-  for (const auto& [rotations, name] : {std::pair("expmap", "exponential maps"),
-                                        {"euler", "Euler angles"},
-                                        {"quaternion", "quaternions"}}) {
+  for (const auto& [rotations, name] :
+       {std::pair(RotationRepresentation::kExponentialMap, "exponential maps"),
+        {RotationRepresentation::kEuler, "Euler angles"},
+        {RotationRepresentation::kQuaternion, "quaternions"}}) {
     TrainOptions options = base;
     options.rotations = rotations;
     variants.push_back({"rotations", name, options});
   }
   for (const auto& [axes, coordinates, name] :
-       {std::tuple("world", "offsets", "xyz (world axes)"),
-        {"root", "offsets", "root axes"},
-        {"local", "offsets", "local axes"},
-        {"world", "differential", "differential (world axes)"}}) {
+       {std::tuple(DetailAxes::kWorld, DetailCoordinates::kOffsets, "xyz (world axes)"),
+        {DetailAxes::kRoot, DetailCoordinates::kOffsets, "root axes"},
+        {DetailAxes::kLocal, DetailCoordinates::kOffsets, "local axes"},
+        {DetailAxes::kWorld, DetailCoordinates::kDifferential, "differential (world axes)"}}) {
     TrainOptions options = base;
     options.detail_axes = axes;
     options.detail_coordinates = coordinates;

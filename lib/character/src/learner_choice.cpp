@@ -1,8 +1,9 @@
-// Learners by name, and their choice by validation inside the training frames
+// The learners, and their choice by validation inside the training frames
 // (docs/method/learner.md#choice-of-the-learner).
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -68,23 +69,31 @@ double HeldOutError(const DetailModel& model, const LearningData& data,
   return sum / count;
 }
 
-DetailModelOptions ModelOptionsOf(const std::string& learner, const TrainOptions& options,
+DetailModelOptions ModelOptionsOf(LearnerChoice learner, const TrainOptions& options,
                                   const LearningData& data) {
   DetailModelOptions result;
   result.regions = data.regions;
   result.gp.input_groups = data.feature_groups;
-  if (learner == "gp") {
-    result.learner = Learner::kGp;
-  } else if (learner == "ridge") {
-    result.learner = Learner::kRidge;
-  } else if (learner == "regional") {
-    result.learner = Learner::kRegional;
-  } else {
-    result.learner = Learner::kSgplvm;
-    if (learner == "sgplvm") result.sgplvm = SharedGplvmOptions::Paper();
-    result.sgplvm.latent_dimension = options.latent_dimensions;
-    result.sgplvm.max_iterations = options.iterations;
-    result.sgplvm.dynamics_weight = options.dynamics_weight;
+  switch (learner) {
+    case LearnerChoice::kAuto:  // refused by LearnDetails
+      break;
+    case LearnerChoice::kRegional:
+      result.learner = Learner::kRegional;
+      break;
+    case LearnerChoice::kGp:
+      result.learner = Learner::kGp;
+      break;
+    case LearnerChoice::kRidge:
+      result.learner = Learner::kRidge;
+      break;
+    case LearnerChoice::kSgplvm:
+    case LearnerChoice::kBackConstrained:
+      result.learner = Learner::kSgplvm;
+      if (learner == LearnerChoice::kSgplvm) result.sgplvm = SharedGplvmOptions::Paper();
+      result.sgplvm.latent_dimension = options.latent_dimensions;
+      result.sgplvm.max_iterations = options.iterations;
+      result.sgplvm.dynamics_weight = options.dynamics_weight;
+      break;
   }
   return result;
 }
@@ -92,10 +101,13 @@ DetailModelOptions ModelOptionsOf(const std::string& learner, const TrainOptions
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
-                                                                const std::string& learner,
+                                                                LearnerChoice learner,
                                                                 const TrainOptions& options,
                                                                 const Progress& progress,
                                                                 DirectGp* direct_gp) {
+  if (learner == LearnerChoice::kAuto) {
+    return absl::InternalError("a learner must be chosen before it can be trained");
+  }
   DetailModelOptions model_options = ModelOptionsOf(learner, options, data);
   if (direct_gp && *direct_gp) model_options.trained_gp = &**direct_gp;
   if (data.differential) {
@@ -106,17 +118,17 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
   PLEAT_ASSIGN_OR_RETURN(DetailModel model,
                          TrainDetailModel(data.features, data.details, data.clip_starts,
                                           model_options, nullptr, progress));
-  const bool has_direct_gp = learner == "gp" || learner == "regional";
+  const bool has_direct_gp = learner == LearnerChoice::kGp || learner == LearnerChoice::kRegional;
   if (direct_gp && has_direct_gp && !*direct_gp) *direct_gp = model.stages().front();
   return std::make_shared<const DetailModel>(std::move(model));
 }
 
-absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,
-                                          double diagonal_m, LearnerValidation* validation,
-                                          const Progress& progress) {
-  if (options.learner != "auto") return options.learner;
+absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const TrainOptions& options,
+                                            double diagonal_m, LearnerValidation* validation,
+                                            const Progress& progress) {
+  if (options.learner != LearnerChoice::kAuto) return options.learner;
   const int num_rows = static_cast<int>(data.features.rows());
-  if (num_rows < kMinFramesToValidate) return std::string("gp");
+  if (num_rows < kMinFramesToValidate) return LearnerChoice::kGp;
   const RowSplit split = HoldOutBlocks(num_rows, data.clip_starts);
   LearningData part;
   part.features = data.features(split.train, Eigen::all);
@@ -126,29 +138,31 @@ absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainO
   part.regions = data.regions;
   part.feature_groups = data.feature_groups;
   part.differential = data.differential;
-  const std::vector<std::string> candidates = {"gp", "regional", "sgplvm"};
+  const std::vector<LearnerChoice> candidates = {LearnerChoice::kGp, LearnerChoice::kRegional,
+                                                 LearnerChoice::kSgplvm};
   DirectGp direct_gp;
-  std::string best;
+  std::optional<LearnerChoice> best;
   double best_error = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < candidates.size(); ++i) {
     const double begin = static_cast<double>(i) / candidates.size();
-    PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> model,
-                           LearnDetails(part, candidates[i], options,
-                                        progress.Stage(absl::StrCat("validate ", candidates[i]),
-                                                       begin, begin + 1.0 / candidates.size()),
-                                        &direct_gp));
+    PLEAT_ASSIGN_OR_RETURN(
+        const std::shared_ptr<const DetailModel> model,
+        LearnDetails(part, candidates[i], options,
+                     progress.Stage(absl::StrCat("validate ", ChoiceName(candidates[i])), begin,
+                                    begin + 1.0 / candidates.size()),
+                     &direct_gp));
     const double error = HeldOutError(*model, data, split.held_out);
     if (validation) {
       validation->num_held_out_frames = static_cast<int>(split.held_out.size());
-      validation->mean_percent[candidates[i]] = 100 * error / diagonal_m;
+      validation->mean_percent[ChoiceName(candidates[i])] = 100 * error / diagonal_m;
     }
     if (error < best_error) {
       best_error = error;
       best = candidates[i];
     }
   }
-  if (best.empty()) return absl::InternalError("no learner gave a finite validation error");
-  return best;
+  if (!best) return absl::InternalError("no learner gave a finite validation error");
+  return *best;
 }
 
 }  // namespace pleat

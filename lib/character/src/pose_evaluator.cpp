@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "option_values.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/details.h"
 #include "pleat/learner/detail_model.h"
@@ -36,23 +34,10 @@ namespace {
 
 constexpr double kMinBoneScale = 0.05, kMaxBoneScale = 20;
 
-absl::Status CheckPose(const Pose& pose, int num_joints) {
-  if (static_cast<int>(pose.rotations.size()) != num_joints) {
-    return absl::InvalidArgumentError(absl::StrCat("the pose has ", pose.rotations.size(),
-                                                   " rotations, the skeleton has ", num_joints,
-                                                   " joints"));
-  }
-  if (!pose.root_position.allFinite()) {
-    return absl::InvalidArgumentError("the pose's root position is not finite");
-  }
-  for (int j = 0; j < num_joints; ++j) {
-    const double norm = pose.rotations[j].norm();
-    if (!(std::abs(norm - 1) < 1e-2)) {  // written so that a NaN fails
-      return absl::InvalidArgumentError(
-          absl::StrCat("rotation of joint ", j, " has norm ", norm, "; send unit quaternions"));
-    }
-  }
-  return absl::OkStatus();
+// A pose that comes alone, of a skeleton with that many joints.
+absl::Status CheckFits(const Pose& pose, int num_joints) {
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(pose, num_joints));
+  return CheckPose(pose);
 }
 
 absl::Status CheckBoneScales(const std::vector<double>& bone_scales, int num_joints) {
@@ -167,6 +152,11 @@ PoseEvaluator::Scratch* PoseEvaluator::ScratchAt(size_t number) {
 }
 
 void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
+  for (PoseQuery& query : queries) query.status = Check(query);
+  EvaluateChecked(queries);
+}
+
+void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
   static const std::vector<double> kNoScales;
   for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
     std::array<Scratch*, kMostTogether> scratches{};
@@ -177,11 +167,10 @@ void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
     for (const bool skinned_only : {false, true}) {
       for (size_t q = begin; q < std::min(begin + kMostTogether, queries.size()); ++q) {
         if (queries[q].skinned_only != skinned_only) continue;
-        PoseEvaluator* const lender = queries[q].scratch_of;
-        Scratch* scratch = lender != nullptr ? lender->ScratchAt(0) : ScratchAt(num_own);
-        queries[q].status = Prepare(queries[q], scratch);
         if (!queries[q].status.ok()) continue;
-        if (lender == nullptr) ++num_own;
+        PoseEvaluator* const lender = queries[q].scratch_of;
+        Scratch* scratch = lender != nullptr ? lender->ScratchAt(0) : ScratchAt(num_own++);
+        Prepare(queries[q], scratch);
         taken[count] = &queries[q];
         scratches[count++] = scratch;
       }
@@ -201,24 +190,32 @@ void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
   }
 }
 
-// Checks a query and computes what is predicted from.
-absl::Status PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) const {
-  Scratch& s = *scratch;
+size_t PoseEvaluator::NumPosesOf(const PoseQuery& query) const {
+  return query.skinned_only ? 1 : static_cast<size_t>(model_->options().history);
+}
+
+absl::Status PoseEvaluator::Check(const PoseQuery& query) const {
   const std::vector<const Pose*>& poses = *query.poses;
   const int num_joints = model_->skeleton().num_joints();
   if (poses.empty()) return absl::InvalidArgumentError("a pose query needs at least one pose");
   if (query.bone_scales != nullptr) {
     PLEAT_RETURN_IF_ERROR(CheckBoneScales(*query.bone_scales, num_joints));
   }
-  for (size_t h = 0; h < (query.skinned_only ? 1 : s.history.size()); ++h) {
-    const Pose& pose = *poses[std::min(h, poses.size() - 1)];
-    PLEAT_RETURN_IF_ERROR(CheckPose(pose, num_joints));
-    CopyNormalized(pose, &s.history[h]);
+  for (size_t h = 0; h < std::min(NumPosesOf(query), poses.size()); ++h) {
+    PLEAT_RETURN_IF_ERROR(CheckFits(*poses[h], num_joints));
+  }
+  return absl::OkStatus();
+}
+
+void PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) const {
+  Scratch& s = *scratch;
+  const std::vector<const Pose*>& poses = *query.poses;
+  for (size_t h = 0; h < NumPosesOf(query); ++h) {
+    CopyNormalized(*poses[std::min(h, poses.size() - 1)], &s.history[h]);
   }
   s.has_details = !query.skinned_only;
   s.confidence = 1;
   if (s.has_details) model_->features().ComputeRow(s.history_pointers, s.features);
-  return absl::OkStatus();
 }
 
 void PoseEvaluator::Predict(std::span<Scratch* const> scratches) const {
@@ -237,8 +234,8 @@ void PoseEvaluator::Predict(std::span<Scratch* const> scratches) const {
 void PoseEvaluator::Place(const std::vector<double>& bone_scales, Scratch* scratch) const {
   Scratch& s = *scratch;
   ComputeBoneTransforms(model_->skeleton(), s.history[0], bone_scales, &s.transforms);
-  SetAxes(DetailAxesOf(model_->options()), s.transforms, &s.axes);
-  if (s.has_details && DetailBaseOf(model_->options()) == DetailBase::kRoot) {
+  SetAxes(model_->options().detail_axes, s.transforms, &s.axes);
+  if (s.has_details && model_->options().deformation == DetailBase::kRoot) {
     MoveAllWithRoot(&s.transforms);
   }
   model_->skinning().SetMotions(s.transforms, s.axes, &s.motions);
@@ -257,7 +254,7 @@ absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
   const Eigen::VectorXf& coefficients = parameters.coefficients;
   const int num_joints = model_->skeleton().num_joints();
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
-  PLEAT_RETURN_IF_ERROR(CheckPose(parameters.pose, num_joints));
+  PLEAT_RETURN_IF_ERROR(CheckFits(parameters.pose, num_joints));
   if (coefficients.size() != 0 && coefficients.size() != model_->full_basis().num_components()) {
     return absl::InvalidArgumentError(
         absl::StrCat(coefficients.size(), " detail coefficients for a model of ",
@@ -306,13 +303,9 @@ absl::Status PoseEvaluator::EvaluateClip(
     const PoseTrack& track, const std::vector<double>& bone_scales,
     const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
     const Progress& progress) {
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (absl::Status status = CheckPose(track.poses[t], model_->skeleton().num_joints());
-        !status.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("frame ", t, ": ", absl::string_view(status.message())));
-    }
-  }
+  const int num_joints = model_->skeleton().num_joints();
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, num_joints));
+  PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
   constexpr int kBatch = 8;
   PoseHistory history(track, model_->frame_rate().fps(), model_->options().history);
   std::vector<std::vector<Pose>> poses(kBatch);  // copies: a history lives until the next
@@ -331,12 +324,25 @@ absl::Status PoseEvaluator::EvaluateClip(
       queries[i] = {
           .poses = &pointers[i], .bone_scales = &bone_scales, .frame = &frames[i], .status = {}};
     }
-    EvaluateBatch({queries.data(), static_cast<size_t>(count)});
+    EvaluateChecked({queries.data(), static_cast<size_t>(count)});
     for (int i = 0; i < count; ++i) {
-      PLEAT_RETURN_IF_ERROR(queries[i].status);
       PLEAT_RETURN_IF_ERROR(consume(begin + i, frames[i]));
       PLEAT_RETURN_IF_ERROR(progress.Report((begin + i + 1.0) / track.num_frames()));
     }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status PoseEvaluator::EvaluateSkinnedClip(
+    const PoseTrack& track, const std::vector<double>& bone_scales,
+    const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
+    const Progress& progress) {
+  EvaluatedFrame frame;
+  for (int t = 0; t < track.num_frames(); ++t) {
+    PLEAT_RETURN_IF_ERROR(WithContext(absl::StrCat("frame ", t),
+                                      EvaluateSkinned(track.pose(t), bone_scales, &frame)));
+    PLEAT_RETURN_IF_ERROR(consume(t, frame));
+    PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / track.num_frames()));
   }
   return absl::OkStatus();
 }

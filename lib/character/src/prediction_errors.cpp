@@ -2,7 +2,6 @@
 
 #include <functional>
 
-#include "option_values.h"
 #include "pleat/base/status.h"
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/skeleton/pose_history.h"
@@ -65,8 +64,8 @@ absl::StatusOr<ErrorSummary> MeasureBaseline(const DetailPredictor& predictor,
       details = full.transpose().reshaped();
     }
     ComputeBoneTransforms(model.skeleton(), *poses[0], {}, &transforms);
-    ComputeDetailBase(DetailBaseOf(model.options()), model.rig(), transforms, &base);
-    ComputeDetailRotations(DetailAxesOf(model.options()), model.rig().weights, all_vertices,
+    ComputeDetailBase(model.options().deformation, model.rig(), transforms, &base);
+    ComputeDetailRotations(model.options().detail_axes, model.rig().weights, all_vertices,
                            transforms, &rotations);
     ApplyDetails(base, rotations, details, &base);
     *positions = base.cast<float>();

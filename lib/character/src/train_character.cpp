@@ -29,8 +29,7 @@ bool IsMeasured(int t, int num_frames) {
 // The five frames with the largest mean error, by clip. frames: the number of each frame in the
 // joined sequence.
 std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percent,
-                                    const std::vector<int>& frames,
-                                    const std::vector<int>& clip_starts) {
+                                    const std::vector<int>& frames, const PoseTrack& track) {
   std::vector<int> order(frame_mean_percent.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
@@ -38,9 +37,8 @@ std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percen
   std::vector<FrameError> worst;
   for (size_t i = 0; i < std::min<size_t>(5, order.size()); ++i) {
     const int t = frames[order[i]];
-    const auto next = std::upper_bound(clip_starts.begin(), clip_starts.end(), t);
-    worst.push_back({static_cast<int>(next - clip_starts.begin()) - 1, t - *(next - 1),
-                     frame_mean_percent[order[i]]});
+    const ClipRange clip = track.ClipOf(t);
+    worst.push_back({clip.clip, t - clip.begin, frame_mean_percent[order[i]]});
   }
   return worst;
 }
@@ -74,20 +72,18 @@ absl::StatusOr<TrainingRecord> MeasureReconstruction(
       track, {},
       [&](int t, const EvaluatedFrame& hybrid) {
         if (!IsMeasured(t, track.num_frames())) return absl::OkStatus();
-        const bool follows =
-            !measured.empty() && measured.back() == t - 1 &&
-            !std::binary_search(track.clip_starts.begin(), track.clip_starts.end(), t);
+        const bool follows = !measured.empty() && measured.back() == t - 1 && !track.StartsClip(t);
         measured.push_back(t);
         const Eigen::Matrix3Xd truth = sequence.FrameAsDouble(t);
         reconstruction.AddFrame(hybrid.positions.cast<double>(), truth, follows);
-        PLEAT_RETURN_IF_ERROR(evaluator.EvaluateSkinned(track.poses[t], {}, &skinned));
+        PLEAT_RETURN_IF_ERROR(evaluator.EvaluateSkinned(track.pose(t), {}, &skinned));
         fit.AddFrame(skinned.positions.cast<double>(), truth, follows);
         vertex_error += (skinned.positions.cast<double>() - truth).colwise().norm().transpose();
         return absl::OkStatus();
       },
       progress));
   ErrorSummary fit_summary = fit.Summarize();
-  record.worst_frames = WorstFrames(fit_summary.frame_mean_percent, measured, track.clip_starts);
+  record.worst_frames = WorstFrames(fit_summary.frame_mean_percent, measured, track);
   record.joint_fit_percent =
       JointErrors(weights, 100 / (record.diagonal_m * double(measured.size())) * vertex_error);
   record.fit = WithoutFrames(std::move(fit_summary));
@@ -114,7 +110,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
       ComputeLearningData(rigged, track, options, resources, progress.Stage("detail", .45, .5)));
   LearnerValidation validation;
   PLEAT_ASSIGN_OR_RETURN(
-      const std::string learner,
+      const LearnerChoice learner,
       ChooseLearner(data, options, diagonal_m, &validation, progress.Stage("validate", .5, .75)));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> detail_model,
                          LearnDetails(data, learner, options, progress.Stage("learn", .75, .95)));

@@ -1,26 +1,18 @@
 #include "pleat/character/train_options.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
-
-absl::Status CheckChoice(absl::string_view name, const std::string& value,
-                         const std::vector<std::string>& choices) {
-  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(
-      "option ", name, ": '", value, "' is unknown; choose one of ", absl::StrJoin(choices, ", ")));
-}
 
 template <typename T>
 absl::Status CheckRange(absl::string_view name, T value, T low, T high) {
@@ -42,20 +34,28 @@ std::string FormatValue(const T& value) {
     char text[40];
     std::snprintf(text, sizeof(text), "%.17g", value);
     return text;
+  } else if constexpr (std::is_enum_v<T>) {
+    return ChoiceName(value);
   } else {
     return absl::StrCat(value);
   }
 }
 
 template <typename T>
-bool ParseValue(absl::string_view text, T* value) {
-  if constexpr (std::is_same_v<T, std::string>) {
-    *value = std::string(text);
-    return true;
-  } else if constexpr (std::is_same_v<T, double>) {
-    return absl::SimpleAtod(text, value);
+absl::Status ParseValue(absl::string_view option, absl::string_view text, T* value) {
+  if constexpr (std::is_enum_v<T>) {
+    PLEAT_ASSIGN_OR_RETURN(*value, ParseChoice<T>(option, text));
+    return absl::OkStatus();
   } else {
-    return absl::SimpleAtoi(text, value);
+    bool parsed;
+    if constexpr (std::is_same_v<T, double>) {
+      parsed = absl::SimpleAtod(text, value);
+    } else {
+      parsed = absl::SimpleAtoi(text, value);
+    }
+    if (parsed) return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        absl::StrCat("a value that does not parse: '", option, "=", text, "'"));
   }
 }
 
@@ -63,42 +63,42 @@ bool ParseValue(absl::string_view text, T* value) {
 
 TrainOptions TrainOptions::Paper() {
   TrainOptions paper;
-  paper.learner = "sgplvm";
-  paper.fit = "walk";
-  paper.refine = "none";
-  paper.detail_axes = "world";
-  paper.history_form = "poses";
+  paper.learner = LearnerChoice::kSgplvm;
+  paper.fit = PoseFitMethod::kWalk;
+  paper.refine = RigRefinement::kNone;
+  paper.detail_axes = DetailAxes::kWorld;
+  paper.history_form = HistoryForm::kPoses;
   paper.resolution_percent = 5;
-  paper.upsampling = "rbf";
+  paper.upsampling = Upsampling::kRbf;
   paper.bend_stiffness = 1e-6;
   paper.latent_dimensions = 4;
   return paper;
 }
 
 const std::vector<std::string>& LearnerNames() {
-  static const auto& names =
-      *new std::vector<std::string>{"regional", "gp", "sgplvm", "back-constrained", "ridge"};
+  static const auto& names = *[] {
+    auto* learners = new std::vector<std::string>;
+    for (const NamedChoice<LearnerChoice>& choice : ChoicesOf<LearnerChoice>()) {
+      if (choice.value != LearnerChoice::kAuto) learners->push_back(choice.name);
+    }
+    return learners;
+  }();
   return names;
 }
 
 absl::Status ValidateTrainOptions(const TrainOptions& options) {
-  std::vector<std::string> learners = LearnerNames();
-  learners.insert(learners.begin(), "auto");
-  PLEAT_RETURN_IF_ERROR(CheckChoice("learner", options.learner, learners));
-  PLEAT_RETURN_IF_ERROR(CheckChoice("fit", options.fit, {"all-joints", "walk"}));
-  PLEAT_RETURN_IF_ERROR(CheckChoice("refine", options.refine, {"none", "joints", "full"}));
-  PLEAT_RETURN_IF_ERROR(
-      CheckChoice("detail_axes", options.detail_axes, {"local", "root", "world"}));
-  PLEAT_RETURN_IF_ERROR(CheckChoice("deformation", options.deformation, {"fine", "full"}));
-  PLEAT_RETURN_IF_ERROR(
-      CheckChoice("detail_coordinates", options.detail_coordinates, {"offsets", "differential"}));
-  PLEAT_RETURN_IF_ERROR(CheckChoice("upsampling", options.upsampling, {"refined", "rbf"}));
+  absl::Status choices;
+  VisitTrainOptions(options, [&choices](const char* name, const auto& value) {
+    if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>) {
+      if (ChoiceNameOrNull(value) == nullptr) {
+        choices = absl::InvalidArgumentError(
+            absl::StrCat("option ", name, ": ", static_cast<int>(value), " is no choice"));
+      }
+    }
+  });
+  PLEAT_RETURN_IF_ERROR(choices);
   PLEAT_RETURN_IF_ERROR(CheckRange("bend_stiffness", options.bend_stiffness, 0.0, 1.0));
   PLEAT_RETURN_IF_ERROR(CheckRange("smoothness", options.smoothness, 0.0, 1.0));
-  PLEAT_RETURN_IF_ERROR(
-      CheckChoice("rotations", options.rotations, {"expmap", "euler", "quaternion"}));
-  PLEAT_RETURN_IF_ERROR(
-      CheckChoice("history_form", options.history_form, {"differences", "poses"}));
   PLEAT_RETURN_IF_ERROR(CheckRange("history", options.history, 1, 8));
   PLEAT_RETURN_IF_ERROR(CheckRange("resolution_percent", options.resolution_percent, 1.0, 100.0));
   PLEAT_RETURN_IF_ERROR(
@@ -126,16 +126,12 @@ absl::StatusOr<TrainOptions> ParseTrainOptions(absl::string_view text) {
   for (absl::string_view line : absl::StrSplit(text, '\n', absl::SkipEmpty())) {
     const std::pair<absl::string_view, absl::string_view> pair =
         absl::StrSplit(line, absl::MaxSplits('=', 1));
-    bool known = false, parsed = false;
+    absl::Status status =
+        absl::InvalidArgumentError(absl::StrCat("an unknown option: '", line, "'"));
     VisitTrainOptions(options, [&](const char* name, auto& value) {
-      if (pair.first != name) return;
-      known = true;
-      parsed = ParseValue(pair.second, &value);
+      if (pair.first == name) status = ParseValue(name, pair.second, &value);
     });
-    if (!known || !parsed) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          known ? "a value that does not parse" : "an unknown option", ": '", line, "'"));
-    }
+    PLEAT_RETURN_IF_ERROR(status);
   }
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   return options;

@@ -54,10 +54,8 @@ absl::StatusOr<Eigen::MatrixXd> DetailsOfFrames(const RiggedFrames& rigged, cons
                                                 const std::vector<int>& vertices,
                                                 const ComputeDetailsOptions& options,
                                                 const Progress& progress) {
-  PoseTrack part{.fps = track.fps, .poses = {}};
-  for (const int t : frame_indices) part.poses.push_back(track.poses[t]);
-  return ComputeDetails(rigged.frames.sequence.Subset(frame_indices), rigged.rig, part, vertices,
-                        options, progress);
+  return ComputeDetails(rigged.frames.sequence.Subset(frame_indices), rigged.rig,
+                        track.Subset(frame_indices), vertices, options, progress);
 }
 
 // Fills data->upsampler from the details of all vertices, and returns those of the control
@@ -116,9 +114,9 @@ absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& 
                                    const Progress& progress, LearningData* data) {
   const MeshSequence& sequence = rigged.frames.sequence;
   const bool decimated = static_cast<int>(data->control_vertices.size()) < sequence.num_vertices();
-  const bool refined = decimated && options.upsampling == "refined";
-  const ComputeDetailsOptions detail_options{.base = DetailBaseOf(options),
-                                             .axes = DetailAxesOf(options),
+  const bool refined = decimated && options.upsampling == Upsampling::kRefined;
+  const ComputeDetailsOptions detail_options{.base = options.deformation,
+                                             .axes = options.detail_axes,
                                              .num_threads = resources.num_threads};
   std::vector<int> vertices = data->control_vertices;
   if (refined) {
@@ -205,7 +203,7 @@ absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
                                     const TrainOptions& options, const TrainResources& resources,
                                     PoseFitSummary* summary, const Progress& progress) {
   PoseFitOptions fit;
-  fit.method = options.fit == "walk" ? PoseFitMethod::kWalk : PoseFitMethod::kAllJoints;
+  fit.method = options.fit;
   fit.clip_starts = clip_starts;
   fit.bend_stiffness = options.bend_stiffness;
   fit.smoothness = options.smoothness;
@@ -217,15 +215,16 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
                                             const TrainResources& resources, RiggedFrames* rigged,
                                             PoseFitSummary* summary, const Progress& progress) {
   const TrainingFrames& frames = rigged->frames;
-  if (options.refine == "none") {
+  if (options.refine == RigRefinement::kNone) {
     return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
                      progress.Stage("fit", 0, 1));
   }
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack first,
                          FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options,
                                    resources, nullptr, progress.Stage("fit", 0, .2)));
-  RigRefinementOptions refinement =
-      options.refine == "joints" ? RigRefinementOptions::JointsOnly() : RigRefinementOptions();
+  RigRefinementOptions refinement = options.refine == RigRefinement::kJoints
+                                        ? RigRefinementOptions::JointsOnly()
+                                        : RigRefinementOptions();
   refinement.locked_joints = rigged->locked_joints;
   refinement.bend_stiffness = options.bend_stiffness;
   refinement.num_threads = resources.num_threads;
@@ -246,11 +245,11 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
                                                  const Progress& progress) {
   const MeshSequence& sequence = rigged.frames.sequence;
   LearningData data;
-  data.clip_starts = track.clip_starts;
+  data.clip_starts = track.clip_starts();
   PLEAT_ASSIGN_OR_RETURN(data.control_vertices,
                          SelectControlVertices(sequence.topology(), rigged.rig.rest_positions,
                                                options.resolution_percent / 100));
-  if (options.detail_coordinates == "differential") {
+  if (options.detail_coordinates == DetailCoordinates::kDifferential) {
     PLEAT_ASSIGN_OR_RETURN(data.differential, DifferentialCoordinates::Build(
                                                   sequence.topology(), rigged.rig.rest_positions,
                                                   data.control_vertices));
@@ -270,8 +269,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
-    const std::string& learner, std::shared_ptr<const DetailModel> detail_model,
-    double diagonal_m) {
+    LearnerChoice learner, std::shared_ptr<const DetailModel> detail_model, double diagonal_m) {
   const MeshSequence& sequence = rigged.frames.sequence;
   CharacterModel::Parts parts{.name = sequence.name(),
                               .frame_rate = sequence.frame_rate(),
@@ -284,7 +282,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
                               .upsampler = data.upsampler,
                               .detail_model = std::move(detail_model),
                               .record = {}};
-  parts.record.learner = learner;
+  parts.record.learner = ChoiceName(learner);
   parts.record.num_frames = sequence.num_frames();
   parts.record.rest_frame = rigged.rig_summary.rest_frame;
   parts.record.yaw_degrees = rigged.rig_summary.yaw_degrees;

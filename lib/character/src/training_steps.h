@@ -17,7 +17,7 @@
 #include "pleat/math/pca.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/auto_rig.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/user_rig.h"
 
 namespace pleat {
@@ -79,26 +79,26 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
                                                  const TrainResources& resources,
                                                  const Progress& progress);
 
-// Trains the learner named `learner`, one of LearnerNames(). The model predicts offsets, whatever
-// coordinates it was trained in.
+// Trains `learner`, which is chosen (not auto). The model predicts offsets, whatever coordinates it
+// was trained in.
 // The direct GP of some data and options, once one of the learners has trained it. `direct_gp` may
 // be null; else it is taken from there, or left there.
 using DirectGp = std::optional<GpRegression>;
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
-                                                                const std::string& learner,
+                                                                LearnerChoice learner,
                                                                 const TrainOptions& options,
                                                                 const Progress& progress,
                                                                 DirectGp* direct_gp = nullptr);
 
-// The learner of `options`; for "auto" the one with the lowest error on contiguous blocks of
+// The learner of `options`; for auto the one with the lowest error on contiguous blocks of
 // training frames that it did not see. validation: filled then, in % of diagonal_m; may be null.
-absl::StatusOr<std::string> ChooseLearner(const LearningData& data, const TrainOptions& options,
-                                          double diagonal_m, LearnerValidation* validation,
-                                          const Progress& progress);
+absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const TrainOptions& options,
+                                            double diagonal_m, LearnerValidation* validation,
+                                            const Progress& progress);
 
 // All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, meters.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
-    const std::string& learner, std::shared_ptr<const DetailModel> detail_model, double diagonal_m);
+    LearnerChoice learner, std::shared_ptr<const DetailModel> detail_model, double diagonal_m);
 
 }  // namespace pleat

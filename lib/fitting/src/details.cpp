@@ -23,13 +23,7 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
                                                    track.num_frames(), " frames, the sequence has ",
                                                    sequence.num_frames()));
   }
-  for (const Pose& pose : track.poses) {
-    if (static_cast<int>(pose.rotations.size()) != rig.skeleton.num_joints()) {
-      return absl::InvalidArgumentError(absl::StrCat("details: a pose has ", pose.rotations.size(),
-                                                     " rotations, the skeleton has ",
-                                                     rig.skeleton.num_joints(), " joints"));
-    }
-  }
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, rig.skeleton.num_joints()));
   for (const int v : vertices) {
     if (v < 0 || v >= num_vertices) {
       return absl::InvalidArgumentError(
@@ -39,7 +33,8 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
   return absl::OkStatus();
 }
 
-// The base of one vertex: moved by the root, or by linear blend skinning.
+// The base of one vertex, moved by the root or by linear blend skinning. Training asks for a few
+// vertices of many frames, where ComputeDetailBase would skin them all.
 Eigen::Vector3d BaseOfVertex(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
                              int v) {
   if (base == DetailBase::kRoot) {
@@ -102,7 +97,7 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
                                                const ComputeDetailsOptions& options,
                                                const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, track, vertices));
-  constexpr int kBatch = 64;
+  constexpr int kBatch = 64;  // frames between two reports of progress
   const int num_frames = sequence.num_frames();
   Eigen::MatrixXd details(num_frames, 3 * vertices.size());
   for (int begin = 0; begin < num_frames; begin += kBatch) {
@@ -111,7 +106,7 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
       if (progress.cancelled()) return;
       const int t = begin + item;
       BoneTransforms transforms;
-      ComputeBoneTransforms(rig.skeleton, track.poses[t], {}, &transforms);
+      ComputeBoneTransforms(rig.skeleton, track.pose(t), {}, &transforms);
       std::vector<Eigen::Quaterniond> rotations;
       ComputeDetailRotations(options.axes, rig.weights, vertices, transforms, &rotations);
       for (size_t c = 0; c < vertices.size(); ++c) {

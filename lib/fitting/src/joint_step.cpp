@@ -10,7 +10,8 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-// Adds every bone's rows to its ancestors', leaves first.
+// Adds every bone's rows to those of its parent. Parents have lower indices, so counting down
+// visits leaves first and each sum is complete when it is passed on.
 template <typename Add>
 void SumOverSubtrees(const Skeleton& skeleton, const Add& add_to_parent) {
   for (int b = skeleton.num_joints() - 1; b >= 1; --b) {
@@ -76,6 +77,7 @@ JointSystem ComputeJointSystem(const RigMoments& moments, const SubtreeMoments& 
       if (d < c) system.matrix.block<3, 3>(3 * k, 3 * j) += block.transpose();
     }
   }
+  // The Schur complement of the translations: each frame has V times the identity for its own.
   system.matrix -= to_translation * to_translation.transpose() / moments.num_vertices;
   system.right -= to_translation * total / moments.num_vertices;
   return system;
@@ -96,7 +98,7 @@ Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMo
   const Eigen::Matrix3Xd centered = first.colwise() - moments.center;
   sum.matrix.diagonal().array() += stiffness;
   sum.right += stiffness * centered.reshaped();
-  for (const int j : locked) {  // known: to the right-hand side
+  for (const int j : locked) {  // known, hence moved to the right-hand side
     sum.right -= sum.matrix.middleCols<3>(3 * j) * centered.col(j);
     sum.matrix.middleCols<3>(3 * j).setZero();
     sum.matrix.middleRows<3>(3 * j).setZero();
@@ -106,7 +108,7 @@ Eigen::Matrix3Xd SolveJoints(const std::vector<JointSystem>& frames, const RigMo
   const Eigen::VectorXd solved = sum.matrix.llt().solve(sum.right);
   Eigen::Matrix3Xd joints =
       Eigen::Matrix3Xd(solved.reshaped(3, skeleton.num_joints())).colwise() + moments.center;
-  for (const int j : locked) joints.col(j) = first.col(j);  // without rounding
+  for (const int j : locked) joints.col(j) = first.col(j);  // exactly, without rounding
   return joints;
 }
 

@@ -12,7 +12,9 @@ using Eigen::Vector4d;
 using Matrix4x3d = Eigen::Matrix<double, 4, 3>;
 using Matrix3x4d = Eigen::Matrix<double, 3, 4>;
 
-// Weights of one vertex in double precision, normalized to sum 1 exactly.
+// Returns the weights of one vertex in double precision, normalized to sum 1. Stored weights are
+// float32 and sum to 1 only up to rounding; an energy that takes sums of weights out of its loops
+// needs more.
 std::array<double, kMaxInfluences> NormalizedWeights(const VertexInfluences& influences) {
   std::array<double, kMaxInfluences> weights;
   double total = 0;
@@ -21,14 +23,14 @@ std::array<double, kMaxInfluences> NormalizedWeights(const VertexInfluences& inf
   return weights;
 }
 
-// A_aa: takes [x; 1] to x - pivot.
+// Returns A_aa, which takes [x; 1] to x - pivot.
 Matrix3x4d OwnBlock(const Vector3d& pivot) {
   Matrix3x4d block;
   block << Matrix3d::Identity(), -pivot;
   return block;
 }
 
-// Descendants (strict) of every joint.
+// Returns the strict descendants of every joint.
 std::vector<std::vector<int>> StrictDescendants(const Skeleton& skeleton) {
   std::vector<std::vector<int>> descendants(skeleton.num_joints());
   for (int j = 1; j < skeleton.num_joints(); ++j) {
@@ -131,7 +133,8 @@ Eigen::MatrixXd ComputeChainCross(const RigMoments& moments, const FrameMoments&
                                   const Skeleton& skeleton) {
   const int num_joints = moments.num_joints;
   Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(3 * num_joints, 3);
-  // Sums of the homogeneous row over strict descendants, leaves first.
+  // The sums of the homogeneous row over strict descendants. A parent has a lower index than its
+  // children, so counting down visits leaves first.
   std::vector<Eigen::RowVector3d> below(num_joints, Eigen::RowVector3d::Zero());
   for (int a = num_joints - 1; a >= 1; --a) {
     const int parent = skeleton.parent(a);

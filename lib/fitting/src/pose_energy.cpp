@@ -1,3 +1,32 @@
+// How a sum over ten thousand vertices becomes a few products of small matrices. Skinning with a
+// chain of joints looks nested: a vertex of the hand moves with the wrist, which moves with the
+// elbow, and so on. Written with *world* rotations the nest opens. The end of bone a moves by R_a
+// (q_a - q_parent(a)) against its beginning, and everything below bone a moves along. Summing along
+// the chain gives
+//
+//   v_i = r + sum_a R_a g_ia,   g_ia = W_ia (u_i - q_parent(a)) + S_ia (q_a - q_parent(a)),
+//
+// with S_ia the weight that vertex i has in the subtree strictly below bone a. So subtree sums of
+// weights carry the whole chain, the vectors g_ia do not depend on the pose, and v_i is linear in
+// the rotations. Its square is quadratic in them with coefficients that are sums over vertices:
+// G_ab = sum_i g_ia g_ib^T, g_a = sum_i g_ia, C_a = sum_i g_ia y_i^T and s = sum_i |y_i|^2. With P
+// = [R_0 ... R_J-1],
+//
+//   E = tr(P G P^T) - 2 tr(P C) + 2 r . sum_a R_a g_a + V |r|^2 + s.
+//
+// There is no term of r with the y_i, since observations are centered. moments.cpp computes the
+// coefficients; this file never sees a vertex, and an evaluation costs O(J^2) whatever V is.
+//
+// Derivatives follow from a turn of bone a from the left by w_a, dv_i / dw_a = -[R_a g_ia]x. With
+// world rotations bones turn independently: turning bone a moves its end and shifts what is below,
+// but turns nothing else. So a block of the Gauss-Newton matrix needs only G_ab, and the gradient
+// only the residual moments M = G P^T + g r^T - C. The formulas are derived in
+// docs/method/fit.md#gradient-and-gauss-newton-matrix and tested against sums over vertices.
+//
+// Terms that are quadratic in the rotations fit into the same form, as if a few points more had
+// been observed: a stiffness between a bone and its parent adds +I and -I to blocks of G, an
+// attraction to given rotations adds I to G and the target to C. So solvers know nothing of them.
+
 #include "pleat/fitting/pose_energy.h"
 
 #include <cassert>
@@ -12,13 +41,13 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-// sum x cross y where `moment` = sum x y^T.
+// Returns sum x cross y where `moment` = sum x y^T.
 Vector3d CrossSum(const Matrix3d& moment) {
   return {moment(1, 2) - moment(2, 1), moment(2, 0) - moment(0, 2), moment(0, 1) - moment(1, 0)};
 }
 
-// The energy of moments (gram, sums, cross, constant) at `pose`. The observations are centered, so
-// sum_i y_i = 0 and no term of r with y is left.
+// Returns the energy of moments (gram, sums, cross, constant) at `pose`. The observations are
+// centered, so sum_i y_i = 0 and no term of r with y is left.
 double EnergyOf(const MatrixXd& gram, const Eigen::Matrix3Xd& sums, const MatrixXd& cross,
                 double num_vertices, double constant, const ChainPose& pose) {
   const Eigen::Matrix3Xd& p = pose.rotations;
@@ -78,7 +107,8 @@ Pose FromChainPose(const Skeleton& skeleton, const ChainPose& chain_pose,
 namespace {
 
 // The two bones from the root to the hips are one bone of the body, the pelvis. Under a skirt their
-// vertices hardly tell them apart, and each would turn on its own; so much stiffer than a joint.
+// vertices hardly tell them apart, and each would turn on its own, so they are held together much
+// more stiffly than a joint (docs/method/fit.md#bend-stiffness).
 constexpr double kPelvisStiffness = 100;
 
 bool IsPelvisBone(const Skeleton& skeleton, int bone) {
@@ -91,7 +121,8 @@ bool IsPelvisBone(const Skeleton& skeleton, int bone) {
 PoseEnergy::PoseEnergy(const ChainMoments& chain, const Skeleton& skeleton, double bend_stiffness)
     : chain_(chain), gram_(chain.gram) {
   assert(skeleton.num_joints() == chain.num_joints);
-  // |R_b - R_p|^2 = tr of a Gram with blocks +I, +I, -I, -I: a point that both bones share.
+  // |R_b - R_p|^2 = tr(P G' P^T) where G' has the blocks +I, +I, -I, -I: a point that both bones
+  // share.
   for (int b = 1; b < chain.num_joints; ++b) {
     const double factor = IsPelvisBone(skeleton, b) ? kPelvisStiffness : 1;
     const Matrix3d stiffness = factor * bend_stiffness * Matrix3d::Identity();

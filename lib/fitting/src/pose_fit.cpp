@@ -17,7 +17,9 @@
 namespace pleat {
 namespace {
 
-// All state of a fit: one entry per frame, so that frames can be worked on in parallel.
+// The state of a fit, one entry per frame. Parallel loops write only the entry of their own frame
+// and read others only where the loop cannot change them (copies of the pass before, or frames of
+// the other parity), so the result does not depend on the number of threads.
 class PoseFitter {
  public:
   PoseFitter(const MeshSequence& sequence, const Rig& rig, const PoseFitOptions& options)
@@ -51,25 +53,27 @@ class PoseFitter {
     }
     if (!(options_.smoothness > 0)) return progress.Stage("fit", 0.8, 1).Report(1);
     unsmoothed_rms_m_ = Rms();
-    unsmoothed_jitter_rad_ = RotationJitter(Track());
+    PLEAT_ASSIGN_OR_RETURN(const PoseTrack unsmoothed, Track());
+    unsmoothed_jitter_rad_ = RotationJitter(unsmoothed);
     return Smooth(progress.Stage("fit", 0.8, 1));
   }
 
-  PoseTrack Track() const {
-    PoseTrack track;
-    track.fps = sequence_.frame_rate().fps();
-    track.clip_starts = options_.clip_starts;
+  // An error where the numbers of a pose went astray.
+  absl::StatusOr<PoseTrack> Track() const {
+    PoseTrack::Parts track{.fps = sequence_.frame_rate().fps(),
+                           .clip_starts = options_.clip_starts};
     for (const Frame& frame : frames_) {
       track.poses.push_back(FromChainPose(rig_.skeleton, frame.pose, frame.center));
       FixRootGauge(rig_.skeleton, &track.poses.back());
     }
-    for (int t = 1; t < track.num_frames(); ++t) {
+    for (int t = 1; t < sequence_.num_frames(); ++t) {
       if (SameClip(t - 1, t)) KeepSigns(track.poses[t - 1], &track.poses[t]);
     }
-    return track;
+    return PoseTrack::Create(std::move(track));
   }
 
-  void Summarize(PoseFitSummary* summary) const {
+  // `track`: of this fitter.
+  void Summarize(const PoseTrack& track, PoseFitSummary* summary) const {
     *summary = {};
     double iterations = 0;
     for (const Frame& frame : frames_) {
@@ -78,7 +82,7 @@ class PoseFitter {
       summary->num_rescued_frames += frame.rescued;
     }
     summary->rms_m = Rms();
-    summary->jitter_rad = RotationJitter(Track());
+    summary->jitter_rad = RotationJitter(track);
     summary->unsmoothed_rms_m = unsmoothed_rms_m_.value_or(summary->rms_m);
     summary->unsmoothed_jitter_rad = unsmoothed_jitter_rad_.value_or(summary->jitter_rad);
     summary->mean_iterations = iterations / static_cast<double>(frames_.size());
@@ -101,7 +105,7 @@ class PoseFitter {
     bool rescued = false;
   };
 
-  // Squared vertex distance of a frame's pose, mean over vertices.
+  // Returns the squared vertex distance of a frame's pose, the mean over vertices.
   double MeanSquare(const Frame& frame) const {
     PoseEnergy energy = energy_;
     energy.SetFrame(frame.cross, frame.sum_squares);
@@ -114,14 +118,15 @@ class PoseFitter {
     return std::sqrt(squares / static_cast<double>(frames_.size()));
   }
 
-  // Takes of q and -q the one nearer to the frame before.
+  // Takes the one of q and -q that is nearer to the frame before.
   static void KeepSigns(const Pose& previous, Pose* pose) {
     for (size_t j = 0; j < pose->rotations.size(); ++j) {
       if (pose->rotations[j].dot(previous.rotations[j]) < 0) pose->rotations[j].coeffs() *= -1;
     }
   }
 
-  // body(t) for t = first, first + step, ...; in batches, so that progress and cancellation act.
+  // Calls body(t) for t = first, first + step, ...; in batches, so that progress and cancellation
+  // act.
   absl::Status ForFrames(const Progress& progress, int first, int step,
                          const std::function<void(int)>& body) {
     constexpr int kBatch = 64;
@@ -136,6 +141,7 @@ class PoseFitter {
     return absl::OkStatus();
   }
 
+  // The only step that looks at vertices. It keeps what solvers need of the frame, 3J x 3 numbers.
   void StartFrame(int t) {
     const FrameMoments moments = ComputeFrameMoments(rig_, rig_moments_, sequence_.frame(t));
     Frame& frame = frames_[t];
@@ -145,7 +151,7 @@ class PoseFitter {
     frame.pose = ClosedFormWalk(rig_moments_, moments, rig_.skeleton);
   }
 
-  // Solves frame t from `start`; returns pose and energy without storing them.
+  // Solves the frame of `energy` from `start`; returns pose and energy without storing them.
   std::pair<ChainPose, PoseSolverSummary> Solve(const PoseEnergy& energy, ChainPose start,
                                                 int max_iterations) const {
     const PoseSolverSummary solved =
@@ -167,8 +173,9 @@ class PoseFitter {
     return s >= 0 && s < sequence_.num_frames() && clip_of_[s] == clip_of_[t];
   }
 
-  // Every frame tries its neighbors' poses of the pass before (so the order does not matter),
-  // those that `changed` there; fills `changed` anew.
+  // Lets every frame try the poses that its neighbors had after the pass before (so that the order
+  // does not matter), if they `changed` there; fills `changed` anew. An improvement below a
+  // thousandth is the tail of convergence, not another valley.
   absl::Status TryNeighbors(const Progress& progress, std::vector<char>* changed) {
     constexpr int kTrial = 5;  // iterations that show whether a start leads to a deeper valley
     std::vector<ChainPose> before;
@@ -192,7 +199,8 @@ class PoseFitter {
     return absl::OkStatus();
   }
 
-  // Block descent on the smoothed energy: even frames with odd ones held, then the other way.
+  // Block descent on the smoothed energy: even frames with the odd ones held, then the other way. A
+  // frame's neighbors are never solved together with it, so each half is exact and parallel.
   absl::Status Smooth(const Progress& progress) {
     constexpr int kSweeps = 3;
     for (int half = 0; half < 2 * kSweeps; ++half) {
@@ -252,15 +260,7 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig,
                      rig.rest_positions.cols(), " rest vertices, the sequence '", sequence.name(),
                      "' has ", num_vertices, "; use the rig of this mesh"));
   }
-  const std::vector<int>& starts = options.clip_starts;
-  bool ascending = !starts.empty() && starts.front() == 0;
-  for (size_t c = 1; c < starts.size(); ++c) ascending &= starts[c] > starts[c - 1];
-  if (!ascending || starts.back() >= sequence.num_frames()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("pose fit: clip starts must ascend from 0 and stay below the ",
-                     sequence.num_frames(), " frames of the sequence"));
-  }
-  return absl::OkStatus();
+  return CheckClipStarts(options.clip_starts, sequence.num_frames());
 }
 
 }  // namespace
@@ -271,19 +271,19 @@ absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
   PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, options));
   PoseFitter fitter(sequence, rig, options);
   PLEAT_RETURN_IF_ERROR(fitter.Run(progress));
-  if (summary != nullptr) fitter.Summarize(summary);
-  return fitter.Track();
+  PLEAT_ASSIGN_OR_RETURN(PoseTrack track, fitter.Track());
+  if (summary != nullptr) fitter.Summarize(track, summary);
+  return track;
 }
 
 double RotationJitter(const PoseTrack& track) {
   double squares = 0;
   int64_t count = 0;
   for (int t = 2; t < track.num_frames(); ++t) {
-    const auto next_start = std::upper_bound(track.clip_starts.begin(), track.clip_starts.end(), t);
-    if (next_start != track.clip_starts.begin() && t - 2 < *(next_start - 1)) continue;
-    const auto& before = track.poses[t - 2].rotations;
-    const auto& middle = track.poses[t - 1].rotations;
-    const auto& after = track.poses[t].rotations;
+    if (t - 2 < track.ClipOf(t).begin) continue;
+    const auto& before = track.pose(t - 2).rotations;
+    const auto& middle = track.pose(t - 1).rotations;
+    const auto& after = track.pose(t).rotations;
     for (size_t j = 0; j < middle.size(); ++j) {
       const Eigen::Quaterniond first = before[j].conjugate() * middle[j];
       const double angle = first.angularDistance(middle[j].conjugate() * after[j]);

@@ -14,7 +14,8 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-// sum_i W_ib (u_i - rest_pivot)(y_i - pivot)^T, from the moments; u, y relative to their centers.
+// Returns sum_i W_ib (u_i - rest_pivot)(y_i - pivot)^T from the moments; u and y are relative to
+// their centers.
 Matrix3d CovarianceAbout(const RigMoments& moments, const FrameMoments& frame, int b,
                          const Vector3d& rest_pivot, const Vector3d& pivot) {
   const Eigen::Matrix4d& rest = moments.weighted[b];
@@ -24,15 +25,15 @@ Matrix3d CovarianceAbout(const RigMoments& moments, const FrameMoments& frame, i
          rest(3, 3) * rest_pivot * pivot.transpose();
 }
 
-// The rotation about fixed pivots that fits `covariance` = sum source target^T. Directions that
-// the points do not determine (a thin or empty bone) follow `fallback`: it enters as points of a
-// small share of the weight, plus a floor for a bone without any vertex.
+// Returns the rotation about fixed pivots that fits `covariance` = sum source target^T. Directions
+// that the points do not determine (a thin or empty bone) follow `fallback`: it enters as points
+// with a small share of the weight, plus a floor for a bone without any vertex.
 Matrix3d FitRotation(const Matrix3d& covariance, double spread, const Matrix3d& fallback) {
   constexpr double kFallbackShare = 1e-3;
   return NearestRotation(covariance.transpose() + (kFallbackShare * spread + 1e-12) * fallback);
 }
 
-// Rigid fit of the bones that hang on the root: rotation and the root's position.
+// Fits the bones that hang on the root rigidly and returns their rotation and the root's position.
 void FitRoot(const RigMoments& moments, const FrameMoments& frame, const Skeleton& skeleton,
              Matrix3d* rotation, Vector3d* root_position) {
   Matrix3d covariance = Matrix3d::Zero();
@@ -46,6 +47,7 @@ void FitRoot(const RigMoments& moments, const FrameMoments& frame, const Skeleto
   }
   *rotation = Matrix3d::Identity();
   *root_position = skeleton.rest_position(0) - moments.center;
+  // Nothing hangs on the root, so it stays where the rest pose has it relative to the center.
   if (!(weight > 1e-9)) return;
   covariance -= rest_sum * sum.transpose() / weight;
   *rotation = NearestRotation(covariance.transpose());
@@ -84,7 +86,7 @@ void WalkSweep(const PoseEnergy& energy, const Skeleton& skeleton, ChainPose* po
   const ChainMoments& chain = energy.chain();
   const MatrixXd& gram = energy.frame_gram();
   const MatrixXd& cross = energy.frame_cross();
-  // The whole body rigidly; the observations are centered.
+  // First the whole body rigidly, which is easy since the observations are centered.
   Matrix3d covariance = Matrix3d::Zero();
   Vector3d rotated_sums = Vector3d::Zero();
   for (int a = 0; a < num_joints; ++a) {
@@ -127,7 +129,8 @@ PoseSolverSummary MinimizePose(const PoseEnergy& energy, const PoseSolverOptions
   Eigen::VectorXd gradient;
   MatrixXd hessian, damped;
   summary.energy = energy.Linearize(*pose, &gradient, &hessian);
-  // Below this the energy is rounding noise of the moments.
+  // Below this the energy is rounding noise: it is a difference of sums of the size of the Gram
+  // matrix.
   const double noise = 1e-14 * energy.frame_gram().trace();
   double damping = 1e-4;
   ChainPose trial = *pose;

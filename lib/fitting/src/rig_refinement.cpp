@@ -1,3 +1,36 @@
+// Block descent over four kinds of unknowns, each block with a closed form or a small solver of its
+// own:
+//
+//   poses          MinimizePose, frame by frame, from where they are        pose_solvers.cpp
+//   rest joints    one linear system of 3J unknowns over all frames         joint_step.cpp
+//   weights        a quadratic program of at most 16 unknowns per vertex    vertex_step.cpp
+//   rest mesh      a 3 x 3 system per vertex                                vertex_step.cpp
+//
+// What is alternated follows from what is linear in what. Skinned vertices are linear in the world
+// rotations, in the joints, in the weights and in the rest positions, each for itself, and in no
+// two of them together. Solving one block is therefore a least-squares problem, and the blocks that
+// share their sums share their moments: the rig and frame moments (moments.h) do not depend on the
+// joints, so poses and joints are solved without a look at the vertices, while the steps per vertex
+// need the frames, once, as one matrix product.
+//
+// The order within a round:
+//
+// 1. Moments, since the last round has changed weights and rest mesh; poses with them. The error
+//    here is that of the rig as the round finds it (round_rms_m).
+// 2. Joints, then poses again. The joint step lets each frame's translation go free, so the poses
+//    that were solved before do not fit the new joints, and the step after it takes poses as given.
+// 3. Weights, then rest mesh, both from one set of sums with the poses held. Weights come first:
+//    with the wrong bones a rest position would move to hide the error.
+//
+// Every step also pulls its unknowns towards the *first* rig, not to that of the last round. So
+// pulls do not add up to a drift, and what the motion does not show stays where it was, however
+// many rounds there are. Five rounds are enough: more lower the error of the fit but not that of
+// unseen frames (docs/method/fit.md#what-was-tried).
+//
+// Frames are worked on in parallel, each writes only its own entries, and sums over frames are
+// taken afterwards in the order of frames, so that the number of threads does not show in the
+// result.
+
 #include "pleat/fitting/rig_refinement.h"
 
 #include <algorithm>
@@ -28,7 +61,7 @@ class RigRefiner {
       const Eigen::Vector3d center = sequence.frame(t).cast<double>().rowwise().mean();
       frames_.push_back(t);
       centers_.push_back(center);
-      poses_.push_back(ToChainPose(rig.skeleton, track.poses[t], center));
+      poses_.push_back(ToChainPose(rig.skeleton, track.pose(t), center));
     }
     moments_.resize(frames_.size());
     energies_.resize(frames_.size());
@@ -67,7 +100,7 @@ class RigRefiner {
     return progress.Report(1);
   }
 
-  // After a change of weights or rest mesh.
+  // Call this after a change of weights or rest mesh.
   absl::Status UpdateMoments(const Progress& progress) {
     rig_moments_ = ComputeRigMoments(rig_);
     return ForFrames(progress, [&](int f) {
@@ -146,7 +179,7 @@ class RigRefiner {
   const Rig& first_;
   const RigRefinementOptions& options_;
   Rig rig_;  // as refined so far
-  // Per frame that is used.
+  // The frames that are used and what belongs to each of them, in that order.
   std::vector<int> frames_;
   std::vector<Eigen::Vector3d> centers_;
   std::vector<ChainPose> poses_;
@@ -168,13 +201,7 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
                                                    track.num_frames(), " frames, the sequence ",
                                                    sequence.num_frames()));
   }
-  for (const Pose& pose : track.poses) {
-    if (static_cast<int>(pose.rotations.size()) != rig.skeleton.num_joints()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("rig refinement: a pose has ", pose.rotations.size(),
-                       " rotations, the skeleton ", rig.skeleton.num_joints(), " joints"));
-    }
-  }
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, rig.skeleton.num_joints()));
   for (const int j : options.locked_joints) {
     if (j < 0 || j >= rig.skeleton.num_joints()) {
       return absl::InvalidArgumentError(absl::StrCat("rig refinement: locked joint ", j, " of ",

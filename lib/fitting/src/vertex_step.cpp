@@ -16,9 +16,9 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr int kVerticesPerItem = 128;  // of the parallel loops: enough for a matrix product
+constexpr int kVerticesPerItem = 128;  // grain of the parallel loops
 
-// T_b of all bones of one frame, transposed: 4J x 3.
+// Returns T_b of all bones of one frame, transposed: 4J x 3.
 MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vector3d& center) {
   const int num_joints = skeleton.num_joints();
   MatrixXd bones = MatrixXd::Zero(4 * num_joints, 3);
@@ -36,20 +36,8 @@ MatrixXd BoneMatrices(const Skeleton& skeleton, const ChainPose& pose, const Vec
   return bones;
 }
 
-// Runs body(v) for every vertex, in parallel pieces that end early when cancelled.
-template <typename Body>
-absl::Status ForVertices(int num_vertices, int num_threads, const Progress& progress,
-                         const Body& body) {
-  const int num_items = (num_vertices + kVerticesPerItem - 1) / kVerticesPerItem;
-  ParallelFor(num_items, num_threads, [&](int item) {
-    if (progress.cancelled()) return;
-    const int end = std::min(num_vertices, (item + 1) * kVerticesPerItem);
-    for (int v = item * kVerticesPerItem; v < end; ++v) body(v);
-  });
-  return progress.Report(1);
-}
-
-// Bones that a vertex may take, ascending.
+// The bones that a vertex may take, ascending. Further ones are dropped when it is full, so bones
+// are added by falling likelihood.
 class Candidates {
  public:
   void Add(int bone) {
@@ -73,6 +61,9 @@ void AddSupport(const VertexInfluences& influences, Candidates* candidates) {
   }
 }
 
+// The order of adding matters where there are more than 16: own bones, then those of neighbors,
+// then those next to the own ones in the skeleton. Ascending order afterwards makes the solution
+// independent of the order of the neighbors.
 Candidates FindCandidates(const Skeleton& skeleton, const std::vector<VertexInfluences>& current,
                           std::span<const int32_t> neighbors, int v) {
   Candidates candidates;
@@ -89,7 +80,7 @@ Candidates FindCandidates(const Skeleton& skeleton, const std::vector<VertexInfl
   return candidates;
 }
 
-// Adds scale * the weights of the candidates among `influences`.
+// Adds scale * the weights of those bones of `influences` that are among the candidates.
 void AddWeights(const VertexInfluences& influences, const Candidates& candidates, double scale,
                 SimplexQpVector* sum) {
   for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
@@ -115,12 +106,13 @@ VertexInfluences ToInfluences(const Candidates& candidates, const SimplexQpVecto
   return influences;
 }
 
-// Mean squared distance of the rest mesh from its center, square meters: the unit of the pulls.
+// Returns the mean squared distance of the rest mesh from its center, in square meters: the unit of
+// the pulls.
 double SquaredSize(const Rig& rig, const Vector3d& center) {
   return (rig.rest_positions.colwise() - center).colwise().squaredNorm().mean();
 }
 
-// The weights of vertex v, from `current` weights of its neighbors.
+// Solves the weights of vertex v, with the `current` weights of its neighbors held.
 VertexInfluences SolveVertexWeights(const VertexMoments& moments, const Rig& rig,
                                     const VertexInfluences& first,
                                     const std::vector<VertexInfluences>& current,
@@ -199,15 +191,17 @@ absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Ri
                                           const Progress& progress) {
   const double unit = moments.num_frames * SquaredSize(rig, moments.rest_center);
   std::vector<VertexInfluences> current = rig.weights.influences();
+  // Each sweep reads the weights of the sweep before and writes new ones (Jacobi, not
+  // Gauss-Seidel), so neither the order of vertices nor the number of threads shows.
   std::vector<VertexInfluences> next(current.size());
   for (int sweep = 0; sweep < options.num_sweeps; ++sweep) {
     const double count = options.num_sweeps;
     PLEAT_RETURN_IF_ERROR(
-        ForVertices(rig.weights.num_vertices(), options.num_threads,
-                    progress.Stage("refine", sweep / count, (sweep + 1) / count), [&](int v) {
-                      next[v] = SolveVertexWeights(moments, rig, first.vertex(v), current,
-                                                   adjacency.neighbors(v), options, unit, v);
-                    }));
+        ParallelForPieces(rig.weights.num_vertices(), kVerticesPerItem, options.num_threads,
+                          progress.Stage("refine", sweep / count, (sweep + 1) / count), [&](int v) {
+                            next[v] = SolveVertexWeights(moments, rig, first.vertex(v), current,
+                                                         adjacency.neighbors(v), options, unit, v);
+                          }));
     current.swap(next);
   }
   return SkinWeights::Create(rig.skeleton.num_joints(), std::move(current));
@@ -221,10 +215,10 @@ absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moment
   Eigen::Matrix3Xd current = rig.rest_positions, next(3, current.cols());
   for (int sweep = 0; sweep < options.num_sweeps; ++sweep) {
     const double count = options.num_sweeps;
-    PLEAT_RETURN_IF_ERROR(ForVertices(
-        rig.weights.num_vertices(), options.num_threads,
+    PLEAT_RETURN_IF_ERROR(ParallelForPieces(
+        rig.weights.num_vertices(), kVerticesPerItem, options.num_threads,
         progress.Stage("refine", sweep / count, (sweep + 1) / count), [&](int v) {
-          // v_it = L_t u + l_t with [L_t l_t] = sum_b W_ib T_bt.
+          // The skinned vertex is v_it = L_t u + l_t with [L_t l_t] = sum_b W_ib T_bt.
           const VertexInfluences& influences = rig.weights.vertex(v);
           Eigen::Matrix4d blend = Eigen::Matrix4d::Zero();  // sum_t [L l]^T [L l]
           Vector4d target = Vector4d::Zero();               // sum_t [L l]^T y
@@ -237,7 +231,7 @@ absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moment
             }
           }
           const auto neighbors = adjacency.neighbors(v);
-          Vector3d mean = Vector3d::Zero();  // of the neighbors' displacements
+          Vector3d mean = Vector3d::Zero();  // mean displacement of the neighbors
           for (const int32_t n : neighbors) mean += current.col(n) - first.col(n);
           if (!neighbors.empty()) mean /= static_cast<double>(neighbors.size());
           const double prior = moments.num_frames * options.prior;

@@ -1,6 +1,6 @@
-// Steps of rig refinement that work on one vertex at a time while poses and joints are held:
+// The steps of rig refinement that work on one vertex at a time while poses and joints are held:
 // skinning weights (Le and Deng, "Smooth skinning decomposition with rigid bones", SIGGRAPH Asia
-// 2012, section 4.1, with a smoothness term) and rest positions.
+// 2012, section 4.1, with a smoothness term) and rest positions (docs/method/fit.md#rest-mesh).
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +24,8 @@ struct VertexMoments {
   Eigen::MatrixXd cross;  // 4J x V, block b of column i = sum_t T_bt^T y_it
 };
 
-// `frames` (F) are indices into `sequence`, `poses` and `centers` belong to them in order. The only
-// loop over frames and vertices.
+// Computes the sums over frames, the only loop over frames and vertices. `frames` (F) are indices
+// into `sequence`; `poses` and `centers` belong to them in order. Only kCancelled is an error.
 absl::StatusOr<VertexMoments> ComputeVertexMoments(const MeshSequence& sequence,
                                                    const std::vector<int>& frames,
                                                    const std::vector<ChainPose>& poses,
@@ -34,15 +34,16 @@ absl::StatusOr<VertexMoments> ComputeVertexMoments(const MeshSequence& sequence,
                                                    const Progress& progress);
 
 struct WeightStepOptions {
-  // Both are in units of the squared size of the body (mean squared distance from the center):
+  // Both pulls are in units of the squared size of the body (mean squared distance from the
+  // center):
   double smoothness = 0;  // pull of a vertex's weights to the mean of its neighbors' weights
   double prior = 0;       // pull to the first weights
   int num_sweeps = 3;     // over all vertices, each from the neighbors' weights of the one before
   int num_threads = 0;
 };
 
-// The weights of every vertex: at most kMaxInfluences bones, non-negative, sum 1. A vertex may take
-// bones of its own, of its neighbors, and bones next to its own in the skeleton.
+// Returns the weights of every vertex: at most kMaxInfluences bones, non-negative, sum 1. A vertex
+// may take bones of its own, of its neighbors, and bones next to its own in the skeleton.
 absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Rig& rig,
                                           const SkinWeights& first,
                                           const VertexAdjacency& adjacency,
@@ -56,7 +57,7 @@ struct RestStepOptions {
   int num_threads = 0;
 };
 
-// The rest position (3 x V, meters) of every vertex.
+// Returns the rest position (3 x V, meters) of every vertex.
 absl::StatusOr<Eigen::Matrix3Xd> RefineRestPositions(const VertexMoments& moments, const Rig& rig,
                                                      const Eigen::Matrix3Xd& first,
                                                      const VertexAdjacency& adjacency,

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "array_io.h"
 #include "pleat/base/status.h"
+#include "pleat/math/array_io.h"
 
 namespace pleat {
 namespace {

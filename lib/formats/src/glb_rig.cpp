@@ -61,7 +61,7 @@ absl::StatusOr<Eigen::Matrix4d> LocalTransform(const json& node) {
 
 class SkinReader {
  public:
-  SkinReader(const GlbContainer& glb, const RigFileLimits& limits) : glb_(glb), limits_(limits) {}
+  SkinReader(const GlbContainer& glb, const MeshLimits& limits) : glb_(glb), limits_(limits) {}
 
   absl::StatusOr<RigFile> Read() {
     PLEAT_RETURN_IF_ERROR(ReadNodes());
@@ -257,7 +257,7 @@ class SkinReader {
   }
 
   const GlbContainer& glb_;
-  const RigFileLimits& limits_;
+  const MeshLimits& limits_;
   std::vector<int> parents_;      // per node, -1 = none
   std::vector<int> joint_nodes_;  // per joint of the skin
   std::vector<Eigen::Matrix4d> inverse_binds_;
@@ -268,10 +268,10 @@ class SkinReader {
 
 }  // namespace
 
-absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const RigFileLimits& limits) {
-  if (bytes.size() > limits.max_bytes) {
+absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits) {
+  if (bytes.size() > limits.max_document_bytes) {
     return absl::ResourceExhaustedError(
-        absl::StrCat("GLB: ", bytes.size(), " bytes; the limit is ", limits.max_bytes));
+        absl::StrCat("GLB: ", bytes.size(), " bytes; the limit is ", limits.max_document_bytes));
   }
   PLEAT_ASSIGN_OR_RETURN(const GlbContainer glb, GlbContainer::Open(bytes));
   return SkinReader(glb, limits).Read();

@@ -4,23 +4,23 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "array_io.h"
 #include "detail_section.h"
 #include "model_sections.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
+#include "pleat/base/sealed_file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
 #include "pleat/character/train_options.h"
-#include "sealed_file.h"
+#include "pleat/math/array_io.h"
 
 namespace pleat {
 namespace {
 
-constexpr SealedFileKind kKind = {"PLEATMDL", 3, 1, "model file"};
+constexpr FileKind kKind = {"PLEATMDL", 3, 1, "model file"};
 constexpr uint32_t kNumSections = 10;
 constexpr uint64_t kTableEntryBytes = 24;
-constexpr uint64_t kFirstSectionOffset = kSealedHeaderBytes + 4 + kNumSections * kTableEntryBytes;
+constexpr uint64_t kFirstSectionOffset = kFileKindBytes + 4 + kNumSections * kTableEntryBytes;
 
 // A section's type is its place here, from 1.
 constexpr std::array<const char*, kNumSections> kSectionNames = {
@@ -49,7 +49,7 @@ using Sections = std::array<std::string_view, kNumSections>;
 
 // Checks the table and cuts the file into its sections.
 absl::StatusOr<Sections> CutSections(std::string_view content) {
-  ByteReader reader(content.substr(kSealedHeaderBytes));
+  ByteReader reader(content.substr(kFileKindBytes));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_sections, reader.Read<uint32_t>("section count"));
   if (num_sections != kNumSections) {
     return absl::InvalidArgumentError(
@@ -86,9 +86,7 @@ absl::Status ReadSection(const Sections& sections, size_t index, Read&& read) {
   if (status.ok() && reader.remaining() != 0) {
     status = absl::DataLossError(absl::StrCat(reader.remaining(), " bytes too many"));
   }
-  if (status.ok()) return status;
-  return absl::Status(status.code(),
-                      absl::StrCat("section '", kSectionNames[index], "': ", status.message()));
+  return WithContext(absl::StrCat("section '", kSectionNames[index], "'"), std::move(status));
 }
 
 // Moves a StatusOr's value into `target`.
@@ -110,7 +108,7 @@ absl::Status CheckUnfoldedSize(const CharacterModel::Parts& parts, uint64_t num_
                    num_components, " components is over the limit of ", max_bytes, " bytes"));
 }
 
-absl::Status ReadMeshSections(const Sections& sections, const MeshFileLimits& limits,
+absl::Status ReadMeshSections(const Sections& sections, const MeshLimits& limits,
                               CharacterModel::Parts* parts) {
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 0, [&](ByteReader* reader) {
     return ReadInfo(reader, &parts->name, &parts->frame_rate);
@@ -130,7 +128,7 @@ absl::Status ReadMeshSections(const Sections& sections, const MeshFileLimits& li
 }
 
 absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
-                                 const ModelFileLimits& limits, CharacterModel::Parts* parts) {
+                                 const MeshLimits& limits, CharacterModel::Parts* parts) {
   const std::string_view options = sections[5];
   PLEAT_ASSIGN_OR_RETURN(parts->options,
                          ParseTrainOptions(absl::string_view(options.data(), options.size())));
@@ -160,7 +158,7 @@ absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
 std::string EncodeModel(const CharacterModel& model) {
   const std::array<std::string, kNumSections> sections = EncodeSections(model.parts());
   ByteWriter writer;
-  BeginSealedFile(kKind, &writer);
+  WriteFileKind(kKind, &writer);
   writer.Write(kNumSections);
   uint64_t offset = kFirstSectionOffset;
   for (uint32_t i = 0; i < kNumSections; ++i) {
@@ -175,25 +173,19 @@ std::string EncodeModel(const CharacterModel& model) {
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> DecodeModel(std::string_view bytes,
-                                                                  const ModelFileLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string_view content, OpenSealedFile(kKind, bytes));
-  PLEAT_ASSIGN_OR_RETURN(const Sections sections, CutSections(content));
+                                                                  const MeshLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const SealedFile file, OpenSealedFile(kKind, bytes));
+  PLEAT_ASSIGN_OR_RETURN(const Sections sections, CutSections(file.bytes));
   CharacterModel::Parts parts;
-  PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, limits.mesh, &parts));
-  PLEAT_RETURN_IF_ERROR(ReadLearnedSections(sections, SealedFileVersion(content), limits, &parts));
+  PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, limits, &parts));
+  PLEAT_RETURN_IF_ERROR(ReadLearnedSections(sections, file.version, limits, &parts));
   return CharacterModel::Create(std::move(parts));
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> ReadModelFile(const std::string& path,
-                                                                    const ModelFileLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.mesh.max_file_bytes));
-  absl::StatusOr<std::shared_ptr<const CharacterModel>> model = DecodeModel(bytes, limits);
-  if (model.ok()) return model;
-  return absl::Status(model.status().code(), absl::StrCat(path, ": ", model.status().message()));
-}
-
-absl::Status WriteModelFile(const std::string& path, const CharacterModel& model) {
-  return WriteFile(path, EncodeModel(model));
+                                                                    const MeshLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_file_bytes));
+  return WithContext(path, DecodeModel(bytes, limits));
 }
 
 std::string ModelId(std::string_view bytes) { return ToHex(ComputeSha256(bytes)); }

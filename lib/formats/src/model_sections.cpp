@@ -8,19 +8,15 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "array_io.h"
 #include "pleat/base/status.h"
+#include "pleat/math/array_io.h"
+#include "pleat/mesh/mesh_sections.h"
 
 namespace pleat {
 namespace {
 
-constexpr size_t kMaxNameBytes = 4096, kMaxJointNameBytes = 256;
+constexpr size_t kMaxJointNameBytes = 256;
 constexpr uint32_t kMaxJoints = 65'535, kMaxWarnings = 10'000;
-constexpr uint32_t kHasCornerTexcoords = 1, kHasFaceMaterials = 2;
-
-std::string_view Clip(const std::string& text, size_t max_bytes = kMaxNameBytes) {
-  return std::string_view(text).substr(0, max_bytes);
-}
 
 // Reads `N` counts at once.
 template <size_t N>
@@ -50,20 +46,15 @@ absl::Status ReadError(ByteReader* reader, ErrorSummary* error) {
 }  // namespace
 
 void WriteInfo(const CharacterModel::Parts& parts, ByteWriter* writer) {
-  writer->WriteString(Clip(parts.name));
+  WriteName(parts.name, writer);
   writer->Write(static_cast<uint32_t>(parts.frame_rate.numerator));
   writer->Write(static_cast<uint32_t>(parts.frame_rate.denominator));
 }
 
 absl::Status ReadInfo(ByteReader* reader, std::string* name, FrameRate* frame_rate) {
-  PLEAT_ASSIGN_OR_RETURN(*name, reader->ReadString(kMaxNameBytes, "name"));
+  PLEAT_ASSIGN_OR_RETURN(*name, ReadName(reader, "name"));
   PLEAT_ASSIGN_OR_RETURN(const auto rate, ReadCounts<2>(reader, "frame rate"));
-  constexpr uint32_t kMaxRate = 0x7fffffff;
-  if (rate[0] == 0 || rate[1] == 0 || rate[0] > kMaxRate || rate[1] > kMaxRate) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("frame rate ", rate[0], "/", rate[1], " is out of range"));
-  }
-  *frame_rate = {static_cast<int32_t>(rate[0]), static_cast<int32_t>(rate[1])};
+  PLEAT_ASSIGN_OR_RETURN(*frame_rate, MakeFrameRate(rate[0], rate[1]));
   return absl::OkStatus();
 }
 
@@ -71,70 +62,33 @@ void WriteTopology(const Topology& topology, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(topology.num_vertices()));
   writer->Write(static_cast<uint32_t>(topology.num_faces()));
   writer->Write(static_cast<uint32_t>(topology.num_corners()));
-  for (int f = 0; f < topology.num_faces(); ++f) {
-    writer->Write(static_cast<int32_t>(topology.face(f).size()));
-  }
-  writer->WriteArray(std::span(topology.corner_vertices()));
+  WriteFaces(topology, writer);
 }
 
-absl::StatusOr<Topology> ReadTopology(ByteReader* reader, const MeshFileLimits& limits) {
+absl::StatusOr<Topology> ReadTopology(ByteReader* reader, const MeshLimits& limits) {
   PLEAT_ASSIGN_OR_RETURN(const auto counts, ReadCounts<3>(reader, "mesh sizes"));
   const auto [num_vertices, num_faces, num_corners] = counts;
-  if (num_vertices > limits.max_vertices || num_faces > limits.max_faces) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(num_vertices, " vertices and ", num_faces, " faces are over the limit of ",
-                     limits.max_vertices, " vertices, ", limits.max_faces, " faces"));
-  }
-  std::vector<int32_t> face_sizes, corner_vertices;
-  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_faces, "face sizes", &face_sizes));
-  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_corners, "corner vertices", &corner_vertices));
-  return Topology::Create(static_cast<int>(num_vertices), std::move(corner_vertices),
-                          std::move(face_sizes));
+  PLEAT_RETURN_IF_ERROR(
+      CheckCounts({.num_vertices = num_vertices, .num_faces = num_faces}, limits));
+  return ReadFaces(reader, num_vertices, num_faces, num_corners);
 }
 
 void WriteAppearance(const MeshAppearance& appearance, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(appearance.texcoords.size()));
   writer->Write(static_cast<uint32_t>(appearance.material_names.size()));
-  writer->Write((appearance.corner_texcoords.empty() ? 0 : kHasCornerTexcoords) |
-                (appearance.face_materials.empty() ? 0 : kHasFaceMaterials));
-  writer->WriteString(Clip(appearance.material_library));
-  for (const std::string& name : appearance.material_names) writer->WriteString(Clip(name));
-  for (const Eigen::Vector2f& texcoord : appearance.texcoords) WriteMatrix(texcoord, writer);
-  writer->WriteArray(std::span(appearance.corner_texcoords));
-  writer->WriteArray(std::span(appearance.face_materials));
+  writer->Write(AppearanceFlags(appearance));
+  WriteMaterialNames(appearance, writer);
+  WriteAppearanceLists(appearance, writer);
 }
 
 absl::StatusOr<MeshAppearance> ReadAppearance(ByteReader* reader, const Topology& topology) {
   PLEAT_ASSIGN_OR_RETURN(const auto counts, ReadCounts<3>(reader, "appearance sizes"));
   const auto [num_texcoords, num_materials, flags] = counts;
-  // A flag for an empty list would give one model two forms, and two ids.
-  const uint32_t known_flags = (topology.num_corners() > 0 ? kHasCornerTexcoords : 0) |
-                               (topology.num_faces() > 0 ? kHasFaceMaterials : 0);
-  if ((flags & ~known_flags) != 0) {
-    return absl::InvalidArgumentError(absl::StrCat("unknown appearance flags ", flags));
-  }
+  PLEAT_RETURN_IF_ERROR(CheckAppearanceFlags(flags, static_cast<uint32_t>(topology.num_corners()),
+                                             static_cast<uint32_t>(topology.num_faces())));
   MeshAppearance appearance;
-  PLEAT_ASSIGN_OR_RETURN(appearance.material_library,
-                         reader->ReadString(kMaxNameBytes, "material library"));
-  PLEAT_RETURN_IF_ERROR(reader->Require(num_materials, 4, "material names"));
-  for (uint32_t m = 0; m < num_materials; ++m) {
-    PLEAT_ASSIGN_OR_RETURN(std::string name, reader->ReadString(kMaxNameBytes, "material name"));
-    appearance.material_names.push_back(std::move(name));
-  }
-  std::vector<float> coordinates;
-  PLEAT_RETURN_IF_ERROR(
-      ReadVector(reader, uint64_t{2} * num_texcoords, "texture coordinates", &coordinates));
-  for (size_t i = 0; i < coordinates.size(); i += 2) {
-    appearance.texcoords.emplace_back(coordinates[i], coordinates[i + 1]);
-  }
-  if (flags & kHasCornerTexcoords) {
-    PLEAT_RETURN_IF_ERROR(ReadVector(reader, static_cast<uint64_t>(topology.num_corners()),
-                                     "corner texture coordinates", &appearance.corner_texcoords));
-  }
-  if (flags & kHasFaceMaterials) {
-    PLEAT_RETURN_IF_ERROR(ReadVector(reader, static_cast<uint64_t>(topology.num_faces()),
-                                     "face materials", &appearance.face_materials));
-  }
+  PLEAT_RETURN_IF_ERROR(ReadMaterialNames(reader, num_materials, &appearance));
+  PLEAT_RETURN_IF_ERROR(ReadAppearanceLists(reader, num_texcoords, flags, topology, &appearance));
   PLEAT_RETURN_IF_ERROR(CheckAppearance(appearance, topology));
   return appearance;
 }
@@ -142,7 +96,7 @@ absl::StatusOr<MeshAppearance> ReadAppearance(ByteReader* reader, const Topology
 void WriteSkeleton(const Skeleton& skeleton, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(skeleton.num_joints()));
   for (const Joint& joint : skeleton.joints()) {
-    writer->WriteString(Clip(joint.name, kMaxJointNameBytes));
+    writer->WriteString(std::string_view(joint.name).substr(0, kMaxJointNameBytes));
     writer->Write(static_cast<int32_t>(joint.parent));
     WriteMatrix(joint.rest_position, writer);
   }
@@ -240,7 +194,7 @@ absl::Status ReadControl(ByteReader* reader, int num_vertices, std::vector<int>*
 }
 
 void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
-  writer->WriteString(Clip(record.learner));
+  WriteName(record.learner, writer);
   writer->Write(static_cast<int32_t>(record.num_frames));
   writer->Write(static_cast<int32_t>(record.rest_frame));
   writer->Write(record.yaw_degrees);
@@ -252,7 +206,7 @@ void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
   }
   const size_t num_warnings = std::min<size_t>(record.warnings.size(), kMaxWarnings);
   writer->Write(static_cast<uint32_t>(num_warnings));
-  for (size_t i = 0; i < num_warnings; ++i) writer->WriteString(Clip(record.warnings[i]));
+  for (size_t i = 0; i < num_warnings; ++i) WriteName(record.warnings[i], writer);
   writer->Write(static_cast<uint32_t>(record.worst_frames.size()));
   for (const FrameError& error : record.worst_frames) {
     writer->Write(static_cast<int32_t>(error.clip));
@@ -267,7 +221,7 @@ void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
   writer->Write(static_cast<int32_t>(record.validation.num_held_out_frames));
   writer->Write(static_cast<uint32_t>(record.validation.mean_percent.size()));
   for (const auto& [learner, percent] : record.validation.mean_percent) {
-    writer->WriteString(Clip(learner));
+    WriteName(learner, writer);
     writer->Write(percent);
   }
 }
@@ -301,8 +255,7 @@ absl::Status ReadValidation(ByteReader* reader, LearnerValidation* validation) {
                          reader->Read<int32_t>("held-out frame count"));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>("learner count"));
   for (uint32_t i = 0; i < count; ++i) {
-    PLEAT_ASSIGN_OR_RETURN(const std::string learner,
-                           reader->ReadString(kMaxNameBytes, "validated learner"));
+    PLEAT_ASSIGN_OR_RETURN(const std::string learner, ReadName(reader, "validated learner"));
     PLEAT_ASSIGN_OR_RETURN(validation->mean_percent[learner],
                            reader->Read<double>("validation error"));
   }
@@ -313,7 +266,7 @@ absl::Status ReadValidation(ByteReader* reader, LearnerValidation* validation) {
 
 absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
   TrainingRecord record;
-  PLEAT_ASSIGN_OR_RETURN(record.learner, reader->ReadString(kMaxNameBytes, "learner"));
+  PLEAT_ASSIGN_OR_RETURN(record.learner, ReadName(reader, "learner"));
   PLEAT_ASSIGN_OR_RETURN(record.num_frames, reader->Read<int32_t>("frame count"));
   PLEAT_ASSIGN_OR_RETURN(record.rest_frame, reader->Read<int32_t>("rest frame"));
   PLEAT_ASSIGN_OR_RETURN(record.yaw_degrees, reader->Read<double>("facing"));
@@ -327,7 +280,7 @@ absl::StatusOr<TrainingRecord> ReadRecord(ByteReader* reader) {
         absl::StrCat(num_warnings, " warnings, the limit is ", kMaxWarnings));
   }
   for (uint32_t i = 0; i < num_warnings; ++i) {
-    PLEAT_ASSIGN_OR_RETURN(std::string warning, reader->ReadString(kMaxNameBytes, "warning"));
+    PLEAT_ASSIGN_OR_RETURN(std::string warning, ReadName(reader, "warning"));
     record.warnings.push_back(std::move(warning));
   }
   if (reader->remaining() > 0) PLEAT_RETURN_IF_ERROR(ReadFitReport(reader, &record));

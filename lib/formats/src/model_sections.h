@@ -14,7 +14,7 @@ void WriteInfo(const CharacterModel::Parts& parts, ByteWriter* writer);
 absl::Status ReadInfo(ByteReader* reader, std::string* name, FrameRate* frame_rate);
 
 void WriteTopology(const Topology& topology, ByteWriter* writer);
-absl::StatusOr<Topology> ReadTopology(ByteReader* reader, const MeshFileLimits& limits);
+absl::StatusOr<Topology> ReadTopology(ByteReader* reader, const MeshLimits& limits);
 
 void WriteAppearance(const MeshAppearance& appearance, ByteWriter* writer);
 absl::StatusOr<MeshAppearance> ReadAppearance(ByteReader* reader, const Topology& topology);

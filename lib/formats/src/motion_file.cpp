@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -54,7 +55,7 @@ absl::Status ReadNumbers(const json& value, const std::string& where, std::span<
 
 class MotionParser {
  public:
-  MotionParser(const json& root, const Skeleton& skeleton, const MotionLimits& limits)
+  MotionParser(const json& root, const Skeleton& skeleton, const MeshLimits& limits)
       : root_(root), skeleton_(skeleton), limits_(limits) {}
 
   absl::StatusOr<Motion> Parse() {
@@ -70,6 +71,7 @@ class MotionParser {
     PLEAT_RETURN_IF_ERROR(ParseBoneScales());
     PLEAT_RETURN_IF_ERROR(ParseClipStarts());
     Warn();
+    PLEAT_ASSIGN_OR_RETURN(motion_.track, PoseTrack::Create(std::move(track_)));
     return std::move(motion_);
   }
 
@@ -85,7 +87,7 @@ class MotionParser {
       return Fault(absl::StrCat("field 'fps' must be a number above 0 and at most ", kMaxFps,
                                 fps == root_.end() ? "; it is missing" : ""));
     }
-    motion_.track.fps = value;
+    track_.fps = value;
     return absl::OkStatus();
   }
 
@@ -129,7 +131,7 @@ class MotionParser {
       return Fault(absl::StrCat("'rotations' must have one entry for each of the ", list.size(),
                                 " frames of 'root_translation'"));
     }
-    motion_.track.poses.reserve(list.size());
+    track_.poses.reserve(list.size());
     for (size_t t = 0; t < list.size(); ++t) {
       if (has_columns) {
         PLEAT_RETURN_IF_ERROR(ParsePose(t, list[t], (*rotations)[t]));
@@ -166,7 +168,7 @@ class MotionParser {
       pose.rotations[columns_[i]] =
           Eigen::Quaterniond(wxyz[0] / norm, wxyz[1] / norm, wxyz[2] / norm, wxyz[3] / norm);
     }
-    motion_.track.poses.push_back(std::move(pose));
+    track_.poses.push_back(std::move(pose));
     return absl::OkStatus();
   }
 
@@ -189,18 +191,15 @@ class MotionParser {
   absl::Status ParseClipStarts() {
     const auto starts = root_.find("clip_starts");
     if (starts == root_.end()) return absl::OkStatus();
-    std::vector<int> clip_starts;
-    int64_t previous = -1;
+    track_.clip_starts.clear();
     for (const json& value : starts->is_array() ? *starts : json::array()) {
       const int64_t start = value.is_number_integer() ? value.get<int64_t>() : -1;
-      if (start <= previous || start >= motion_.track.num_frames()) break;
-      clip_starts.push_back(static_cast<int>(start));
-      previous = start;
+      if (start < 0 || start > std::numeric_limits<int>::max()) break;
+      track_.clip_starts.push_back(static_cast<int>(start));
     }
-    if (clip_starts.empty() || clip_starts[0] != 0 || clip_starts.size() != starts->size()) {
+    if (!starts->is_array() || track_.clip_starts.size() != starts->size()) {
       return Fault("field 'clip_starts' must list ascending frame numbers of the motion from 0");
     }
-    motion_.track.clip_starts = std::move(clip_starts);
     return absl::OkStatus();
   }
 
@@ -226,21 +225,22 @@ class MotionParser {
 
   const json& root_;
   const Skeleton& skeleton_;
-  const MotionLimits& limits_;
+  const MeshLimits& limits_;
   std::vector<int> columns_;          // skeleton joint of every rotation in a frame
   std::vector<std::string> resting_;  // joints that the file does not name
   int64_t num_rescaled_ = 0;
+  PoseTrack::Parts track_;
   Motion motion_;
 };
 
 }  // namespace
 
 absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skeleton,
-                                    const MotionLimits& limits) {
+                                    const MeshLimits& limits) {
   if (text.empty()) return Fault("the motion file is empty");
-  if (text.size() > limits.max_bytes) {
-    return absl::ResourceExhaustedError(absl::StrCat("the motion file has ", text.size(),
-                                                     " bytes, the limit is ", limits.max_bytes));
+  if (text.size() > limits.max_document_bytes) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        "the motion file has ", text.size(), " bytes, the limit is ", limits.max_document_bytes));
   }
   json root;
   try {  // the parser says line and column only through its exception
@@ -252,22 +252,20 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
 }
 
 absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
-                                  const MotionLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, limits.max_bytes));
-  absl::StatusOr<Motion> motion = DecodeMotion(text, skeleton, limits);
-  if (motion.ok()) return motion;
-  return absl::Status(motion.status().code(), absl::StrCat(path, ": ", motion.status().message()));
+                                  const MeshLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, limits.max_document_bytes));
+  return WithContext(path, DecodeMotion(text, skeleton, limits));
 }
 
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales) {
+  assert(CheckJointCount(track, skeleton.num_joints()).ok());
   nlohmann::ordered_json root;
   root["schema"] = kSchema;
-  root["fps"] = track.fps;
+  root["fps"] = track.fps();
   for (const Joint& joint : skeleton.joints()) root["joints"].push_back(joint.name);
   root["frames"] = nlohmann::ordered_json::array();
-  for (const Pose& pose : track.poses) {
-    assert(static_cast<int>(pose.rotations.size()) == skeleton.num_joints());
+  for (const Pose& pose : track.poses()) {
     nlohmann::ordered_json frame;
     const Eigen::Vector3d& root_position = pose.root_position;
     frame["root_translation"] = {root_position.x(), root_position.y(), root_position.z()};
@@ -279,7 +277,7 @@ std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
   for (size_t j = 0; j < bone_scales.size(); ++j) {
     root["bone_scales"][skeleton.joint(static_cast<int>(j)).name] = bone_scales[j];
   }
-  if (track.clip_starts.size() > 1) root["clip_starts"] = track.clip_starts;
+  if (track.clip_starts().size() > 1) root["clip_starts"] = track.clip_starts();
   return root.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

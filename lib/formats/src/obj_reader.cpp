@@ -20,7 +20,7 @@ bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' ||
 // Reads one file front to back. A line may go on after a backslash; `line_` is its first number.
 class ObjParser {
  public:
-  ObjParser(std::string_view text, const std::string& file, const MeshFileLimits& limits)
+  ObjParser(std::string_view text, const std::string& file, const MeshLimits& limits)
       : next_(text.data()), text_end_(text.data() + text.size()), file_(file), limits_(limits) {}
 
   absl::StatusOr<MeshFile> Parse() {
@@ -250,7 +250,7 @@ class ObjParser {
   int32_t line_ = 0;
   int32_t continued_lines_ = 0;
   const std::string& file_;
-  const MeshFileLimits& limits_;
+  const MeshLimits& limits_;
 
   MeshFile mesh_;
   std::vector<float> coordinates_;
@@ -262,12 +262,12 @@ class ObjParser {
 }  // namespace
 
 absl::StatusOr<MeshFile> DecodeObj(std::string_view text, const std::string& file,
-                                   const MeshFileLimits& limits) {
+                                   const MeshLimits& limits) {
   if (text.empty()) return absl::InvalidArgumentError(absl::StrCat(file, ": the file is empty"));
   return ObjParser(text, file, limits).Parse();
 }
 
-absl::StatusOr<MeshFile> ReadObj(const std::string& path, const MeshFileLimits& limits) {
+absl::StatusOr<MeshFile> ReadObj(const std::string& path, const MeshLimits& limits) {
   PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, limits.max_file_bytes));
   return DecodeObj(text, path, limits);
 }

@@ -3,7 +3,6 @@
 #include <charconv>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 
@@ -85,18 +84,6 @@ absl::Status WriteObj(const std::string& path, const Topology& topology,
                       const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                       const MeshAppearance& appearance) {
   return WriteFile(path, EncodeObj(topology, positions, appearance));
-}
-
-absl::Status WriteObjSequence(const std::string& folder, const MeshSequence& sequence,
-                              const Progress& progress) {
-  const std::string faces = EncodeFaces(sequence.topology(), sequence.appearance());
-  for (int t = 0; t < sequence.num_frames(); ++t) {
-    PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(t) / sequence.num_frames()));
-    PLEAT_RETURN_IF_ERROR(
-        WriteFile(absl::StrFormat("%s/frame_%04d.obj", folder, t),
-                  EncodeVertices(sequence.frame(t), sequence.appearance()) + faces));
-  }
-  return progress.Report(1);
 }
 
 }  // namespace pleat

@@ -41,17 +41,11 @@ absl::StatusOr<Header> ReadHeader(ByteReader* reader) {
   return header;
 }
 
-absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes,
-                        const MeshFileLimits& limits) {
-  const uint64_t frame_bytes = static_cast<uint64_t>(header.num_vertices) * 12;
-  const uint64_t total_bytes = frame_bytes * static_cast<uint64_t>(header.num_frames);
-  if (header.num_vertices > limits.max_vertices || header.num_frames > limits.max_frames ||
-      total_bytes > limits.max_sequence_bytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(header.num_frames, " frames of ", header.num_vertices, " vertices (",
-                     total_bytes, " bytes) are over the limit of ", limits.max_frames, " frames, ",
-                     limits.max_vertices, " vertices, ", limits.max_sequence_bytes, " bytes"));
-  }
+absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes, const MeshLimits& limits) {
+  const MeshCounts counts = {.num_vertices = header.num_vertices, .num_frames = header.num_frames};
+  PLEAT_RETURN_IF_ERROR(CheckSequenceCounts(counts, limits));
+  const uint64_t total_bytes = counts.position_bytes();
+  const uint64_t frame_bytes = total_bytes / static_cast<uint64_t>(header.num_frames);
   if (remaining_bytes != total_bytes) {
     return absl::DataLossError(absl::StrCat(
         "the header declares ", header.num_frames, " frames of ", header.num_vertices,
@@ -62,7 +56,7 @@ absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes,
   return absl::OkStatus();
 }
 
-absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshFileLimits& limits) {
+absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshLimits& limits) {
   if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
   ByteReader reader(bytes);
   PLEAT_ASSIGN_OR_RETURN(const Header header, ReadHeader(&reader));
@@ -82,13 +76,11 @@ absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshFileLimits& 
 }  // namespace
 
 absl::StatusOr<PointCache> DecodePointCache(std::string_view bytes, const std::string& file,
-                                            const MeshFileLimits& limits) {
-  absl::StatusOr<PointCache> cache = Decode(bytes, limits);
-  if (cache.ok()) return cache;
-  return absl::Status(cache.status().code(), absl::StrCat(file, ": ", cache.status().message()));
+                                            const MeshLimits& limits) {
+  return WithContext(file, Decode(bytes, limits));
 }
 
-absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshFileLimits& limits) {
+absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshLimits& limits) {
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_file_bytes));
   return DecodePointCache(bytes, path, limits);
 }

@@ -108,7 +108,7 @@ class PlyBody {
 class PlyParser {
  public:
   PlyParser(std::string_view bytes, const PlyHeader& header, const std::string& file,
-            const MeshFileLimits& limits)
+            const MeshLimits& limits)
       : header_(header), body_(bytes, header), file_(file), limits_(limits) {}
 
   absl::StatusOr<MeshFile> Parse() {
@@ -284,7 +284,7 @@ class PlyParser {
   const PlyHeader& header_;
   PlyBody body_;
   const std::string& file_;
-  const MeshFileLimits& limits_;
+  const MeshLimits& limits_;
   MeshFile mesh_;
   std::vector<int32_t> corner_vertices_, face_sizes_, corner_texcoords_;
   std::vector<Eigen::Vector2f> face_texcoords_;
@@ -293,13 +293,13 @@ class PlyParser {
 }  // namespace
 
 absl::StatusOr<MeshFile> DecodePly(std::string_view bytes, const std::string& file,
-                                   const MeshFileLimits& limits) {
+                                   const MeshLimits& limits) {
   if (bytes.empty()) return absl::InvalidArgumentError(absl::StrCat(file, ": the file is empty"));
   PLEAT_ASSIGN_OR_RETURN(const PlyHeader header, ParsePlyHeader(bytes, file));
   return PlyParser(bytes, header, file, limits).Parse();
 }
 
-absl::StatusOr<MeshFile> ReadPly(const std::string& path, const MeshFileLimits& limits) {
+absl::StatusOr<MeshFile> ReadPly(const std::string& path, const MeshLimits& limits) {
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_file_bytes));
   return DecodePly(bytes, path, limits);
 }

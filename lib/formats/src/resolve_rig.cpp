@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nanoflann.hpp>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -11,28 +10,15 @@
 #include "absl/strings/str_format.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/rig_file.h"
+#include "pleat/geometry/point_index.h"
 #include "pleat/mesh/bounds.h"
 
 namespace pleat {
 namespace {
 
+constexpr int kVerticesPerLeaf = 10;        // of the search tree
 constexpr double kMaxVertexDistance = .01;  // of the diagonal: another mesh, pose or unit
 constexpr double kMaxJointDistance = 1;     // of the diagonal, from the mesh's center
-
-struct PointCloud {
-  const Eigen::Matrix3Xd& points;
-  size_t kdtree_get_point_count() const { return static_cast<size_t>(points.cols()); }
-  double kdtree_get_pt(size_t i, size_t axis) const {
-    return points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i));
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using PointTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
-                                        PointCloud, 3>;
 
 absl::Status CheckJoints(const Skeleton& skeleton, const Eigen::Matrix3Xd& rest, double diagonal) {
   const Eigen::Vector3d center = ComputeBounds(rest).center();
@@ -51,23 +37,18 @@ absl::Status CheckJoints(const Skeleton& skeleton, const Eigen::Matrix3Xd& rest,
 absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigFile& file,
                                                                       const Eigen::Matrix3Xd& rest,
                                                                       double diagonal) {
-  const PointCloud cloud{file.positions};
-  PointTree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  const PointIndex places(file.positions, kVerticesPerLeaf);
   std::vector<std::vector<JointInfluence>> influences(rest.cols());
   for (Eigen::Index v = 0; v < rest.cols(); ++v) {
-    const Eigen::Vector3d point = rest.col(v);
-    size_t nearest = 0;
     double squared_distance = 0;
-    nanoflann::KNNResultSet<double> result(1);
-    result.init(&nearest, &squared_distance);
-    tree.findNeighbors(result, point.data(), nanoflann::SearchParams());
+    const int nearest = places.Nearest(rest.col(v), &squared_distance);
     if (!(std::sqrt(squared_distance) <= kMaxVertexDistance * diagonal)) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "rig: vertex %d of the clip is %.3g m from the nearest vertex of the file: its mesh must "
           "be the clip's frame %d (rest_frame), in meters, Y up",
           v, std::sqrt(squared_distance), file.rest_frame));
     }
-    influences[v] = file.influences[nearest];
+    influences[v] = file.influences[static_cast<size_t>(nearest)];
   }
   return influences;
 }

@@ -29,7 +29,7 @@ absl::Status Fault(const std::string& what) {
 
 class RigParser {
  public:
-  RigParser(const json& root, const RigFileLimits& limits) : root_(root), limits_(limits) {}
+  RigParser(const json& root, const MeshLimits& limits) : root_(root), limits_(limits) {}
 
   absl::StatusOr<RigFile> Parse() {
     if (!root_.is_object()) return Fault("the file is not a JSON object");
@@ -172,7 +172,7 @@ class RigParser {
   }
 
   const json& root_;
-  const RigFileLimits& limits_;
+  const MeshLimits& limits_;
   RigFile file_;
 };
 
@@ -208,10 +208,10 @@ double ShortDecimal(float value) {
 
 }  // namespace
 
-absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const RigFileLimits& limits) {
-  if (text.size() > limits.max_bytes) {
+absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& limits) {
+  if (text.size() > limits.max_document_bytes) {
     return absl::ResourceExhaustedError(
-        absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_bytes));
+        absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_document_bytes));
   }
   if (NestsTooDeep(text)) return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
   const json root = json::parse(text, nullptr, false);
@@ -230,15 +230,10 @@ absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const RigFileLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_bytes));
+absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_document_bytes));
   const bool is_glb = absl::EndsWith(absl::AsciiStrToLower(path), ".glb");
-  absl::StatusOr<RigFile> file =
-      is_glb ? DecodeRigGlb(bytes, limits) : DecodeRigJson(bytes, limits);
-  if (!file.ok()) {
-    return absl::Status(file.status().code(), absl::StrCat(path, ": ", file.status().message()));
-  }
-  return file;
+  return WithContext(path, is_glb ? DecodeRigGlb(bytes, limits) : DecodeRigJson(bytes, limits));
 }
 
 std::string EncodeRig(const UserRig& rig) {

@@ -44,17 +44,11 @@ absl::StatusOr<MeshFile> ReadMesh(const std::string& path, const ReadSequenceOpt
       absl::StrCat("'", path, "' is a Draco file, which is not read here"));
 }
 
-// Same frame, said with the file's name in front.
-absl::Status WithFile(const std::string& path, const absl::Status& status) {
-  return absl::Status(status.code(), absl::StrCat(path, ": ", status.message()));
-}
-
 absl::StatusOr<MeshSequence> CreateSequence(MeshFile mesh, std::vector<Eigen::Matrix3Xf> frames,
                                             MeshSequenceOptions options, const std::string& input) {
   options.appearance = std::move(mesh.appearance);
-  absl::StatusOr<MeshSequence> sequence =
-      MeshSequence::Create(std::move(mesh.topology), std::move(frames), std::move(options));
-  return sequence.ok() ? std::move(sequence) : WithFile(input, sequence.status());
+  return WithContext(
+      input, MeshSequence::Create(std::move(mesh.topology), std::move(frames), std::move(options)));
 }
 
 // The folder's own name, also for "." and "dir/".
@@ -161,7 +155,7 @@ absl::StatusOr<MeshSequence> ReadFrameFiles(std::vector<std::string> paths, cons
         "'", input, "' holds meshes of several kinds (", absl::StrJoin(extensions, ", "),
         "); choose one with a pattern such as \"folder/*.obj\""));
   }
-  if (absl::Status status = SortFrameFiles(&paths); !status.ok()) return WithFile(input, status);
+  PLEAT_RETURN_IF_ERROR(WithContext(input, SortFrameFiles(&paths)));
   return FrameFileReader(paths, options).Read(name, input, progress);
 }
 

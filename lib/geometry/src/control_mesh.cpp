@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "point_index.h"
+#include "pleat/geometry/point_index.h"
 #include "surface_neighbors.h"
 
 namespace pleat {
@@ -26,8 +26,8 @@ Matrix3Xd Columns(const Matrix3Xd& points, const std::vector<int>& columns) {
   return result;
 }
 
-// Component number of every vertex of a face, -1 for vertices without one. Vertices at exactly the
-// same place belong together (seams).
+// Returns the component number of every vertex of a face, -1 for vertices without one. Vertices at
+// exactly the same place belong together (seams).
 std::vector<int> Components(const Topology& topology, const Matrix3Xd& reference, int* count) {
   std::vector<int> parent(topology.num_vertices());
   std::iota(parent.begin(), parent.end(), 0);
@@ -63,7 +63,7 @@ std::vector<int> Components(const Topology& topology, const Matrix3Xd& reference
   return component;
 }
 
-// Vertices that are left when the mesh is simplified to about `target_triangles`.
+// Returns the vertices that are left when the mesh is simplified to about `target_triangles`.
 std::vector<int> Simplify(const Topology& topology, const Eigen::Matrix3Xf& positions,
                           size_t target_triangles) {
   const Eigen::Matrix3Xi& triangles = topology.triangles();
@@ -80,8 +80,9 @@ std::vector<int> Simplify(const Topology& topology, const Eigen::Matrix3Xf& posi
   return vertices;
 }
 
-// The simplification whose vertex count comes closest to `target`: triangles are about twice the
-// vertices, by how much depends on borders and components.
+// Returns the simplification whose vertex count comes closest to `target`. Triangles are about
+// twice the vertices, but by how much exactly depends on borders and components, so a few tries
+// scale the number of triangles by the ratio of the counts.
 std::vector<int> SimplifyToCount(const Topology& topology, const Matrix3Xd& reference, int target) {
   const Eigen::Matrix3Xf positions = reference.cast<float>();
   double triangles =
@@ -113,7 +114,7 @@ void Thin(const Matrix3Xd& reference, const std::vector<char>& is_required, int 
     };
     std::vector<Pair> pairs;
     for (int i = 0; i < count; ++i) {
-      for (const auto& [other, squared] : index.Nearest(reference.col((*kept)[i]), 2)) {
+      for (const auto& [other, squared] : index.NearestFew(reference.col((*kept)[i]), 2)) {
         if (other != i && !is_required[(*kept)[i]]) pairs.push_back({squared, i, other});
       }
     }
@@ -146,10 +147,11 @@ void FillGaps(const Matrix3Xd& reference, int target, std::vector<int>* kept) {
   if (!kept->empty()) {
     const PointIndex index(Columns(reference, *kept));
     for (int v = 0; v < num_vertices; ++v) {
-      squared[v] = index.Nearest(reference.col(v), 1)[0].second;
+      index.Nearest(reference.col(v), &squared[v]);
     }
   }
-  // A vertex at the place of a kept one has distance 0 but may still be needed for the count.
+  // A vertex at the place of a kept one has distance 0 but may still be needed for the count. Kept
+  // ones get -1 and are never queued.
   for (const int v : *kept) squared[v] = -1;
   using Candidate = std::pair<double, int>;  // squared distance when queued, -vertex
   std::priority_queue<Candidate> queue;
@@ -164,7 +166,8 @@ void FillGaps(const Matrix3Xd& reference, int target, std::vector<int>* kept) {
     if (distance != squared[farthest]) continue;  // has come nearer since, is queued again
     kept->push_back(farthest);
     squared[farthest] = -1;
-    // No vertex is farther from the kept ones than this one, so only the ones around it change.
+    // No vertex is farther from the kept ones than this one, so only those within this distance can
+    // come nearer. Before there is any kept vertex all distances are infinite.
     const Eigen::Vector3d added = reference.col(farthest);
     const double radius = std::isfinite(distance) ? std::sqrt(distance) : 1e150;
     for (const auto& [v, around] : all.Within(added, radius)) {
@@ -175,8 +178,8 @@ void FillGaps(const Matrix3Xd& reference, int target, std::vector<int>* kept) {
   }
 }
 
-// One kept vertex of every component is required; components without one get the vertex nearest
-// to their center. Returns the flags.
+// Makes one kept vertex of every component required and returns the flags. Components without one
+// get the vertex nearest to their center.
 std::vector<char> RequireComponents(const Topology& topology, const Matrix3Xd& reference,
                                     std::vector<int>* kept, int* num_components) {
   const std::vector<int> component = Components(topology, reference, num_components);
@@ -257,7 +260,7 @@ absl::StatusOr<std::vector<int>> SelectControlVertices(const Topology& topology,
     return kept;
   }
   // Collapses leave flat places bare, which is where cloth folds later. So half of the vertices are
-  // from simplification, half fill the gaps, and all are centered in their cells: on captured
+  // from simplification, the others fill the gaps, and all are centered in their cells: on captured
   // clothes the interpolation error at 5 % falls by a quarter.
   if (topology.num_triangles() > 0) {
     kept = SimplifyToCount(topology, reference, (target + 1) / 2);

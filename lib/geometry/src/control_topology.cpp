@@ -14,8 +14,9 @@
 namespace pleat {
 namespace {
 
-// Per vertex the number (in control_vertices) of the nearest control vertex, -1 where no path
-// leads.
+// Returns for each vertex the number (in control_vertices) of the nearest control vertex, -1 where
+// no path leads. Dijkstra's algorithm from all control vertices at once; labels are compared with
+// the cell as second key, so that ties do not depend on the order of the queue.
 std::vector<int> VoronoiCells(const Topology& topology, const Eigen::Matrix3Xd& reference,
                               const std::vector<int>& control_vertices) {
   const VertexAdjacency adjacency(topology);
@@ -66,7 +67,7 @@ absl::StatusOr<Topology> ControlTopology(const Topology& topology,
     }
   }
   const std::vector<int> cells = VoronoiCells(topology, reference, control_vertices);
-  std::set<std::array<int, 3>> seen;
+  std::set<std::array<int, 3>> seen;  // three cells may meet in several places
   std::vector<std::array<int, 3>> triangles;
   for (int f = 0; f < topology.num_triangles(); ++f) {
     std::array<int, 3> triangle;

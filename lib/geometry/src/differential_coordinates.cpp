@@ -9,7 +9,7 @@
 namespace pleat {
 namespace {
 
-// Pairs of control vertices (positions in the list) whose cells touch, ascending.
+// Returns the pairs of control vertices (as positions in the list) whose cells touch, ascending.
 std::vector<std::pair<int, int>> TouchingCells(const Topology& topology,
                                                const Eigen::Matrix3Xd& reference,
                                                const std::vector<int>& control_vertices) {
@@ -74,7 +74,8 @@ absl::StatusOr<DifferentialCoordinates> DifferentialCoordinates::Build(
   }
   result.matrix_.resize(count, count);
   result.matrix_.setFromTriplets(entries.begin(), entries.end());
-  // Strictly diagonally dominant, so positive definite.
+  // Multiplied by the neighbor counts the matrix is symmetric and strictly diagonally dominant, so
+  // it is positive definite and has an LDL^T factorization.
   result.factor_ =
       std::make_shared<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>(result.matrix_);
   return result;

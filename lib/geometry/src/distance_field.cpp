@@ -13,16 +13,17 @@ namespace {
 
 constexpr int kMinResolution = 8, kMaxResolution = 512;
 constexpr double kBandCells = 2;
-constexpr int kBlockNodes = 16;             // work items
-constexpr double kWindingTolerance = 0.05;  // of the winding number's approximation
+constexpr int kBlockNodes = 16;             // side of a work item of the parallel loop
+constexpr double kWindingTolerance = 0.05;  // error of the dipoles
 
-// Side of a ball free of surface whose center has the winding number `winding`.
+// The side on which a ball lies that is free of surface.
 enum class Side { kUnknown, kInside, kOutside };
 
-// The winding number is harmonic away from the surface, so that its distance u >= 0 to 0 (outside)
-// or to 1 (inside) obeys Harnack's inequality: within `ratio` of the radius of a ball free of
-// surface it is at most u (1 + ratio) / (1 - ratio)^2. The ball lies on one side when that stays
-// under one half. Across the holes of an open mesh it does not.
+// Decides it from the winding number at the ball's center for the part within `ratio` of its
+// radius. The winding number is harmonic away from the surface, so that its distance u >= 0 to 0
+// (outside) or to 1 (inside) obeys Harnack's inequality: within `ratio` of the radius it is at most
+// u (1 + ratio) / (1 - ratio)^2. That part lies on one side when this stays under one half. Across
+// the holes of an open mesh it does not (docs/method/rig.md#coarse-to-fine).
 Side SideOfBall(double winding, double ratio) {
   if (!(ratio < 1)) return Side::kUnknown;
   const bool is_inside = winding > 0.5;
@@ -35,13 +36,15 @@ Side SideOfBall(double winding, double ratio) {
 }  // namespace
 
 // Fills blocks of nodes from coarse to fine: far from the surface one closest point and one winding
-// number decide about many nodes.
+// number decide about many nodes. Blocks share no node, so they are filled in parallel.
 class DistanceField::Sampler {
  public:
   Sampler(const TriangleTree& tree, const WindingNumber& winding_number, DistanceField* field)
       : tree_(tree), winding_number_(winding_number), field_(*field) {}
 
-  // Nodes low <= node < high. `reach`: an upper bound of the distance of the block's center.
+  // Fills the nodes low <= node < high. `reach` is an upper bound of the distance from the block's
+  // center to the surface, known from the larger block around it by the triangle inequality; it
+  // makes the search of the closest point short.
   void Fill(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
             double reach = std::numeric_limits<double>::infinity()) const {
     const Eigen::Vector3i sizes = high - low;
@@ -74,11 +77,14 @@ class DistanceField::Sampler {
            0.5 * field_.spacing_ * (low + high - Eigen::Vector3i::Ones()).cast<double>();
   }
 
+  // The bound is widened by a trace, since the search is exclusive and the bound may be met
+  // exactly.
   double DistanceWithin(const Eigen::Vector3d& point, double reach) const {
     reach *= 1 + 1e-9;
     return std::sqrt(tree_.ClosestPoint(point, reach * reach).squared_distance);
   }
 
+  // Fills a block that lies on one side. Nodes far outside need no search at all.
   void FillOneSided(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
                     const Eigen::Vector3d& center, double distance, Side side) const {
     const double band = kBandCells * field_.spacing_;

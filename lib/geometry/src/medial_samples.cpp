@@ -15,6 +15,7 @@ std::vector<MedialSample> FindMedialSamples(const DistanceField& field,
       for (int x = 0; x < num.x(); ++x) {
         const int node = field.NodeIndex(x, y, z);
         const double depth = -field.node_distance(node);
+        // A sample between two nodes can be deeper than either by at most the spacing.
         if (depth <= 0 || depth < options.min_depth - spacing) continue;
         const Eigen::Vector3f& direction = field.node_direction(node);
         for (int axis = 0; axis < 3; ++axis) {
@@ -24,7 +25,7 @@ std::vector<MedialSample> FindMedialSamples(const DistanceField& field,
           const double next_depth = -field.node_distance(next_node);
           const Eigen::Vector3f& next_direction = field.node_direction(next_node);
           if (next_depth <= 0 || direction.dot(next_direction) > options.max_cosine) continue;
-          // Depth grows from both ends as if both nearest surfaces were planes; it is largest
+          // The depth grows from both ends as if both nearest surfaces were planes; it is largest
           // where the two lines meet.
           const double slope = -direction[axis], next_slope = next_direction[axis];
           const double sum = slope + next_slope;

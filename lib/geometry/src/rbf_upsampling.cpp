@@ -1,3 +1,33 @@
+// Each vertex has its own small interpolation problem, because one large one would be wrong twice.
+// It would be dense in thousands of control vertices; and it would measure distances through the
+// air, so that the sleeve would follow the hip beside it. Here a row of the matrix sees only the
+// control vertices that are nearest *along the surface* (surface_neighbors.h), twenty by default.
+//
+// Within these the kernel sees plain distances between points z = [rest position; scaled features]:
+// on points a Matern kernel is always positive definite, on distances along a surface it need not
+// be. With the skinning weights as features, vertices that move with other bones are far apart even
+// where they are close in the rest pose, which is where details change fastest.
+//
+// The weights of a row solve kriging with an unknown constant: with the kernel matrix K of the
+// neighbors and the kernel values k at the vertex,
+//
+//   row = K^-1 k + m K^-1 1,   m = (1 - 1^T K^-1 k) / (1^T K^-1 1),
+//
+// so the row sums to 1, and displacements that are equal everywhere are carried over exactly. Both
+// solves share one Cholesky factor. The kernel is long against the neighborhood (24 spacings), so K
+// is close to singular; control vertices at one place would make it so, hence 1e-10 on its
+// diagonal. In control vertices themselves the row is a single 1: exactness there does not depend
+// on a solve.
+//
+// Refine() keeps the sparsity and learns the values. For vertex v with the displacements A of its
+// neighbors and b of its own over the frames it minimizes |A w - b|^2 + l |w - w_kernel|^2, solved
+// for the change w - w_kernel. The penalty l is a share of the mean squared displacement, one
+// number for all vertices: a vertex that hardly moves keeps its kernel weights, since its data
+// would be noise.
+//
+// Rows are independent and are computed in parallel; a batch of 512 is the grain at which
+// cancellation is noticed. Building costs O(V m^3) for m neighbors and is paid once per character.
+
 #include "pleat/geometry/rbf_upsampling.h"
 
 #include <Eigen/Cholesky>
@@ -9,7 +39,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
-#include "point_index.h"
+#include "pleat/geometry/point_index.h"
 #include "surface_neighbors.h"
 
 namespace pleat {
@@ -25,7 +55,7 @@ struct WeightedControl {
 };
 using Row = std::vector<WeightedControl>;
 
-constexpr int kBatch = 512;  // vertices between two looks at the cancellation flag
+constexpr int kBatch = 512;  // vertices between two looks at cancellation
 
 absl::Status CheckControls(int num_vertices, const std::vector<int>& control_vertices) {
   if (control_vertices.empty()) {
@@ -64,7 +94,7 @@ absl::Status CheckBuild(const Topology& topology, const Eigen::Matrix3Xd& rest,
   return CheckControls(num_vertices, control_vertices);
 }
 
-// Rest positions and scaled features, one column per vertex (meters).
+// Returns rest positions and scaled features, one column per vertex (meters).
 MatrixXd KernelCoordinates(const Eigen::Matrix3Xd& rest, const RbfUpsamplingOptions& options) {
   MatrixXd coordinates(3 + options.features.rows(), rest.cols());
   coordinates.topRows(3) = rest;
@@ -76,20 +106,22 @@ MatrixXd KernelCoordinates(const Eigen::Matrix3Xd& rest, const RbfUpsamplingOpti
   return coordinates;
 }
 
-// Mean distance of a control vertex to the nearest other one, meters; 1 when there is none.
+// Returns the mean distance of a control vertex to the nearest other one, in meters; 1 when there
+// is none.
 double MeanSpacing(const Eigen::Matrix3Xd& controls, const PointIndex& index) {
   if (controls.cols() < 2) return 1;
   double sum = 0;
   for (Eigen::Index c = 0; c < controls.cols(); ++c) {
-    const auto nearest = index.Nearest(controls.col(c), 2);
+    const auto nearest = index.NearestFew(controls.col(c), 2);
     sum += std::sqrt(nearest[1].second);
   }
   const double mean = sum / static_cast<double>(controls.cols());
   return mean > 0 ? mean : 1;
 }
 
-// Solves the kernel system of one vertex: interpolation weights of `controls` (positions in
-// control_vertices) at `vertex`, constants reproduced.
+// Solves the kernel system of one vertex for the interpolation weights of `controls` (positions in
+// control_vertices) at `vertex`, with constants reproduced. Columns of the row ascend, as Eigen's
+// compressed rows need.
 Row KernelRow(const MatrixXd& coordinates, const std::vector<int>& control_vertices,
               const std::vector<int>& controls, int vertex, double length) {
   const Eigen::Index m = static_cast<Eigen::Index>(controls.size());
@@ -129,24 +161,13 @@ RbfUpsampler::Matrix ToMatrix(const std::vector<Row>& rows, int num_controls) {
   return matrix;
 }
 
-// Position of every vertex in control_vertices, -1 for the others.
+// Returns the position of every vertex in control_vertices, -1 for the others.
 std::vector<int> ControlOfVertex(int num_vertices, const std::vector<int>& control_vertices) {
   std::vector<int> control_of(num_vertices, -1);
   for (size_t c = 0; c < control_vertices.size(); ++c) {
     control_of[control_vertices[c]] = static_cast<int>(c);
   }
   return control_of;
-}
-
-absl::Status ForVertices(int num_vertices, int num_threads, const Progress& progress,
-                         const std::function<void(int)>& body) {
-  const int num_batches = (num_vertices + kBatch - 1) / kBatch;
-  ParallelFor(num_batches, num_threads, [&](int batch) {
-    if (progress.cancelled()) return;
-    const int end = std::min(num_vertices, (batch + 1) * kBatch);
-    for (int v = batch * kBatch; v < end; ++v) body(v);
-  });
-  return progress.Report(1);
 }
 
 }  // namespace
@@ -169,20 +190,22 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Build(const Topology& topology,
   const MatrixXd coordinates = KernelCoordinates(rest, options);
   const std::vector<int> control_of = ControlOfVertex(num_vertices, control_vertices);
   std::vector<Row> rows(num_vertices);
-  PLEAT_RETURN_IF_ERROR(ForVertices(num_vertices, options.num_threads, progress, [&](int v) {
-    if (control_of[v] >= 0) {
-      rows[v] = {{control_of[v], 1.0}};
-      return;
-    }
-    std::vector<int> controls;
-    for (const SurfaceNeighbor& neighbor : neighbors[v]) controls.push_back(neighbor.source);
-    if (controls.empty()) {
-      for (const auto& [control, squared] : index.Nearest(rest.col(v), options.num_neighbors)) {
-        controls.push_back(control);
-      }
-    }
-    rows[v] = KernelRow(coordinates, control_vertices, controls, v, length);
-  }));
+  PLEAT_RETURN_IF_ERROR(
+      ParallelForPieces(num_vertices, kBatch, options.num_threads, progress, [&](int v) {
+        if (control_of[v] >= 0) {
+          rows[v] = {{control_of[v], 1.0}};
+          return;
+        }
+        std::vector<int> controls;
+        for (const SurfaceNeighbor& neighbor : neighbors[v]) controls.push_back(neighbor.source);
+        if (controls.empty()) {
+          for (const auto& [control, squared] :
+               index.NearestFew(rest.col(v), options.num_neighbors)) {
+            controls.push_back(control);
+          }
+        }
+        rows[v] = KernelRow(coordinates, control_vertices, controls, v, length);
+      }));
   return RbfUpsampler(ToMatrix(rows, static_cast<int>(control_vertices.size())));
 }
 
@@ -215,15 +238,6 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::FromRows(int num_controls,
   return RbfUpsampler(std::move(matrix));
 }
 
-absl::StatusOr<RbfUpsampler> RbfUpsampler::FromMatrix(Matrix matrix) {
-  matrix.makeCompressed();
-  const auto starts = matrix.outerIndexPtr();
-  const auto columns = matrix.innerIndexPtr();
-  return FromRows(static_cast<int>(matrix.cols()), {starts, starts + matrix.rows() + 1},
-                  {columns, columns + matrix.nonZeros()},
-                  {matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros()});
-}
-
 absl::StatusOr<RbfUpsampler> RbfUpsampler::Refine(const Eigen::Ref<const MatrixXd>& displacements,
                                                   const std::vector<int>& control_vertices,
                                                   const UpsamplingRefinementOptions& options,
@@ -240,7 +254,8 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Refine(const Eigen::Ref<const MatrixX
     return absl::InvalidArgumentError(
         "upsampling: displacements must be finite, ridge and max_frames positive");
   }
-  // One contiguous block of 3T samples per vertex, of at most max_frames frames.
+  // One contiguous block of 3T samples per vertex, from at most max_frames frames: a regression
+  // then reads whole columns.
   const Eigen::Index num_frames = std::min<Eigen::Index>(displacements.rows(), options.max_frames);
   MatrixXd samples(3 * num_frames, matrix_.rows());
   for (Eigen::Index i = 0; i < num_frames; ++i) {
@@ -252,24 +267,27 @@ absl::StatusOr<RbfUpsampler> RbfUpsampler::Refine(const Eigen::Ref<const MatrixX
   const double ridge = options.ridge * samples.squaredNorm() / static_cast<double>(matrix_.rows());
   const std::vector<int> control_of = ControlOfVertex(num_vertices(), control_vertices);
   Matrix refined = matrix_;
-  PLEAT_RETURN_IF_ERROR(ForVertices(num_vertices(), options.num_threads, progress, [&](int v) {
-    if (control_of[v] >= 0 || !(ridge > 0)) return;
-    const int begin = refined.outerIndexPtr()[v];
-    const int m = refined.outerIndexPtr()[v + 1] - begin;
-    MatrixXd inputs(samples.rows(), m);
-    for (int i = 0; i < m; ++i) {
-      inputs.col(i) = samples.col(control_vertices[refined.innerIndexPtr()[begin + i]]);
-    }
-    Eigen::Map<Eigen::VectorXf> weights(refined.valuePtr() + begin, m);
-    const VectorXd prior = weights.cast<double>();
-    MatrixXd gram = MatrixXd::Zero(m, m);
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(inputs.transpose());
-    gram.diagonal().array() += ridge;
-    const VectorXd residual = samples.col(v) - inputs * prior;
-    const VectorXd change =
-        gram.selfadjointView<Eigen::Lower>().llt().solve(inputs.transpose() * residual);
-    weights = (prior + change).cast<float>();
-  }));
+  PLEAT_RETURN_IF_ERROR(
+      ParallelForPieces(num_vertices(), kBatch, options.num_threads, progress, [&](int v) {
+        if (control_of[v] >= 0 || !(ridge > 0)) return;
+        const int begin = refined.outerIndexPtr()[v];
+        const int m = refined.outerIndexPtr()[v + 1] - begin;
+        MatrixXd inputs(samples.rows(), m);
+        for (int i = 0; i < m; ++i) {
+          inputs.col(i) = samples.col(control_vertices[refined.innerIndexPtr()[begin + i]]);
+        }
+        // The row is overwritten in place. Its memory belongs to no other row, so no lock is
+        // needed.
+        Eigen::Map<Eigen::VectorXf> weights(refined.valuePtr() + begin, m);
+        const VectorXd prior = weights.cast<double>();
+        MatrixXd gram = MatrixXd::Zero(m, m);
+        gram.selfadjointView<Eigen::Lower>().rankUpdate(inputs.transpose());
+        gram.diagonal().array() += ridge;
+        const VectorXd residual = samples.col(v) - inputs * prior;
+        const VectorXd change =
+            gram.selfadjointView<Eigen::Lower>().llt().solve(inputs.transpose() * residual);
+        weights = (prior + change).cast<float>();
+      }));
   return RbfUpsampler(std::move(refined));
 }
 

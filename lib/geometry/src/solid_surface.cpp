@@ -5,18 +5,20 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/mesh/bounds.h"
+#include "pleat/mesh/edge_sides.h"
 
 namespace pleat {
 namespace {
 
 constexpr double kWeldFraction = 1e-6;
 
-// For every vertex the first vertex (in index order) at the same place.
+// Returns for every vertex the first vertex (in index order) at the same place. Places are rounded
+// to a grid, so two vertices nearer than a cell may still fall into two of them; that leaves a
+// seam, which the winding number does not mind.
 std::vector<int> WeldByPosition(const Eigen::Ref<const Eigen::Matrix3Xd>& positions) {
   const int num_vertices = static_cast<int>(positions.cols());
   const Eigen::AlignedBox3d box = ComputeBounds(positions);
@@ -86,29 +88,6 @@ void KeepUsableTriangles(const Topology& topology,
   }
 }
 
-// One side of an edge: triangle and whether it runs from the lower to the higher vertex.
-struct EdgeSide {
-  std::array<int, 2> edge;
-  int triangle;
-  bool forward;
-  friend bool operator<(const EdgeSide& a, const EdgeSide& b) {
-    return std::tie(a.edge, a.triangle) < std::tie(b.edge, b.triangle);
-  }
-};
-
-std::vector<EdgeSide> SortedEdgeSides(const Eigen::Matrix3Xi& triangles) {
-  std::vector<EdgeSide> sides;
-  sides.reserve(3 * triangles.cols());
-  for (int f = 0; f < triangles.cols(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = triangles(k, f), b = triangles((k + 1) % 3, f);
-      sides.push_back({{std::min(a, b), std::max(a, b)}, f, a < b});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
-
 struct Neighbor {
   int triangle;
   bool same_orientation;
@@ -118,23 +97,22 @@ struct Neighbor {
 std::vector<std::vector<Neighbor>> TriangleNeighbors(const std::vector<EdgeSide>& sides,
                                                      int num_triangles, SurfaceReport* report) {
   std::vector<std::vector<Neighbor>> neighbors(num_triangles);
-  for (size_t start = 0; start < sides.size();) {
-    size_t end = start;
-    while (end < sides.size() && sides[end].edge == sides[start].edge) ++end;
+  for (size_t start = 0, end = 0; start < sides.size(); start = end) {
+    end = EndOfEdge(sides, start);
     report->num_boundary_edges += end - start == 1;
-    report->num_nonmanifold_edges += end - start > 2;
+    report->num_non_manifold_edges += end - start > 2;
     for (size_t i = start; i + 1 < end; ++i) {
       const EdgeSide &a = sides[i], &b = sides[i + 1];
       const bool same = a.forward != b.forward;
-      neighbors[a.triangle].push_back({b.triangle, same, end - start == 2});
-      neighbors[b.triangle].push_back({a.triangle, same, end - start == 2});
+      neighbors[a.face].push_back({b.face, same, end - start == 2});
+      neighbors[b.face].push_back({a.face, same, end - start == 2});
     }
-    start = end;
   }
   return neighbors;
 }
 
-// Six times the signed volume of `patch` seen from its own center.
+// Returns six times the signed volume of `patch` seen from its own center, so that the sign has a
+// meaning for open patches too.
 double SignedVolume(const SolidSurface& surface, const std::vector<int>& patch) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (int f : patch) {
@@ -151,6 +129,8 @@ double SignedVolume(const SolidSurface& surface, const std::vector<int>& patch) 
   return volume;
 }
 
+// Grows each patch breadth first from its lowest triangle. `flipped` is relative to the input, so
+// two neighbors agree when they had the same orientation and both or neither are flipped.
 void OrientPatches(const std::vector<std::vector<Neighbor>>& neighbors, SolidSurface* surface) {
   const int num_triangles = static_cast<int>(surface->triangles.cols());
   std::vector<char> visited(num_triangles, 0), flipped(num_triangles, 0);

@@ -60,6 +60,8 @@ std::vector<std::vector<SurfaceNeighbor>> FindSurfaceNeighbors(const Topology& t
     if (static_cast<int>(list.size()) >= count) continue;
     const bool known = std::any_of(list.begin(), list.end(),
                                    [source = source](const auto& n) { return n.source == source; });
+    // A vertex takes part once for each of its `count` nearest sources. That suffices: on a
+    // shortest path to a source, each vertex has that source among its own nearest ones.
     if (known) continue;
     list.push_back({distance, source});
     for (const Edge& edge : graph[vertex]) {

@@ -58,6 +58,8 @@ TriangleTree::TriangleTree(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
   corners_ = std::move(sorted);
 }
 
+// Splits at the median of the centers along their longest extent. Halves of equal count bound the
+// depth by log2 of the count, which the fixed stacks of the queries rely on.
 int32_t TriangleTree::Build(std::vector<Eigen::Vector3d>& centers, int32_t first, int32_t count) {
   const int32_t index = static_cast<int32_t>(nodes_.size());
   nodes_.emplace_back();
@@ -110,6 +112,7 @@ SurfacePoint TriangleTree::ClosestPoint(const Eigen::Vector3d& point,
     if (!node.is_leaf()) {
       Entry near{entry.node + 1, SquaredDistanceToBox(point, nodes_[entry.node + 1])};
       Entry far{node.right, SquaredDistanceToBox(point, nodes_[node.right])};
+      // The nearer child is looked at first: what is found there prunes the other one.
       if (far.squared_distance < near.squared_distance) std::swap(near, far);
       if (far.squared_distance < best.squared_distance) stack[size++] = far;
       if (near.squared_distance < best.squared_distance) stack[size++] = near;

@@ -7,7 +7,8 @@
 namespace pleat {
 namespace {
 
-// Solid angle of a triangle seen from `point` (van Oosterom and Strackee 1983).
+// Returns the solid angle of a triangle seen from `point` (van Oosterom and Strackee 1983). atan2
+// gives the right branch also where the denominator is negative.
 double SolidAngle(const Eigen::Vector3d& point, const std::array<Eigen::Vector3d, 3>& corners) {
   const Eigen::Vector3d a = corners[0] - point, b = corners[1] - point, c = corners[2] - point;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();

@@ -1,3 +1,32 @@
+// The likelihood behind the regional learner. One GP has one kernel over all inputs; here the
+// kernel is a sum over sets of inputs ("all joints", "joints near the region", "nearest joints"),
+// each with a width g_e, an amplitude a_e and a slope c_e of its own, plus shared noise and bias. A
+// sum of kernels is the kernel of a sum of functions, so the model may explain one part of the
+// output by near joints alone, and that part carries over to poses whose far joints are new. Nobody
+// chooses how much: the likelihood does, by moving amplitude from one set to another.
+//
+// For N rows and E sets the squared distances R_e and products S_e never change while
+// hyperparameters are learned. The constructor computes them, and an evaluation costs E N^2
+// exponentials and one Cholesky factorization with its inverse, O(N^3), whatever the numbers of
+// inputs and outputs are. Outputs enter through a factor of their Gram matrix only (gram_term.h),
+// as for a single kernel.
+//
+// With G = Y Y^T and A = (D K^-1 - K^-1 G K^-1) / 2, the gradient by a log hyperparameter h is
+// sum_ij A_ij dK_ij/dh, and each dK/dh is a matrix that is there already: the RBF part of a set
+// (amplitude), the same times -g/2 R (width), c S (slope), and diagonals or constants for noise and
+// bias. So all 3 E + 2 derivatives are sums of products with entries of A.
+//
+// Only lower triangles are valid. The kernels in the upper triangle are exp of distances that were
+// never computed, so A is zeroed there before it is multiplied with them.
+//
+// There is no second try with more jitter as in gram_term.cpp: the noise floor, a share of the
+// summed amplitudes, is part of the model and of its gradient, and where K cannot be factored all
+// the same, the value is NaN and the optimizer steps back. A prior on every log g keeps widths near
+// the median distances (docs/method/learner.md#priors-and-floors says why). Logs outside of +-14
+// act as the bound; their gradient is zero but for the prior, which leads back.
+//
+// An object serves one thread: Evaluate() leaves the factor behind for Solve().
+
 #include "pleat/gp/additive_likelihood.h"
 
 #include <algorithm>
@@ -47,7 +76,7 @@ double AdditiveLikelihood::Noise(const Eigen::VectorXd& values) {
   return values[3 * scales] + kNoiseFloor * values.segment(scales, scales).sum();
 }
 
-// K, its Cholesky factor and the factor's inverse.
+// Computes K, its Cholesky factor (in place of K) and the factor's inverse.
 bool AdditiveLikelihood::Factor(const Eigen::VectorXd& values) {
   const int scales = num_scales();
   kernel_.setConstant(values[3 * scales + 1]);
@@ -64,7 +93,8 @@ bool AdditiveLikelihood::Factor(const Eigen::VectorXd& values) {
 void AdditiveLikelihood::Gradient(const Eigen::VectorXd& values, Eigen::VectorXd& gradient) {
   const int scales = num_scales();
   solver_.Gradient(whitener_, data_.num_outputs, solution_, outer_);
-  // A = (D K^-1 - K^-1 G K^-1) / 2 below the diagonal, doubled there: sums run over both halves.
+  // A = (D K^-1 - K^-1 G K^-1) / 2, of which outer_ holds twice the lower triangle: entries off the
+  // diagonal then count for both halves of a sum.
   outer_.triangularView<Eigen::StrictlyUpper>().setZero();
   outer_.diagonal() *= .5;
   const double trace = outer_.trace();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFarthest = 1e6;  // normalized units
 
-// whitened = W k, W lower triangular, in blocks of rows: no temporary, half the work.
+// whitened = W k with W lower triangular, in blocks of rows: no temporary, and half of the work.
 void Whiten(const Eigen::MatrixXf& whitener, const Eigen::VectorXf& kernel,
             Eigen::VectorXf* whitened) {
   constexpr Eigen::Index kBlock = 64;
@@ -28,7 +28,8 @@ void Whiten(const Eigen::MatrixXf& whitener, const Eigen::VectorXf& kernel,
   }
 }
 
-// sums (r x D) = rows^T slopes, for slopes (N x D).
+// sums (r x D) = rows^T slopes, for slopes (N x D). Several columns are summed together, so that
+// the rows are read fewer times.
 void SumRows(const Eigen::MatrixXd& slopes, const GpRegression::RowMajorMatrix& rows,
              Eigen::MatrixXd* sums) {
   sums->setZero(rows.cols(), slopes.cols());
@@ -117,13 +118,16 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
   assert(row.size() == p.inputs.cols() && mean.size() == p.alpha.cols());
   const Eigen::Index n = p.inputs.rows();
   w.row = (row - p.input_mean).cwiseQuotient(p.input_scales);
-  // Beyond a million times the range of the training nothing changes but the risk of overflow.
+  // Beyond a million times the range of the training nothing changes but the risk of overflow. The
+  // direction stays, so that a linear term still points the right way.
   if (const double largest = w.row.cwiseAbs().maxCoeff(); largest > kFarthest) {
     w.row *= kFarthest / largest;
   }
   w.products.setZero(n);
   AddWeightedRows(w.row.data(), p.inputs.data(), p.inputs.cols(), n, w.products.data());
   const double squared_norm = w.row.squaredNorm();
+  // The squared distance as a difference of norms and products: one pass over the inputs serves the
+  // RBF and the linear term. Rounding may make it negative, hence the minimum.
   w.rbf = (-.5 * values_.g * (squared_norms_.array() + squared_norm - 2 * w.products.array()))
               .min(0.0)
               .matrix();
@@ -153,19 +157,6 @@ void GpRegression::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double 
     v += input_variance * w.jacobian.squaredNorm() / double(p.alpha.cols());
   }
   *variance = v * p.output_scale * p.output_scale;
-}
-
-void GpRegression::PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows,
-                                Eigen::MatrixXd* means, Eigen::VectorXd* variances) const {
-  means->resize(rows.rows(), num_outputs());
-  if (variances) variances->resize(rows.rows());
-  Workspace workspace;
-  Eigen::VectorXd row(rows.cols()), mean(num_outputs());
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    row = rows.row(i).transpose();
-    Predict(row, 0, &workspace, mean, variances ? &(*variances)[i] : nullptr);
-    means->row(i) = mean.transpose();
-  }
 }
 
 }  // namespace pleat

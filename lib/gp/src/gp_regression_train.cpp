@@ -46,7 +46,8 @@ absl::Status CheckGroups(const std::vector<std::vector<int>>& groups, Eigen::Ind
   return absl::OkStatus();
 }
 
-// Centered and scaled copies of the data, and what was taken off.
+// Returns centered and scaled copies of the data, and what was taken off. `alpha` holds the outputs
+// until the kernel is known.
 GpRegressionParameters Normalize(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                  const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                  const GpRegressionOptions& options) {
@@ -76,6 +77,7 @@ Eigen::MatrixXd TakeRows(const Eigen::MatrixXd& all, const std::vector<Eigen::In
 absl::Status Solve(const Progress& progress, GpRegressionParameters* p) {
   GramTerm term(static_cast<int>(p->inputs.rows()), p->kernel_options);
   term.SetInputs(p->inputs);
+  // Only the factor of K is wanted; the outputs of this evaluation are zero.
   GramData none{Eigen::MatrixXd::Zero(p->inputs.rows(), 1), false, 1};
   const double value = term.Evaluate(p->kernel, none, 1, false, progress);
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
@@ -90,7 +92,7 @@ absl::Status Solve(const Progress& progress, GpRegressionParameters* p) {
   return absl::OkStatus();
 }
 
-// The same from all rows through the inducing rows `rows`, which are what is kept.
+// Does the same from all rows through the inducing rows `rows`, which are what is kept.
 absl::Status SolveInducedRows(const std::vector<Eigen::Index>& rows, const Progress& progress,
                               GpRegressionParameters* p) {
   const KernelValues values = KernelValuesOf(p->kernel_options, p->kernel);
@@ -125,7 +127,8 @@ KernelLogs StartingLogs(double median) {
           .linear = std::log(.5)};
 }
 
-// Learns kernel and relevance of the inputs from the normalized data in `p`, and scales its inputs.
+// Learns the kernel and the relevance of the inputs from the normalized data in `p`, and scales its
+// inputs by the relevance, so that a query pays nothing for it.
 absl::Status LearnKernel(const GpRegressionOptions& options, const Progress& progress,
                          GpRegressionSummary* summary, GpRegressionParameters* p) {
   const auto rows = SpreadRows(p->inputs.rows(), options.max_hyperparameter_rows);

@@ -16,7 +16,7 @@ constexpr double kFirstJitter = 1e-8;
 
 }  // namespace
 
-// What does not depend on the hyperparameters.
+// What does not depend on the hyperparameters; terms with the same inputs share it.
 struct GramInputs {
   Eigen::MatrixXd inputs;     // N x Q
   Eigen::MatrixXd extended;   // N x (Q + 1): inputs and a column of ones
@@ -24,7 +24,8 @@ struct GramInputs {
   Eigen::MatrixXd products;   // N x N, lower: X X^T; only with a linear term
 };
 
-// What an evaluation works in.
+// What an evaluation works in. Each matrix holds several things one after the other, since the
+// memory traffic of N x N matrices is what an evaluation spends its time on.
 struct GramMatrices {
   Eigen::MatrixXd kernel;    // N x N, lower: K, then L, then A, then (not linear) P = A o K0
   Eigen::MatrixXd whitener;  // N x N, lower: W = L^-1
@@ -51,7 +52,8 @@ struct GramTerm::State {
   void Gradient(const KernelLogs& logs, const GramData& data, double weight);
 };
 
-// K and its inverse factor from the distances; more jitter until it is positive definite.
+// Computes K and its inverse factor from the distances, with more jitter until K is positive
+// definite. K is formed anew each time, as a failed factorization leaves it half overwritten.
 bool GramTerm::State::Factor() {
   const double* linear = options.linear ? in->products.data() : nullptr;
   for (double jitter = 0; jitter <= kLargestJitter;
@@ -145,7 +147,8 @@ void GramTerm::InputGradient(Eigen::MatrixXd& gradient) {
   State& s = *state_;
   const GramInputs& in = *s.in;
   const Eigen::Index dims = in.inputs.cols();
-  // -2 g (diag(P 1) - P) X.
+  // The gradient -2 g (diag(P 1) - P) X; the column of ones in `extended` gives P 1 in the same
+  // product.
   s.solver().SymmetricMultiply(s.weighted(), in.extended, s.product);
   gradient =
       2 * s.values.g * (s.product.leftCols(dims) - s.product.col(dims).asDiagonal() * in.inputs);
@@ -182,6 +185,8 @@ absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::Matr
   }
   DenseSolver solver;
   Eigen::MatrixXd unused;
+  // Centered data make the Gram matrix singular. The ridge is the least that lets it be factored,
+  // far below any noise that is learned.
   for (double ridge = 1e-12; ridge < 1e-5; ridge *= 10) {
     data.factor = gram;
     data.factor.diagonal().array() += ridge * scale;
@@ -193,6 +198,7 @@ absl::StatusOr<GramData> MakeGramDataFromGram(const Eigen::Ref<const Eigen::Matr
 }
 
 absl::StatusOr<GramData> MakeGramData(const Eigen::Ref<const Eigen::MatrixXd>& outputs) {
+  // A narrow Y is its own factor, with fewer columns than a Cholesky factor has.
   if (outputs.cols() < outputs.rows()) return GramData{outputs, false, double(outputs.cols())};
   const Eigen::Index n = outputs.rows();
   DenseSolver solver;

@@ -10,8 +10,9 @@ namespace {
 constexpr double kJitter = 1e-7;  // share of the mean variance, on the diagonal of Kzz
 constexpr Eigen::Index kBlockRows = 512;
 
-// Lower W with W^T W = L^-T (I - B^-1) L^-1, from L^-1 and gain = B - I. By eigenvectors and an
-// orthogonal triangulation: the matrix itself is too near to singular to be factored.
+// Returns the lower W with W^T W = L^-T (I - B^-1) L^-1, from L^-1 and gain = B - I, by
+// eigenvectors and an orthogonal triangulation: the matrix itself is too near to singular to be
+// factored.
 Eigen::MatrixXf WhitenerOf(const Eigen::MatrixXd& inverse_factor, const Eigen::MatrixXd& gain) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gain);
   const Eigen::ArrayXd values = solver.eigenvalues().array().max(0);
@@ -58,6 +59,7 @@ bool SolveInduced(
   if (!solver.FactorAndInvert(factor, w)) return false;
 
   // With the whitened rows G = Kxz L^-T both sums are of full precision: B - I = G^T G / s^2.
+  // Forming Kzx Kxz first would square the condition number of Kzz and lose the digits that matter.
   Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(m, m);             // G^T G, lower
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(m, num_outputs);  // G^T y
   Eigen::MatrixXd whitened;

@@ -8,6 +8,8 @@
 namespace pleat {
 namespace {
 
+// Keeps hyperparameters within exp(+-14), about 1e-6 to 1e6, where kernels neither vanish nor
+// overflow.
 double ClampedExp(double log_value) {
   return std::exp(std::clamp(log_value, -kMaxKernelLog, kMaxKernelLog));
 }

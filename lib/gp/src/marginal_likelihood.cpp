@@ -52,7 +52,8 @@ double MarginalLikelihood::Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* g
                       options_.relevance_precision * relevance.squaredNorm());
 }
 
-// A column is proportional to exp(log / 2).
+// The derivatives by the logs: a column is proportional to exp(log / 2), so its derivative by the
+// log is half of the column.
 void MarginalLikelihood::RelevanceGradient(const Eigen::Ref<const Eigen::VectorXd>& logs,
                                            Eigen::Ref<Eigen::VectorXd> gradient) {
   term_.InputGradient(input_gradient_);

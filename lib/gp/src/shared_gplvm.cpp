@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/gp/scaling.h"
+#include "pleat/math/clip_starts.h"
 #include "pleat/math/pca.h"
 #include "pleat/optimize/lbfgs.h"
 #include "pleat/optimize/scg.h"
@@ -42,7 +43,8 @@ absl::Status CheckTraining(const Eigen::Ref<const Eigen::MatrixXd>& poses,
   return CheckClipStarts(clip_starts, poses.rows());
 }
 
-// First q left singular vectors of the centered poses, times sqrt(N - 1); missing ones are zero.
+// Returns the first q left singular vectors of the centered poses, times sqrt(N - 1); missing ones
+// are zero.
 Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
   const PrincipalComponents pca = ComputePca(poses, {.max_components = q});
   Eigen::MatrixXd start = Eigen::MatrixXd::Zero(poses.rows(), q);
@@ -53,7 +55,7 @@ Eigen::MatrixXd PcaStart(const Eigen::MatrixXd& poses, int q) {
   return start;
 }
 
-// K_b on centered poses, and log g of it.
+// Returns K_b on centered poses, and its log g.
 Eigen::MatrixXd BackKernel(const Eigen::MatrixXd& poses, const SharedGplvmOptions& options,
                            double* log_inverse_width) {
   const Eigen::Index n = poses.rows();
@@ -80,7 +82,7 @@ absl::StatusOr<Eigen::VectorXd> Minimize(SharedGplvmObjective& objective,
                        {.max_iterations = options.max_iterations, .curvature = curvature}, summary,
                        progress);
   }
-  // As many evaluations as SCG would use.
+  // The budget is as many evaluations as SCG would use, so that the two can be compared.
   return MinimizeLbfgs(
       objective, start,
       {.max_iterations = 2 * options.max_iterations, .max_evaluations = 2 * options.max_iterations},
@@ -97,20 +99,6 @@ SharedGplvmOptions SharedGplvmOptions::Paper() {
   options.relative_noise_floor = 0;
   options.absolute_jitter = 1e-8;
   return options;
-}
-
-absl::Status CheckClipStarts(const std::vector<int>& clip_starts, Eigen::Index num_rows) {
-  if (clip_starts.empty() || clip_starts[0] != 0) {
-    return absl::InvalidArgumentError("clip starts must begin with row 0");
-  }
-  for (size_t c = 0; c < clip_starts.size(); ++c) {
-    if (clip_starts[c] >= num_rows || (c > 0 && clip_starts[c] <= clip_starts[c - 1])) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("clip ", c, " starts at row ", clip_starts[c], " of ", num_rows,
-                       ": starts must rise and stay inside the rows"));
-    }
-  }
-  return absl::OkStatus();
 }
 
 DetailView MakeDetailView(const Eigen::Ref<const Eigen::MatrixXd>& outputs, ViewScaling scaling) {
@@ -188,6 +176,7 @@ absl::StatusOr<SharedGplvm> TrainSharedGplvm(const Eigen::Ref<const Eigen::Matri
     if (!solver.FactorAndInvert(ridged, whitener)) {
       return absl::InvalidArgumentError("the back-constraint kernel cannot be factored");
     }
+    // The back weights that give the start, (K_b + back_noise I) A = X_0.
     solver.MultiplyByFactor(whitener, false, start, whitened);
     solver.MultiplyByFactor(whitener, true, whitened, points);
   }

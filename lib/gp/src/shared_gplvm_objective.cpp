@@ -1,3 +1,29 @@
+// L is a sum of three terms of one kind, a Gram term (gram_term.h) each: the poses given X, the
+// details given X, and the dynamics, rows x_t given the rows x_(t-1) before them. The first two
+// have fixed outputs and the unknown X as input. In the third both inputs and outputs are rows of
+// X. So the gradient by X collects
+//
+//   from each view      the input gradient of its term,
+//   from the dynamics   the input gradient on the rows before, lambda K_d^-1 X_o on rows t,
+//   from the prior      lambda x_t on the first rows of each clip, which nothing predicts,
+//
+// and with back-constraints X = K_b A it becomes dL/dA = K_b^T dL/dX. No row of the dynamics
+// straddles two clips (dynamics.h). The public reference codes get parts of these sums wrong in
+// ways that still train to something plausible (docs/method/learner.md#gradients); the tests
+// therefore use two clips and a weight lambda other than 1.
+//
+// Time goes into N x N matrices, hence memory is shared. Both views have the same inputs, so their
+// distances are computed once (ShareInputs; setting those of the pose term sets the detail's). All
+// terms work in the same scratch (ShareScratch), which stays in the cache. The price is an order:
+// what a term has left in the scratch lasts until the next one is evaluated, so each term's
+// gradient by its inputs is taken directly after its evaluation, in EvaluateView and
+// EvaluateDynamics.
+//
+// The unknowns are one vector, [X or A by columns | pose logs | detail logs | dynamics logs]; the
+// logs are those that the kernels have, in the order of PackKernelLogs. Where a kernel matrix
+// cannot be factored, or training was cancelled, the value is NaN, the terms that follow are
+// skipped, and the gradient has no meaning; optimizers look at the value first.
+
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -23,7 +49,8 @@ KernelOptions DynamicsKernel(const SharedGplvmOptions& options) {
           .absolute_jitter = options.absolute_jitter};
 }
 
-// The prior on (log g, log a); adds to `gradient` (of the logs) unless it is null.
+// Returns the prior on (log g, log a), and adds its derivatives to `gradient` (of the logs) unless
+// that is null.
 double Prior(const KernelLogs& logs, double precision, double center, double* gradient) {
   const double width = logs.inverse_width - center, amplitude = logs.amplitude;
   if (gradient) {
@@ -56,7 +83,7 @@ struct SharedGplvmObjective::State {
 
   Eigen::MatrixXd latents, latent_gradient;  // N x q
   Eigen::MatrixXd inputs;                    // N_d x order q
-  Eigen::MatrixXd term_gradient;             // of one term
+  Eigen::MatrixXd term_gradient;             // gradient of one term
 
   State(GramData pose_data, GramData detail_data, DynamicsRows dynamics_rows,
         const SharedGplvmOptions& o)
@@ -153,7 +180,7 @@ double SharedGplvmObjective::Evaluate(const Eigen::VectorXd& unknowns, Eigen::Ve
   } else {
     s.latents = points;
   }
-  s.pose.term.SetInputs(s.latents);  // and the detail's
+  s.pose.term.SetInputs(s.latents);  // sets the detail's as well
   s.latent_gradient.setZero(s.n, s.q);
   if (gradient) gradient->resize(num_unknowns());
 

@@ -60,6 +60,7 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   draft.id = MakeJobId();
   draft.state = JobState::kQueued;
   auto job = std::make_shared<JobStateMachine>(draft, 0, options_.clock);
+  std::lock_guard creating(create_mutex_);
   {
     std::lock_guard lock(mutex_);
     if (shutting_down()) return absl::UnavailableError("the server is shutting down");
@@ -68,8 +69,12 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
                                                        " jobs are waiting, the limit is ",
                                                        options_.max_queued, "; try again later"));
     }
-    // Saved first: a job that was accepted is never lost.
-    PLEAT_RETURN_IF_ERROR(save_(draft, 0));
+  }
+  // Saved first: a job that was accepted is never lost. Saving waits for the disk, so those who ask
+  // for jobs must not wait for it.
+  PLEAT_RETURN_IF_ERROR(save_(draft, 0));
+  {
+    std::lock_guard lock(mutex_);
     jobs_.emplace(draft.id, job);
     order_.push_back(draft.id);
     queue_.push_back(job);
@@ -100,8 +105,12 @@ std::vector<JobInfo> JobManager::List() const {
 absl::Status JobManager::Cancel(const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
   PLEAT_RETURN_IF_ERROR(job->RequestCancel());
-  std::lock_guard lock(mutex_);
-  if (std::erase(queue_, job) > 0) Save(job.get());
+  bool was_waiting = false;
+  {
+    std::lock_guard lock(mutex_);
+    was_waiting = std::erase(queue_, job) > 0;
+  }
+  if (was_waiting) Save(job.get());  // nobody else has it any more
   return absl::OkStatus();
 }
 

@@ -6,6 +6,7 @@
 #include "pleat/base/status.h"
 #include "pleat/gp/scaling.h"
 #include "pleat/learner/detail_model.h"
+#include "pleat/math/clip_starts.h"
 #include "pleat/math/pca.h"
 
 namespace pleat {

@@ -1,3 +1,28 @@
+// Training many additive GPs, one per region, on the same frames. Regions share the inputs: their
+// rows, their mean and their scales, which may come from a GpRegression that has learned the
+// relevance of joints, so that it is learned once. What a region has for itself is the choice of
+// its feature sets, its outputs (its share of the details, which sum to the whole over regions),
+// and 3 E + 2 hyperparameters for E sets.
+//
+// Units. For the likelihood, each set's columns are divided by one number (`unit`) that brings its
+// rows to mean squared norm 1, and a region's outputs by one that brings entries to mean square 1.
+// So the starting values and the prior fit every region, whether it is a sleeve that hardly moves
+// or a skirt. Afterwards the units of the sets are folded into the hyperparameters (g and c are per
+// squared input unit, hence divided by the square), and that of the outputs into alpha. A query
+// then knows only one scaling of inputs, and no region needs its own.
+//
+// Rows. Hyperparameters are learned on at most 400 rows, as each of up to sixty iterations costs
+// their cube. Predictions are made from at most 600 rows, since a query reads them all. With more
+// frames than that, the 600 rows are inducing rows: they are spread evenly and the same for all
+// regions, and all frames are learned through them (pleat/gp/inducing.h), at a cost that grows
+// linearly with the frames. The regions compute no variance; the direct GP beside them does.
+//
+// Threads. Regions are independent, so they are trained in parallel, each in memory of its own: a
+// likelihood keeps 3 E + 3 square matrices of its rows. They go in batches of four. That bounds the
+// memory, and between batches the progress of the whole is reported, as its sink is not for several
+// threads; inside, regions see a token that can only be cancelled. Each region writes its own slot,
+// so the result does not depend on the number of threads.
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -53,7 +78,8 @@ absl::Status CheckScales(const Eigen::VectorXd& scales, Eigen::Index num_inputs)
   return absl::OkStatus();
 }
 
-// The columns of one set for some rows, and what divides them to rows of mean squared norm 1.
+// The columns of one set for some rows, divided by `unit` so that the rows have mean squared norm
+// 1.
 struct ScaledSet {
   Eigen::MatrixXd inputs;
   double unit;
@@ -67,7 +93,8 @@ ScaledSet TakeSet(const Eigen::MatrixXd& inputs, const std::vector<Eigen::Index>
   return set;
 }
 
-// alpha = K^-1 y, K over the rows of `sets`.
+// Solves alpha = K^-1 y, with K over the rows of `sets`. The likelihood serves only as the
+// factorization of K, so it is given outputs of zero and no prior.
 bool SolveRegion(const std::vector<Eigen::MatrixXd>& sets, const Eigen::VectorXd& logs,
                  const Eigen::MatrixXd& outputs, const Progress& progress, Eigen::MatrixXd* alpha) {
   AdditiveLikelihood likelihood(sets, GramData{Eigen::MatrixXd::Zero(outputs.rows(), 1), false, 1},
@@ -77,8 +104,8 @@ bool SolveRegion(const std::vector<Eigen::MatrixXd>& sets, const Eigen::VectorXd
   return true;
 }
 
-// The same through the inducing rows `inducing` from all rows of inputs and outputs.
-// values: of the kernel, in the order of AdditiveLikelihood.
+// Solves the same through the inducing rows `inducing` from all rows of inputs and outputs.
+// `values` are those of the kernel, in the order of AdditiveLikelihood.
 bool SolveInducedRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
                         const std::vector<double>& set_units,
                         const std::vector<Eigen::MatrixXd>& inducing, const Eigen::VectorXd& values,
@@ -108,7 +135,8 @@ bool SolveInducedRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
   return true;
 }
 
-// Learns one region: hyperparameters on `learning_rows`, weights on all rows of `inputs`.
+// Learns one region: hyperparameters on `learning_rows`, weights on all rows of `inputs`, to be
+// read at `rows`.
 absl::Status TrainRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
                          const std::vector<Eigen::Index>& learning_rows,
                          const std::vector<Eigen::Index>& rows, const RegionalGpOptions& options,
@@ -141,6 +169,7 @@ absl::Status TrainRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
           ? SolveInducedRegion(inputs, region, set_units, sets, values, outputs, progress, &alpha)
           : SolveRegion(sets, logs, outputs, progress, &alpha);
   if (!solved) {
+    // A cancelled solve fails as well, and this tells the two apart.
     PLEAT_RETURN_IF_ERROR(progress.Report(0));
     return absl::InvalidArgumentError("the kernel matrix cannot be factored");
   }
@@ -194,9 +223,7 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
     PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(begin + size) / num_regions));
   }
   for (int i = 0; i < num_regions; ++i) {
-    if (statuses[i].ok()) continue;
-    return absl::Status(statuses[i].code(),
-                        absl::StrCat("region ", i, ": ", statuses[i].message()));
+    PLEAT_RETURN_IF_ERROR(WithContext(absl::StrCat("region ", i), statuses[i]));
   }
   p.inputs = normalized(rows, Eigen::all);
   return RegionalGp(std::move(p));

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "pleat/service/character_service.h"
+#include "pleat/service/model_service.h"
+#include "pleat/service/sequence_service.h"
 
 namespace pleat {
 

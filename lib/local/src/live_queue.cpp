@@ -43,11 +43,12 @@ bool LiveQueue::HasRoom() const {
 absl::Status LiveQueue::Check(const LivePose& pose) const {
   if (!pose.status.ok()) return pose.status;
   for (size_t h = 0; h <= pose.history.size(); ++h) {
-    const size_t count = (h == 0 ? pose.pose : pose.history[h - 1]).rotations.size();
-    if (count == num_joints_) continue;
+    absl::Status status =
+        CheckJointCount(h == 0 ? pose.pose : pose.history[h - 1], static_cast<int>(num_joints_));
+    if (status.ok()) continue;
+    if (h == 0) return status;
     return absl::InvalidArgumentError(
-        absl::StrCat(h == 0 ? std::string("the pose") : absl::StrCat("pose.history[", h - 1, "]"),
-                     " has ", count, " rotations, the skeleton has ", num_joints_, " joints"));
+        absl::StrCat("pose.history[", h - 1, "]: ", absl::string_view(status.message())));
   }
   return absl::OkStatus();
 }

@@ -1,22 +1,15 @@
-// Jobs: what they are made of and what they do.
-#include <algorithm>
+#include "pleat/local/local_jobs.h"
+
 #include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "infos.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
-#include "pleat/character/train_with_rig.h"
-#include "pleat/formats/model_file.h"
-#include "pleat/local/compression.h"
-#include "pleat/local/local_character_service.h"
-#include "pleat/wire/stored_records.h"
+#include "pleat/store/records.h"
 
 namespace pleat {
 namespace {
-
-constexpr double kWatchWakeSeconds = .25;  // how soon a watcher notices a shutdown
 
 // What can be said about a rig before its mesh is read.
 absl::Status CheckRigCounts(const RigFile& rig, const SequenceInfo& clip) {
@@ -33,11 +26,55 @@ absl::Status CheckRigCounts(const RigFile& rig, const SequenceInfo& clip) {
   return absl::OkStatus();
 }
 
+// One job of the manager as one observer follows it.
+class LocalSubscription final : public JobSubscription {
+ public:
+  LocalSubscription(const JobManager* manager, std::shared_ptr<JobStateMachine> job,
+                    std::function<void()> listener)
+      : manager_(manager), job_(std::move(job)), token_(job_->AddListener(std::move(listener))) {}
+  ~LocalSubscription() override { job_->RemoveListener(token_); }
+
+  JobUpdate current() const override {
+    JobSnapshot snapshot = job_->snapshot();
+    return {std::move(snapshot.info), snapshot.revision};
+  }
+  absl::Status status() const override {
+    if (!manager_->shutting_down()) return absl::OkStatus();
+    return absl::UnavailableError("the service is shutting down");
+  }
+
+ private:
+  const JobManager* const manager_;
+  const std::shared_ptr<JobStateMachine> job_;
+  const int token_;
+};
+
 }  // namespace
 
-absl::Status LocalCharacterService::RestoreJobs() {
+LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner,
+                     int num_workers)
+    : files_(files),
+      sequences_(sequences),
+      runner_(std::move(runner)),
+      manager_(
+          JobManagerOptions{.num_workers = num_workers},
+          [this](const JobInfo& job, const Progress& progress) {
+            return runner_.Run(job, progress);
+          },
+          [this](const JobInfo& info, int attempts) {
+            return files_->catalogue().Put(EntryKind::kJob,
+                                           {info.id, EncodeRecord(info), attempts});
+          }) {}
+
+absl::Status LocalJobs::Start() {
+  PLEAT_RETURN_IF_ERROR(Restore());
+  manager_.Start();
+  return absl::OkStatus();
+}
+
+absl::Status LocalJobs::Restore() {
   PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
-                         store_->catalogue().List(EntryKind::kJob));
+                         files_->catalogue().List(EntryKind::kJob));
   std::vector<StoredJob> jobs;
   std::set<std::string> needed_rigs;
   for (const CatalogueEntry& entry : entries) {
@@ -46,153 +83,61 @@ absl::Status LocalCharacterService::RestoreJobs() {
     jobs.push_back({std::move(info), entry.attempts});
   }
   PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> rigs,
-                         store_->catalogue().List(EntryKind::kRig));
+                         files_->catalogue().List(EntryKind::kRig));
   for (const CatalogueEntry& rig : rigs) {
     if (needed_rigs.contains(rig.id)) continue;
-    PLEAT_RETURN_IF_ERROR(DeleteEntry(EntryKind::kRig, rig.id));
+    PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kRig, rig.id));
   }
-  jobs_->Restore(std::move(jobs));
+  manager_.Restore(std::move(jobs));
   return absl::OkStatus();
 }
 
-absl::StatusOr<JobInfo> LocalCharacterService::CreateTrainingJob(const TrainingRequest& request) {
+absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request) {
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(request.options));
   const size_t num_clips = request.sequence_ids.size();
-  if (num_clips == 0 || num_clips > static_cast<size_t>(options_.limits.max_clips)) {
+  if (num_clips == 0 || num_clips > static_cast<size_t>(files_->limits().max_clips)) {
     return absl::InvalidArgumentError(absl::StrCat(
-        "a training job needs 1 to ", options_.limits.max_clips, " sequences, not ", num_clips));
+        "a training job needs 1 to ", files_->limits().max_clips, " sequences, not ", num_clips));
   }
   JobInfo draft;
   std::vector<SequenceInfo> clips;
   for (const std::string& id : request.sequence_ids) {
-    PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, GetSequence(id));
+    PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(id));
     clips.push_back(std::move(info));
   }
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
   draft.name = request.model_name.empty() ? clips[0].name : request.model_name;
   if (!request.rig.empty()) {
-    PLEAT_ASSIGN_OR_RETURN(const RigFile rig, DecodeUserRig(request.rig));
+    PLEAT_ASSIGN_OR_RETURN(const RigFile rig, runner_.DecodeUserRig(request.rig));
     PLEAT_RETURN_IF_ERROR(CheckRigCounts(rig, clips[0]));
     draft.rig_id = ToHex(ComputeSha256(request.rig));
-    PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kRig, draft.rig_id, "",
-                                   [&] { return store_->blobs().Put(request.rig).status(); }));
+    PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kRig, {draft.rig_id, ""}, request.rig));
   }
-  return jobs_->Create(std::move(draft));
+  return manager_.Create(std::move(draft));
 }
 
-absl::StatusOr<RigFile> LocalCharacterService::DecodeUserRig(const std::string& text) const {
-  return DecodeRigJson(text, {.max_bytes = options_.limits.max_rig_bytes,
-                              .max_vertices = options_.limits.max_vertices});
-}
-
-absl::StatusOr<JobInfo> LocalCharacterService::CreateCompressionJob(
-    const std::string& sequence_id, const CompressOptions& options) {
+absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const std::string& sequence_id,
+                                                     const CompressOptions& options) {
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
-  PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, GetSequence(sequence_id));
+  PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(sequence_id));
   JobInfo draft;
   draft.sequence_ids = {sequence_id};
   draft.options = options;
   draft.name = std::move(info.name);
-  return jobs_->Create(std::move(draft));
+  return manager_.Create(std::move(draft));
 }
 
-absl::StatusOr<JobOutcome> LocalCharacterService::Run(const JobInfo& job,
-                                                      const Progress& progress) {
-  if (const auto* training = std::get_if<TrainOptions>(&job.options)) {
-    return Train(job, *training, progress);
-  }
-  return Compress(job, std::get<CompressOptions>(job.options), progress);
-}
+absl::StatusOr<JobInfo> LocalJobs::Get(const std::string& id) { return manager_.Get(id); }
 
-absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalCharacterService::TrainModel(
-    const std::vector<MeshSequence>& clips, const std::string& rig_id, const TrainOptions& options,
-    const Progress& progress) const {
-  const TrainResources resources{.num_threads = options_.num_threads_per_job};
-  if (rig_id.empty()) return options_.train(clips, options, resources, nullptr, progress);
-  PLEAT_ASSIGN_OR_RETURN(const std::string text, store_->blobs().Get(rig_id));
-  PLEAT_ASSIGN_OR_RETURN(const RigFile file, DecodeUserRig(text));
-  PLEAT_ASSIGN_OR_RETURN(const UserRig rig, ResolveRig(file, clips[0]));
-  return TrainCharacterWithRig(clips, rig, options, resources, nullptr, progress);
-}
+absl::StatusOr<std::vector<JobInfo>> LocalJobs::List() { return manager_.List(); }
 
-absl::StatusOr<JobOutcome> LocalCharacterService::Train(const JobInfo& job,
-                                                        const TrainOptions& options,
-                                                        const Progress& progress) {
-  std::vector<MeshSequence> clips;
-  const Progress reading = progress.Stage("read", 0, .02);
-  for (const std::string& id : job.sequence_ids) {
-    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, LoadSequence(id));
-    clips.push_back(std::move(clip));
-    PLEAT_RETURN_IF_ERROR(
-        reading.Report(static_cast<double>(clips.size()) / job.sequence_ids.size()));
-  }
-  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
-                         TrainModel(clips, job.rig_id, options, progress.Stage("train", .02, .98)));
-  if (model->name() != job.name) {
-    CharacterModel::Parts parts = model->parts();
-    parts.name = job.name;
-    PLEAT_ASSIGN_OR_RETURN(model, CharacterModel::Create(std::move(parts)));
-  }
-  PLEAT_RETURN_IF_ERROR(progress.Stage("store", .98, 1).Report(0));
-  const std::string bytes = EncodeModel(*model);
-  const ModelInfo info = MakeModelInfo(*model, ModelId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kModel, info.id, EncodeRecord(info),
-                                 [&] { return store_->blobs().Put(bytes).status(); }));
-  return JobOutcome{info.id, model->record().warnings};
-}
+absl::Status LocalJobs::Cancel(const std::string& id) { return manager_.Cancel(id); }
 
-absl::StatusOr<JobOutcome> LocalCharacterService::Compress(const JobInfo& job,
-                                                           CompressOptions options,
-                                                           const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(progress.Stage("read", 0, .02).Report(0));
-  const std::string& sequence_id = job.sequence_ids.at(0);
-  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, LoadSequence(sequence_id));
-  options.num_threads = options_.num_threads_per_job;
-  PLEAT_ASSIGN_OR_RETURN(MeasuredCompression compressed,
-                         CompressMeasured(sequence, options, progress.Stage("compress", .02, .99)));
-  PLEAT_RETURN_IF_ERROR(progress.Stage("store", .99, 1).Report(0));
-  CompressedSequenceInfo info = {.id = ToHex(ComputeSha256(compressed.bytes)),
-                                 .name = sequence.name(),
-                                 .num_frames = sequence.num_frames(),
-                                 .num_vertices = sequence.num_vertices(),
-                                 .num_faces = sequence.topology().num_faces(),
-                                 .frame_rate = sequence.frame_rate(),
-                                 .size_bytes = compressed.bytes.size(),
-                                 .record = std::move(compressed.record)};
-  info.record->sequence_id = sequence_id;
-  PLEAT_RETURN_IF_ERROR(AddEntry(EntryKind::kCompressedSequence, info.id, EncodeRecord(info),
-                                 [&] { return store_->blobs().Put(compressed.bytes).status(); }));
-  return JobOutcome{info.id, {}};
-}
-
-absl::StatusOr<JobInfo> LocalCharacterService::GetJob(const std::string& id) {
-  return jobs_->Get(id);
-}
-
-absl::StatusOr<std::vector<JobInfo>> LocalCharacterService::ListJobs() { return jobs_->List(); }
-
-absl::Status LocalCharacterService::CancelJob(const std::string& id) { return jobs_->Cancel(id); }
-
-absl::StatusOr<std::shared_ptr<JobStateMachine>> LocalCharacterService::FindJob(
-    const std::string& id) {
-  return jobs_->Find(id);
-}
-
-absl::Status LocalCharacterService::WatchJob(const std::string& id,
-                                             const std::function<bool(const JobInfo&)>& observe) {
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, FindJob(id));
-  JobSnapshot snapshot = job->snapshot();
-  if (!observe(snapshot.info)) return absl::OkStatus();
-  while (!IsFinal(snapshot.info.state)) {
-    const JobSnapshot next = job->WaitForChange(snapshot.revision, kWatchWakeSeconds);
-    if (next.revision == snapshot.revision) {
-      if (shutting_down()) return absl::UnavailableError("the service is shutting down");
-    }
-    snapshot = next;  // also without news, so that a caller who wants to stop is heard
-    if (!observe(snapshot.info)) return absl::OkStatus();
-  }
-  return absl::OkStatus();
+absl::StatusOr<std::unique_ptr<JobSubscription>> LocalJobs::Subscribe(
+    const std::string& id, std::function<void()> listener) {
+  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job, manager_.Find(id));
+  return std::make_unique<LocalSubscription>(&manager_, std::move(job), std::move(listener));
 }
 
 }  // namespace pleat

@@ -18,14 +18,14 @@ double MicrosecondsBetween(Clock::time_point start, Clock::time_point end) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
+absl::StatusOr<std::unique_ptr<LocalPoseSession>> LocalPoseSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseSessionOptions options) {
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
                          EncoderPool::Make(*model, options.encoder));
   return Open(std::move(model), std::move(options), std::move(encoder));
 }
 
-absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
+absl::StatusOr<std::unique_ptr<LocalPoseSession>> LocalPoseSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
     std::unique_ptr<EncoderPool::Lease> encoder) {
   // Fails early, before the first pose, when the scales do not fit.
@@ -33,25 +33,25 @@ absl::StatusOr<std::unique_ptr<PoseSession>> PoseSession::Open(
   EvaluatedFrame frame;
   PLEAT_RETURN_IF_ERROR(
       evaluator.EvaluateSkinned(Pose::Rest(model->skeleton()), options.bone_scales, &frame));
-  return std::unique_ptr<PoseSession>(
-      new PoseSession(std::move(evaluator), std::move(options), std::move(encoder)));
+  return std::unique_ptr<LocalPoseSession>(
+      new LocalPoseSession(std::move(evaluator), std::move(options), std::move(encoder)));
 }
 
-PoseSession::PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
-                         std::unique_ptr<EncoderPool::Lease> encoder)
+LocalPoseSession::LocalPoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
+                                   std::unique_ptr<EncoderPool::Lease> encoder)
     : options_(std::move(options)), evaluator_(std::move(evaluator)), encoder_(std::move(encoder)) {
   parameters_header_.content = StreamContent::kParameters;
   parameters_header_.num_vertices = evaluator_.model().num_vertices();
 }
 
-absl::StatusOr<EncodedFrame> PoseSession::Show(const std::vector<const Pose*>& poses) {
+absl::StatusOr<EncodedFrame> LocalPoseSession::Show(const std::vector<const Pose*>& poses) {
   const Clock::time_point start = Clock::now();
   PoseQuery query = QueryOf(&poses);
   evaluator_.EvaluateBatch({&query, 1});
   return Encode(query, MicrosecondsBetween(start, Clock::now()));
 }
 
-PoseQuery PoseSession::QueryOf(const std::vector<const Pose*>* poses) {
+PoseQuery LocalPoseSession::QueryOf(const std::vector<const Pose*>* poses) {
   return {.poses = poses,
           .bone_scales = &options_.bone_scales,
           .skinned_only = options_.skinned_only,
@@ -60,7 +60,8 @@ PoseQuery PoseSession::QueryOf(const std::vector<const Pose*>* poses) {
           .scratch_of = &evaluator_};
 }
 
-absl::Status PoseSession::Encode(const PoseQuery& query, double evaluate_us, EncodedFrame* frame) {
+absl::Status LocalPoseSession::Encode(const PoseQuery& query, double evaluate_us,
+                                      EncodedFrame* frame) {
   PLEAT_RETURN_IF_ERROR(query.status);
   frame->evaluate_us = evaluate_us;
   if (encoder_ == nullptr) {
@@ -88,44 +89,37 @@ absl::Status PoseSession::Encode(const PoseQuery& query, double evaluate_us, Enc
   return absl::OkStatus();
 }
 
-absl::StatusOr<EncodedFrame> PoseSession::Encode(const PoseQuery& query, double evaluate_us) {
+absl::StatusOr<EncodedFrame> LocalPoseSession::Encode(const PoseQuery& query, double evaluate_us) {
   EncodedFrame frame;
   PLEAT_RETURN_IF_ERROR(Encode(query, evaluate_us, &frame));
   return frame;
 }
 
-absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
+absl::StatusOr<std::unique_ptr<LocalClipSession>> LocalClipSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options) {
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
                          EncoderPool::Make(*model, options.encoder));
   return Open(std::move(model), std::move(track), std::move(options), std::move(encoder));
 }
 
-absl::StatusOr<std::unique_ptr<ClipSession>> ClipSession::Open(
+absl::StatusOr<std::unique_ptr<LocalClipSession>> LocalClipSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options,
     std::unique_ptr<EncoderPool::Lease> encoder) {
   // The history interpolates between poses, so all of them must fit before the first is shown.
-  const size_t num_joints = model->skeleton().joints().size();
-  for (int t = 0; t < track.num_frames(); ++t) {
-    if (track.poses[t].rotations.size() != num_joints) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("frame ", t, ": the pose has ", track.poses[t].rotations.size(),
-                       " rotations, the skeleton has ", num_joints, " joints"));
-    }
-  }
-  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<PoseSession> session,
-                         PoseSession::Open(model, std::move(options), std::move(encoder)));
-  return std::unique_ptr<ClipSession>(
-      new ClipSession(std::move(session), std::move(track), *model));
+  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, model->skeleton().num_joints()));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<LocalPoseSession> session,
+                         LocalPoseSession::Open(model, std::move(options), std::move(encoder)));
+  return std::unique_ptr<LocalClipSession>(
+      new LocalClipSession(std::move(session), std::move(track), *model));
 }
 
-ClipSession::ClipSession(std::unique_ptr<PoseSession> session, PoseTrack track,
-                         const CharacterModel& model)
+LocalClipSession::LocalClipSession(std::unique_ptr<LocalPoseSession> session, PoseTrack track,
+                                   const CharacterModel& model)
     : session_(std::move(session)),
       track_(std::move(track)),
       history_(track_, model.frame_rate().fps(), model.options().history) {}
 
-absl::StatusOr<EncodedFrame> ClipSession::Next() {
+absl::StatusOr<EncodedFrame> LocalClipSession::Next() {
   const int t = next_++;
   history_.At(t, &poses_);
   absl::StatusOr<EncodedFrame> frame = session_->Show(poses_);

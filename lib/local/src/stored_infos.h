@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/status.h"
 #include "pleat/store/catalogue.h"
-#include "pleat/wire/stored_records.h"
+#include "pleat/store/records.h"
 
 namespace pleat {
 

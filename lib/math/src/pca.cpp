@@ -19,8 +19,8 @@ void FixSigns(Eigen::MatrixXd& basis, Eigen::MatrixXd& partner) {
   }
 }
 
-// (X - 1 m^T)(X - 1 m^T)^T from X X^T: no centered copy of a matrix that may be the largest thing
-// in memory.
+// Returns (X - 1 m^T)(X - 1 m^T)^T from X X^T, so that no centered copy is made of a matrix that
+// may be the largest thing in memory.
 Eigen::MatrixXd CenteredGram(const Eigen::Ref<const Eigen::MatrixXd>& data) {
   Eigen::MatrixXd gram = data * data.transpose();
   const Eigen::VectorXd row_means = gram.rowwise().mean();
@@ -38,7 +38,7 @@ PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
   PrincipalComponents pca;
   pca.mean = data.colwise().mean().transpose();
   const bool by_rows = data.rows() <= data.cols();
-  Eigen::MatrixXd centered;  // of tall matrices only
+  Eigen::MatrixXd centered;  // made of tall matrices only
   if (!by_rows) centered = data.rowwise() - pca.mean.transpose();
   const Eigen::MatrixXd gram =
       by_rows ? CenteredGram(data) : Eigen::MatrixXd(centered.transpose() * centered);
@@ -55,7 +55,7 @@ PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
   pca.kept_energy = total > 0 ? energy / total : 1;
   const Eigen::MatrixXd vectors = solver.eigenvectors().rowwise().reverse().leftCols(rank);
   const Eigen::VectorXd lengths = values.head(rank).cwiseSqrt();
-  if (by_rows) {  // left singular vectors: basis = centered^T U / sigma
+  if (by_rows) {  // basis = centered^T U / sigma
     pca.scores = vectors * lengths.asDiagonal();
     pca.basis = data.transpose() * vectors;
     pca.basis -= pca.mean * vectors.colwise().sum();

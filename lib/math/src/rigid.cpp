@@ -19,6 +19,8 @@ absl::StatusOr<RigidTransform> FitRigidTransform(const Eigen::Ref<const Eigen::M
   if (!(total > 0)) return absl::InvalidArgumentError("rigid fit needs a positive total weight");
   const Eigen::Vector3d source_mean = source * w / total;
   const Eigen::Vector3d target_mean = target * w / total;
+  // The best translation maps the weighted mean to the weighted mean, whatever the rotation; what
+  // is left is a Procrustes problem of centered points.
   const Eigen::Matrix3d covariance = (target.colwise() - target_mean) * w.asDiagonal() *
                                      (source.colwise() - source_mean).transpose();
   RigidTransform fit;

@@ -24,48 +24,30 @@ Quaterniond QuaternionFromExponentialMap(const Vector3d& w) {
   return Quaterniond(std::cos(half), scale * w.x(), scale * w.y(), scale * w.z());
 }
 
-Matrix3d RotationFromExponentialMap(const Vector3d& w) {
-  return QuaternionFromExponentialMap(w).normalized().toRotationMatrix();
-}
-
 Vector3d ExponentialMapFromQuaternion(const Quaterniond& rotation) {
   Quaterniond q = rotation.normalized();
   if (q.w() < 0) q.coeffs() = -q.coeffs();
+  // atan2 keeps full precision at both ends, where acos(w) or asin(sine) would lose half of the
+  // digits.
   const double sine = q.vec().norm();
   if (sine < 1e-8) return 2 * q.vec();
   return (2 * std::atan2(sine, q.w()) / sine) * q.vec();
 }
 
-Vector3d ExponentialMapFromRotation(const Matrix3d& rotation) {
-  return ExponentialMapFromQuaternion(Quaterniond(rotation));
-}
-
 Vector3d UnwrapExponentialMap(const Vector3d& w, const Vector3d& reference) {
   const double angle = w.norm();
+  // Without an axis there is nothing to add turns about. Otherwise all candidates lie on one line,
+  // and the nearest one is where the line comes closest to `reference`.
   if (angle < 1e-9) return w;
   const Vector3d axis = w / angle;
   const double turns = std::round((axis.dot(reference) - angle) / (2 * std::numbers::pi));
   return w + 2 * std::numbers::pi * turns * axis;
 }
 
-Matrix3d RightJacobian(const Vector3d& w) {
-  const double angle = w.norm();
-  const Matrix3d cross = CrossMatrix(w);
-  double a, b;  // J_r = I - a [w] + b [w]^2
-  if (angle < 1e-4) {
-    a = 0.5 - angle * angle / 24;
-    b = 1.0 / 6 - angle * angle / 120;
-  } else {
-    a = (1 - std::cos(angle)) / (angle * angle);
-    b = (angle - std::sin(angle)) / (angle * angle * angle);
-  }
-  return Matrix3d::Identity() - a * cross + b * cross * cross;
-}
-
 Vector3d EulerXyzFromRotation(const Matrix3d& rotation) {
   const double sine_b = std::clamp(rotation(0, 2), -1.0, 1.0);
   const double b = std::asin(sine_b);
-  if (std::abs(sine_b) > 1 - 1e-10) {  // gimbal lock: choose c = 0
+  if (std::abs(sine_b) > 1 - 1e-10) {  // gimbal lock: only a +- c is known
     return {std::atan2(rotation(2, 1), rotation(1, 1)), b, 0};
   }
   return {std::atan2(-rotation(1, 2), rotation(2, 2)), b,
@@ -81,10 +63,10 @@ Matrix3d RotationFromEulerXyz(const Vector3d& angles) {
 
 Matrix3d NearestRotation(const Matrix3d& matrix) {
   const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // Where U V^T is a reflection, the direction of the least singular value is turned around: Eigen
+  // sorts singular values by falling size, and this costs least.
   Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
-
-Quaterniond MeanRotation(const Quaterniond& a, const Quaterniond& b) { return a.slerp(0.5, b); }
 
 }  // namespace pleat

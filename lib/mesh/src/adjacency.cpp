@@ -17,6 +17,7 @@ VertexAdjacency::VertexAdjacency(const Topology& topology) {
       pairs.emplace_back(b, a);
     }
   }
+  // Sorted pairs are the lists already, one vertex after the other: only the starts are missing.
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   starts_.assign(static_cast<size_t>(topology.num_vertices()) + 1, 0);

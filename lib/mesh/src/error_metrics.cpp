@@ -16,6 +16,7 @@ void ErrorAccumulator::AddFrame(const Eigen::Ref<const Eigen::Matrix3Xd>& predic
   sum_m_ += distances.sum();
   sum_squared_m2_ += distances.squaredNorm();
   frame_mean_m_.push_back(distances.mean());
+  // A run of consecutive frames: the motion error needs two of them, the jitter three.
   const bool follows = follows_previous && previous_difference_.cols() == difference.cols();
   run_length_ = follows ? run_length_ + 1 : 1;
   if (run_length_ >= 2) {
@@ -43,6 +44,7 @@ ErrorSummary ErrorAccumulator::Summarize() const {
   summary.mean_percent = sum_m_ / count * to_percent;
   summary.rms_percent = std::sqrt(sum_squared_m2_ / count) * to_percent;
   std::vector<float> sorted = distances_m_;
+  // The 95th percentile over all vertices of all frames, without interpolation between ranks.
   const size_t rank = static_cast<size_t>(0.95 * (count - 1));
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(rank), sorted.end());
   summary.p95_percent = sorted[rank] * to_percent;

@@ -6,15 +6,16 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <tuple>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/mesh/bounds.h"
+#include "pleat/mesh/edge_sides.h"
 
 namespace pleat {
 namespace {
 
+// Disjoint sets with path halving; nearly constant time for each call.
 class DisjointSets {
  public:
   explicit DisjointSets(int count) : parents_(static_cast<size_t>(count)) {
@@ -34,27 +35,14 @@ class DisjointSets {
 };
 
 void CountEdges(const Topology& topology, MeshReport* report) {
-  // low vertex, high vertex, direction; equal edges are neighbors after sorting.
-  std::vector<std::tuple<int32_t, int32_t, bool>> edges;
-  edges.reserve(static_cast<size_t>(topology.num_corners()));
-  for (int f = 0; f < topology.num_faces(); ++f) {
-    const std::span<const int32_t> corners = topology.face(f);
-    for (size_t c = 0; c < corners.size(); ++c) {
-      const int32_t a = corners[c], b = corners[(c + 1) % corners.size()];
-      if (a != b) edges.emplace_back(std::min(a, b), std::max(a, b), a < b);
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    const auto [low, high, direction] = edges[begin];
-    while (end < edges.size() && std::get<0>(edges[end]) == low &&
-           std::get<1>(edges[end]) == high) {
-      ++end;
-    }
+  const std::vector<EdgeSide> sides = SortedEdgeSides(topology);
+  for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    end = EndOfEdge(sides, begin);
     const size_t num_faces = end - begin;
     report->num_boundary_edges += num_faces == 1;
     report->num_non_manifold_edges += num_faces > 2;
-    report->num_inconsistent_edges += num_faces == 2 && std::get<2>(edges[end - 1]) == direction;
+    report->num_inconsistent_edges +=
+        num_faces == 2 && sides[begin].forward == sides[end - 1].forward;
   }
 }
 
@@ -70,7 +58,8 @@ int CountComponents(DisjointSets* sets, const std::vector<bool>& referenced) {
   return count;
 }
 
-// Components, unreferenced and doubled vertices.
+// Counts components, unreferenced and doubled vertices. The sets of the first count are joined
+// further for the second, with vertices at one place as one.
 void CountParts(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                 MeshReport* report) {
   DisjointSets sets(topology.num_vertices());
@@ -103,7 +92,7 @@ void CountParts(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3X
 void MeasureFaces(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                   MeshReport* report) {
   const double min_area = 1e-12 * report->bounds.diagonal().squaredNorm();
-  const Eigen::Vector3d center = report->bounds.center();
+  const Eigen::Vector3d center = report->bounds.center();  // keeps the volume's terms small
   std::vector<int32_t> sorted;
   for (int f = 0; f < topology.num_faces(); ++f) {
     const std::span<const int32_t> corners = topology.face(f);

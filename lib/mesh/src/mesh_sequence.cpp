@@ -19,6 +19,7 @@ absl::Status CheckFrame(const Eigen::Matrix3Xf& frame, int num_vertices, const s
     return absl::InvalidArgumentError(
         absl::StrCat(label, " has ", frame.cols(), " vertices, the topology has ", num_vertices));
   }
+  // The fast answer first; only a bad frame is searched for its first bad vertex.
   if (frame.allFinite()) return absl::OkStatus();
   for (Eigen::Index v = 0; v < frame.cols(); ++v) {
     if (!frame.col(v).allFinite()) {

@@ -7,7 +7,7 @@
 namespace pleat {
 namespace {
 
-// Every index of `indices` is -1 (none) or names one of `num_items` items.
+// Checks that every index of `indices` is -1 (none) or names one of `num_items` items.
 absl::Status CheckIndices(const std::vector<int32_t>& indices, int num_expected, size_t num_items,
                           absl::string_view what) {
   if (indices.empty()) return absl::OkStatus();
@@ -35,6 +35,7 @@ absl::StatusOr<Topology> Topology::Create(int num_vertices, std::vector<int32_t>
   topology.num_vertices_ = num_vertices;
   topology.face_starts_.reserve(face_sizes.size() + 1);
   topology.face_starts_.push_back(0);
+  // 64 bits, and the loop ends at the first excess: sizes may come from a hostile file.
   int64_t num_triangles = 0, num_corners = 0;
   for (size_t f = 0; f < face_sizes.size(); ++f) {
     if (face_sizes[f] < 3) {

@@ -11,7 +11,7 @@
 namespace pleat {
 namespace {
 
-// One accepted step and the change of gradient along it.
+// An accepted step and the change of the gradient along it.
 struct Pair {
   Eigen::VectorXd step, change;
   double inverse_product;  // 1 / (step . change)
@@ -22,7 +22,8 @@ struct RayPoint {
   double alpha = 0, value = 0, slope = 0;
 };
 
-// Minimum of the cubic through two values and slopes, kept well inside the interval.
+// Returns the minimum of the cubic through two values and slopes, kept away from both ends by a
+// tenth of the interval, so that Zoom() shrinks it by at least that much each time.
 double CubicMinimum(const RayPoint& a, const RayPoint& b) {
   const double low = std::min(a.alpha, b.alpha), high = std::max(a.alpha, b.alpha);
   const double d1 = a.slope + b.slope - 3 * (a.value - b.value) / (a.alpha - b.alpha);
@@ -48,8 +49,12 @@ class Lbfgs {
  private:
   void ChooseDirection();
   RayPoint EvaluateOnRay(double alpha);
-  // Leaves the new point in trial_, trial_gradient_; false when no decrease was found.
+  // Looks for a step that meets the strong Wolfe conditions (Nocedal and Wright, algorithm 3.5) and
+  // leaves it in trial_ and trial_gradient_; false when no decrease was found. `value` receives the
+  // objective there.
   bool SearchLine(double first_alpha, const Progress& progress, double* value);
+  // Narrows an interval that holds such a step (algorithm 3.6). `low` is the end with the lower
+  // value, which may be the right one.
   bool Zoom(RayPoint low, RayPoint high, const RayPoint& origin, int budget,
             const Progress& progress, double* value);
   bool Decreases(const RayPoint& point, const RayPoint& origin) const {
@@ -67,6 +72,8 @@ class Lbfgs {
   std::deque<Pair> pairs_;
 };
 
+// The two-loop recursion (algorithm 7.4). Between the loops the direction is scaled by (s.y) /
+// |y|^2 of the newest pair, the usual guess of the inverse Hessian.
 void Lbfgs::ChooseDirection() {
   direction_ = -gradient_;
   if (pairs_.empty()) return;
@@ -114,6 +121,8 @@ bool Lbfgs::SearchLine(double first_alpha, const Progress& progress, double* val
     previous = point;
     alpha *= 2;
   }
+  // The budget is used up. The last point that decreased is evaluated again, since trial_ no longer
+  // holds it.
   if (previous.alpha <= 0) return false;
   *value = EvaluateOnRay(previous.alpha).value;
   return std::isfinite(*value);
@@ -152,6 +161,7 @@ absl::StatusOr<Eigen::VectorXd> Lbfgs::Run(const Eigen::VectorXd& start,
       break;
     }
     ChooseDirection();
+    // Before the first pair nothing is known of the scale: the first step is at most 1 long.
     const double first_alpha = pairs_.empty() ? std::min(1.0, 1 / gradient_.norm()) : 1;
     double value = value_;
     const bool found = SearchLine(first_alpha, progress, &value);
@@ -167,6 +177,7 @@ absl::StatusOr<Eigen::VectorXd> Lbfgs::Run(const Eigen::VectorXd& start,
       continue;
     }
     Pair pair{trial_ - x_, trial_gradient_ - gradient_, 0};
+    // A pair without clearly positive curvature would make the inverse Hessian indefinite.
     const double product = pair.step.dot(pair.change);
     if (product > 1e-12 * pair.step.norm() * pair.change.norm()) {
       pair.inverse_product = 1 / product;

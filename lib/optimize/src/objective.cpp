@@ -22,7 +22,7 @@ GradientCheck CheckGradient(Objective& objective, const Eigen::VectorXd& x, doub
     const double numeric = (above - below) / (2 * h);
     const double error = std::abs(gradient[i] - numeric) /
                          std::max({std::abs(gradient[i]), std::abs(numeric), scale});
-    // Written so that a NaN counts as the worst error.
+    // The comparison is written so that a NaN counts as the worst error.
     if (check.worst_unknown < 0 || !(error <= check.max_relative_error)) {
       check = {error, static_cast<int>(i), gradient[i], numeric};
     }

@@ -1,3 +1,33 @@
+// Conjugate gradients need a step length for each direction, and the usual way to find one is a
+// line search of several evaluations. Moller's idea is to take the step from a local quadratic
+// model instead and to guard it with a trust parameter lambda, as Levenberg and Marquardt do. With
+// the direction d, mu = d.grad f (negative) and kappa = |d|^2, one iteration is:
+//
+// 1. ProbeCurvature: theta, the curvature along d, from a finite difference at x + sigma d. The
+//    step sigma d has the length sigma0 whatever |d| is. This is done only after an accepted step:
+//    a rejected one changes lambda alone, and theta still holds.
+// 2. Step: delta = theta + lambda kappa is the curvature of the damped model. If it is not
+//    positive, the objective is not convex along d; lambda grows by -theta / kappa, which makes
+//    delta the old lambda kappa. The model has its minimum at alpha = -mu / delta.
+// 3. Comparison: the model promises a decrease of -alpha mu / 2. The ratio of the true decrease to
+//    the promised one says how good the model was. A step is accepted when the ratio is not
+//    negative, that is when f does not rise. Above 3/4 lambda is halved, below 1/4 it is multiplied
+//    by 4, and between it stays. At a point outside of the domain (a kernel matrix that cannot be
+//    factored) the ratio counts as -1 and lambda grows by 100, since nothing is known of the scale
+//    there.
+// 4. ChooseDirection: d = gamma d - grad with gamma = (grad_old - grad_new).grad_new / mu, which is
+//    the formula of Hestenes and Stiefel for an exact step. After as many accepted steps as there
+//    are unknowns d starts again from -grad; it also does in ProbeCurvature when rounding has
+//    turned d uphill.
+//
+// So an iteration costs one gradient for the trial point, which becomes the gradient of the next
+// iteration when the step is accepted, and one probe after each accepted step. The probe needs a
+// gradient only through its component along d. Where a value costs half of a gradient, as with
+// Gaussian processes, it is cheaper to take theta from values (ScgCurvature::kValues): f(x + sigma
+// d) = f + sigma mu + sigma^2/2 theta + ... The error of rounding is then eps |f| / sigma^2 instead
+// of eps |grad| / sigma, so sigma is ten times as long, and a difference that rounding could have
+// made is thrown away and the gradient is taken after all.
+
 #include "pleat/optimize/scg.h"
 
 #include <algorithm>
@@ -11,8 +41,8 @@
 namespace pleat {
 namespace {
 
-constexpr double kValueStep = 10;  // of a second difference of values, in those of gradients
-// Smallest share of the value that such a difference may be. Values of likelihoods with kernel
+constexpr double kValueStep = 10;  // step of a second difference, in steps of gradients
+// The smallest share of the value that such a difference may be. Values of likelihoods with kernel
 // matrices at the edge of double precision are rounded at 1e-11 (measured), others at 1e-14.
 constexpr double kSmallestSecondDifference = 1e-10;
 
@@ -58,7 +88,8 @@ bool ScaledConjugateGradients::ProbeCurvature() {
   return true;
 }
 
-// f(x + sigma d) = f + sigma mu + sigma^2/2 theta + ...
+// The Taylor series f(x + sigma d) = f + sigma mu + sigma^2/2 theta + ... solved for theta. theta_
+// is of use only when true is returned.
 bool ScaledConjugateGradients::CurvatureFromValues(double sigma) {
   probe_ = x_ + sigma * direction_;
   const double value = objective_.Evaluate(probe_, nullptr);
@@ -79,7 +110,7 @@ void ScaledConjugateGradients::CurvatureFromGradients(double sigma) {
 
 bool ScaledConjugateGradients::Step() {
   double delta = theta_ + lambda_ * kappa_;
-  if (delta <= 0) {  // make the model convex
+  if (delta <= 0) {  // makes the model convex
     delta = lambda_ * kappa_;
     lambda_ -= theta_ / kappa_;
   }
@@ -97,7 +128,7 @@ bool ScaledConjugateGradients::Step() {
     std::swap(gradient_, probe_gradient_);  // probe_gradient_ now holds the previous gradient
     ++num_accepted_;
   }
-  // Outside the domain nothing is known of the scale: shrink fast.
+  // Outside of the domain nothing is known of the scale: shrink fast.
   if (comparison < .25) lambda_ = std::min((finite ? 4 : 100) * lambda_, options_.max_lambda);
   if (comparison > .75) lambda_ = std::max(.5 * lambda_, options_.min_lambda);
   return accepted;
@@ -108,6 +139,8 @@ void ScaledConjugateGradients::ChooseDirection(bool accepted) {
     direction_ = -gradient_;
     num_accepted_ = 0;
   } else if (accepted) {
+    // After the swap in Step() probe_gradient_ is the gradient of the point before, and mu_ its
+    // slope.
     const double gamma = (probe_gradient_ - gradient_).dot(gradient_) / mu_;
     direction_ = gamma * direction_ - gradient_;
   }

@@ -8,7 +8,7 @@
 namespace pleat {
 namespace {
 
-// Entries that may be above zero, in ascending order.
+// The entries that may be above zero, in ascending order. All others are held at zero.
 struct PassiveSet {
   std::array<int, kMaxSimplexQpSize> entries;
   int size = 0;
@@ -21,8 +21,9 @@ struct PassiveSet {
   }
 };
 
-// The minimum over the passive entries with sum 1 and free signs; returns the multiplier of the
-// sum, which is the gradient of every passive entry there.
+// Finds the minimum over the passive entries with sum 1 and free signs, and returns the multiplier
+// of the sum. At that minimum every passive entry has this gradient; an entry held at zero whose
+// gradient is smaller would lower the objective if it were let go.
 double SolvePassive(const SimplexQpMatrix& hessian, const SimplexQpVector& linear,
                     const PassiveSet& passive, SimplexQpVector* solution) {
   const int n = passive.size;
@@ -40,7 +41,8 @@ double SolvePassive(const SimplexQpMatrix& hessian, const SimplexQpVector& linea
   return multiplier;
 }
 
-// Goes from the feasible `x` towards `target` until an entry meets zero; drops it from the set.
+// Goes from the feasible `x` towards `target` until an entry meets zero, and drops that entry from
+// the set. The way is straight and the objective convex, so it falls.
 void StepToBoundary(const SimplexQpVector& target, PassiveSet* passive, SimplexQpVector* x) {
   double step = 1;
   for (int i = 0; i < passive->size; ++i) {
@@ -68,8 +70,8 @@ void SolveSimplexQp(const SimplexQpMatrix& hessian, const SimplexQpVector& linea
   for (int i = 0; i < n; ++i) {
     if ((*x)[i] > 0) passive.Add(i);
   }
-  // Every turn either ends at a minimum over a new face of the simplex or drops an entry; the bound
-  // only guards against rounding.
+  // Every turn either ends at a minimum over a new face of the simplex or drops an entry. The
+  // objective falls each time, so no face comes twice; the bound only guards against rounding.
   for (int turn = 0; turn < 8 * n; ++turn) {
     SimplexQpVector target(passive.size);
     const double multiplier = SolvePassive(hessian, linear, passive, &target);

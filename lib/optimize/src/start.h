@@ -11,7 +11,8 @@
 
 namespace pleat {
 
-// Evaluates `objective` at the start; an error when nothing can be minimized from there.
+// Evaluates `objective` at the start. The error is kInvalidArgument when nothing can be minimized
+// from there. Cancellation is looked at first, since a cancelled objective returns NaN.
 inline absl::Status EvaluateStart(Objective& objective, const Eigen::VectorXd& start,
                                   const Progress& progress, double* value,
                                   Eigen::VectorXd* gradient) {
@@ -31,6 +32,7 @@ inline absl::Status EvaluateStart(Objective& objective, const Eigen::VectorXd& s
   return absl::OkStatus();
 }
 
+// Returns the largest absolute entry, which the tolerance of gradients is compared with.
 inline double LargestEntry(const Eigen::VectorXd& v) {
   return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
 }

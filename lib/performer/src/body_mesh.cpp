@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 constexpr double kGridSpacing = .0095;  // resolves hands and feet; independent of the wanted count
 
-// Edge length of the torso at which an isotropic mesh of this surface has `num_vertices`: each
-// vertex stands for two equilateral triangles.
+// Returns the edge length of the torso at which an isotropic mesh of this surface has
+// `num_vertices`: each vertex stands for two equilateral triangles.
 double EdgeLengthFor(const CharacterShape& shape, const TriangleSoup& soup, int num_vertices) {
   double relative_area = 0;
   for (const std::array<int, 3>& t : soup.triangles) {
@@ -27,7 +27,8 @@ double EdgeLengthFor(const CharacterShape& shape, const TriangleSoup& soup, int 
   return std::sqrt(relative_area / num_vertices * 2 / std::sqrt(3.));
 }
 
-// Every directed edge once with its reverse, one component, Euler characteristic 2.
+// Checks that every directed edge occurs once and with its reverse, that there is one component,
+// and that the Euler characteristic is 2. Remeshing keeps all of it; this is the proof.
 absl::Status CheckClosedSphere(const TriangleSoup& soup) {
   std::map<std::pair<int, int>, int> directed;
   std::vector<int> parent(soup.positions.size());
@@ -72,6 +73,8 @@ absl::StatusOr<TriangleSoup> BuildBodyMesh(const CharacterShape& shape, int num_
   PLEAT_ASSIGN_OR_RETURN(TriangleSoup soup,
                          ExtractIsosurface(options.distance, low, high, kGridSpacing,
                                            progress.Stage("polygonize", 0, .3)));
+  // The isosurface is much finer than the wanted mesh and its triangles are slivers; remeshing
+  // makes the mesh, the isosurface only gives it the right topology.
   double edge_length = EdgeLengthFor(shape, soup, num_vertices);
   options.edge_length = [&](const Vector3d& p) {
     return edge_length * shape.RelativeEdgeLength(p);

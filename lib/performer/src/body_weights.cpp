@@ -21,6 +21,7 @@ double SegmentDistance(const Vector3d& p, const Vector3d& a, const Vector3d& b) 
   return (p - a - t * axis).norm();
 }
 
+// A vertex may only follow bones of its own region: the hand beside the hip must not stick to it.
 std::span<const int> RegionBones(BodyRegion region) {
   static constexpr int kTorso[] = {kSpine,         kChest,        kHead,         kLeftUpperArm,
                                    kRightUpperArm, kLeftUpperLeg, kRightUpperLeg};
@@ -57,7 +58,7 @@ int NearestBone(const CharacterShape& shape, BodyRegion region, const Vector3d& 
   return nearest;
 }
 
-// Weights before diffusion, V x num_joints.
+// Returns the weights before diffusion, V x num_joints.
 Eigen::MatrixXd AssignBones(const CharacterShape& shape, const TriangleSoup& mesh) {
   const int num_vertices = static_cast<int>(mesh.positions.size());
   Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(num_vertices, kNumHumanJoints);
@@ -75,7 +76,7 @@ Eigen::MatrixXd AssignBones(const CharacterShape& shape, const TriangleSoup& mes
   return weights;
 }
 
-// (M + c L) with the cotangent Laplacian L and lumped areas M; also fills `areas`.
+// Returns M + c L with the cotangent Laplacian L and lumped areas M, and fills `areas`.
 Eigen::SparseMatrix<double> DiffusionMatrix(const TriangleSoup& mesh, double coefficient,
                                             Eigen::VectorXd* areas) {
   const int num_vertices = static_cast<int>(mesh.positions.size());
@@ -88,7 +89,7 @@ Eigen::SparseMatrix<double> DiffusionMatrix(const TriangleSoup& mesh, double coe
       const Vector3d u = mesh.positions[i] - mesh.positions[t[c]];
       const Vector3d w = mesh.positions[j] - mesh.positions[t[c]];
       const double double_area = u.cross(w).norm();
-      // Clamped at 0 (obtuse corners) so that diffusion never makes a weight negative.
+      // Clamped at 0 (obtuse corners), so that diffusion never makes a weight negative.
       const double half_cotangent = std::max(u.dot(w), 0.0) / (2 * std::max(double_area, 1e-15));
       (*areas)[t[c]] += double_area / 6;
       const double value = coefficient * half_cotangent;

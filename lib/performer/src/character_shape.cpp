@@ -1,4 +1,6 @@
-// Smooth unions of simple solids; ellipsoid distance to first order (Taubin 1994).
+// The body is a smooth union of simple solids. Distances are approximate: exact for capsules of one
+// radius, to first order for ellipsoids (Taubin 1994), and lower in the blends. The isosurface
+// needs only their zero set, and remeshing corrects what the slope is off.
 #include "character_shape.h"
 
 #include <algorithm>
@@ -47,6 +49,8 @@ ShapePart Ellipsoid(const Vector3d& center, const Vector3d& radii, double blend,
   return part;
 }
 
+// Parts join one after the other, each with its own width, so their order in a list matters a
+// little.
 double UnionDistance(const std::vector<ShapePart>& parts, const Vector3d& p) {
   double distance = parts[0].Distance(p);
   for (size_t i = 1; i < parts.size(); ++i) {
@@ -55,7 +59,7 @@ double UnionDistance(const std::vector<ShapePart>& parts, const Vector3d& p) {
   return distance;
 }
 
-// The template with proportions of its own: shoulder width, arm length, stance.
+// Returns the template with proportions of its own: shoulder width, arm length, stance.
 Skeleton VaryTemplate(Random& random) {
   const double shoulders = random.Uniform(.96, 1.05);
   const double arms = random.Uniform(.97, 1.04);
@@ -104,6 +108,8 @@ Vector3d SkirtShape::Point(double theta, double s) const {
           center_z + radius * std::cos(theta)};
 }
 
+// Negative inside of the bell, which is a solid with a hollow underside. Radial distances are
+// reduced by the slope of the flare to be about true distances.
 double SkirtShape::Distance(const Vector3d& p) const {
   const double above = p.y() - waist_y, below = hem_y - p.y();
   const double radial = std::hypot(p.x(), p.z() - center_z);
@@ -113,7 +119,8 @@ double SkirtShape::Distance(const Vector3d& p) const {
   const double s = Fraction(p.y());
   const double radius = Radius(theta, s);
   const double outer = .92 * (radial - radius);  // .92: cosine of the mean flare
-  // The underside is hollow: it rises from the hem towards the legs.
+  // The underside is hollow: it rises from the hem towards the legs, so that the surface of the
+  // skirt and that of the legs are one closed surface of genus 0.
   const double inward = 1 - std::min(radial / radius, 1.0);
   const double underside = below + .03 * Smoothstep(0, .6, inward);
   return SmoothMax(SmoothMax(outer, above, .012), underside, .030);

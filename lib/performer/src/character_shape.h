@@ -50,15 +50,15 @@ class CharacterShape {
 
   // Approximate signed distance to the whole surface.
   double Distance(const Eigen::Vector3d& p) const;
-  // Of one region alone.
+  // The distance to one region alone.
   double RegionDistance(BodyRegion region, const Eigen::Vector3d& p) const;
   BodyRegion NearestRegion(const Eigen::Vector3d& p) const;
-  // Of both legs without the skirt.
+  // The distance to both legs, without the skirt.
   double LegDistance(const Eigen::Vector3d& p) const;
-  // How much of the skirt's displacement a surface point takes, 0..1: 1 on the bell, falling to 0
-  // along its underside towards the legs.
+  // Returns how much of the skirt's displacement a surface point takes, 0..1: 1 on the bell,
+  // falling to 0 along its underside towards the legs.
   double SkirtShare(const Eigen::Vector3d& p) const;
-  // Wanted edge length relative to the torso's: finer on head, arms, legs.
+  // Returns the wanted edge length relative to the torso's: finer on head, arms and legs.
   double RelativeEdgeLength(const Eigen::Vector3d& p) const;
 
   struct Box {

@@ -18,7 +18,7 @@ int Ankle(int side) { return side == 0 ? kLeftFoot : kRightFoot; }
 
 double Wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 
-// A bump of height 1 at `center` of a cycle, zero from `width` away.
+// Returns a bump of height 1 at `center` of a cycle, zero from `width` away.
 double CycleBump(double cycle_part, double center, double width) {
   const double away = std::abs(std::remainder(cycle_part - center, 1.0)) / width;
   return away < 1 ? std::pow(std::cos(away * std::numbers::pi / 2), 2) : 0;
@@ -36,6 +36,8 @@ Footwork::Footwork(const Skeleton& skeleton, const Course& course, double heel_r
   }
 }
 
+// A foot stands where it is right below the hips at the middle of its stance; that instant is
+// looked up on the course, which reaches beyond the end of the motion for this.
 Footwork::Spot Footwork::PlanSpot(int side, int cycle) const {
   const Vector3d rest = skeleton_.rest_position(Ankle(side));
   if (cycle <= std::floor(kStart[side])) return {rest, 0};  // where the foot stands at the start
@@ -91,7 +93,7 @@ LegAngles SolveLeg(const Vector3d& thigh, const Vector3d& shin, const Vector3d& 
       (ankle.squaredNorm() - thigh.squaredNorm() - shin.squaredNorm()) / 2 - thigh.x() * shin.x();
   angles.knee = Wrapped(std::atan2(c, b) + std::acos(std::clamp(d / std::hypot(b, c), -1.0, 1.0)));
   const Vector3d leg = thigh + AngleAxisd(angles.knee, Vector3d::UnitX()) * shin;
-  // Rx turns the leg to the wanted z, then Rz to the wanted x and y.
+  // First Rx turns the leg to the wanted z, then Rz to the wanted x and y.
   const Vector3d wanted = ankle * (leg.norm() / std::max(ankle.norm(), 1e-9));
   const double radius = std::hypot(leg.y(), leg.z());
   const double z = std::clamp(wanted.z(), -radius, radius);

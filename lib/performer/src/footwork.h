@@ -1,4 +1,4 @@
-// Where the feet stand and how the legs reach there.
+// Plans where the feet stand, and how the legs reach there.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,14 @@
 
 namespace pleat {
 
-// What the steps follow, sampled at every frame. A cycle is one step of each foot.
+// The course that the steps follow, sampled at every frame. A cycle is one step of each foot.
 struct Course {
-  std::vector<double> cycles;         // of the left foot, counted from the start, rising
+  std::vector<double> cycles;         // cycles of the left foot since the start, rising
   std::vector<double> liveliness;     // 0 standing with both feet .. 1 stepping
-  std::vector<Eigen::Vector3d> path;  // of the hips, body heights; y is not used
+  std::vector<Eigen::Vector3d> path;  // way of the hips, body heights; y is not used
   std::vector<double> heading;        // radians about y
   std::vector<double> lift;           // height of the swinging foot, body heights
-  // Wanted place of each foot besides its place below the hips, in axes of the heading.
+  // The wanted place of each foot besides its place below the hips, in axes of the heading.
   std::array<std::vector<Eigen::Vector3d>, 2> offsets;
 };
 
@@ -28,7 +28,8 @@ struct FootTarget {
 };
 
 // Plans both feet (0 left, 1 right) along a course: a foot stands still on its spot for the first
-// part of a cycle, below the hips at half of it, and swings to the next spot for the rest.
+// part of a cycle, below the hips at half of that part, and swings to the next spot for the rest.
+// Skeleton and course must outlive this object.
 class Footwork {
  public:
   static constexpr double kStance = .62;  // share of a cycle
@@ -53,7 +54,7 @@ class Footwork {
 
 // Rotations of thigh and shin, in the axes of the pelvis, that bring the ankle to `ankle` (relative
 // to the hip joint, axes of the pelvis) with the knee bending forward; the nearest reach when it is
-// too far. Rest pose vectors: hip to knee and knee to ankle.
+// too far. `thigh` and `shin` are vectors of the rest pose: hip to knee and knee to ankle.
 struct LegAngles {
   double flexion = 0, abduction = 0, knee = 0;  // radians; abduction about z, towards +x
 

@@ -98,7 +98,8 @@ class Marcher {
 
   void AddTriangle(const Vector3i& cell, const std::array<int, 2>& a, const std::array<int, 2>& b,
                    const std::array<int, 2>& c, const Vector3d& outward) {
-    // Orientation is judged on edge midpoints: exact numbers, unlike the crossings themselves.
+    // Orientation is judged on edge midpoints, which are exact numbers, unlike the crossings
+    // themselves.
     const auto middle = [](const std::array<int, 2>& e) {
       return Vector3d((Corner(e[0]) + Corner(e[1])).cast<double>());
     };
@@ -108,6 +109,8 @@ class Marcher {
     soup_.triangles.push_back(triangle);
   }
 
+  // An edge is named by its lower grid point and the bits of the offset to the other one, so that
+  // all tetrahedra around it share one vertex. That is what makes the surface closed.
   int EdgeVertex(const Vector3i& cell, const std::array<int, 2>& edge) {
     const int low = std::min(edge[0], edge[1]), high = std::max(edge[0], edge[1]);
     const Vector3i origin = cell + Corner(low);
@@ -115,7 +118,7 @@ class Marcher {
     if (vertex < 0) {
       vertex = static_cast<int>(soup_.positions.size());
       const double a = Value(cell, low), b = Value(cell, high);
-      // Kept off the grid points, where several vertices would coincide.
+      // Crossings are kept off the grid points, where several vertices would coincide.
       const double t = std::clamp(a / (a - b), .02, .98);
       soup_.positions.push_back((1 - t) * Position(origin) + t * Position(cell + Corner(high)));
     }

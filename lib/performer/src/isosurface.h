@@ -18,8 +18,9 @@ struct TriangleSoup {
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
 };
 
-// The zero set of `distance` (negative inside) in the box [low, high], which must contain it
-// completely, sampled with `spacing`. Closed and 2-manifold: tetrahedra leave no ambiguous case.
+// Extracts the zero set of `distance` (negative inside) in the box [low, high], which must contain
+// it completely, sampled with `spacing`. The result is closed and 2-manifold: tetrahedra leave no
+// ambiguous case. Only kCancelled is an error. `distance` is called from several threads.
 absl::StatusOr<TriangleSoup> ExtractIsosurface(
     const std::function<double(const Eigen::Vector3d&)>& distance, const Eigen::Vector3d& low,
     const Eigen::Vector3d& high, double spacing, const Progress& progress);

@@ -41,13 +41,13 @@ absl::Status Validate(const PerformerOptions& options) {
   return absl::OkStatus();
 }
 
-// Everything in meters and turned to the wanted facing.
+// The stage turns what is made in body heights, facing +z, into meters and the wanted facing.
 struct Stage {
   double height_m;
   Eigen::Quaterniond facing;
 
   Eigen::Vector3d Place(const Eigen::Vector3d& p) const { return height_m * (facing * p); }
-  // A rotation in the axes of the unturned character, in those of the turned one.
+  // Turns a rotation in the axes of the unturned character into those of the turned one.
   Eigen::Quaterniond Turn(const Eigen::Quaterniond& q) const {
     return (facing * q * facing.conjugate()).normalized();
   }
@@ -61,17 +61,18 @@ Skeleton PlaceSkeleton(const Stage& stage, const Skeleton& skeleton) {
   return skeleton.WithRestPositions(joints);
 }
 
-void PlaceTrack(const Stage& stage, const Skeleton& placed_skeleton, PoseTrack* track) {
-  const Eigen::Vector3d rest_root = placed_skeleton.rest_position(0);
-  for (Pose& pose : track->poses) {
+PoseTrack PlaceTrack(const Stage& stage, const Skeleton& placed_skeleton, PoseTrack track) {
+  PoseTrack::Parts placed = std::move(track).Take();
+  for (Pose& pose : placed.poses) {
     pose.root_position = stage.Place(pose.root_position);
     for (Eigen::Quaterniond& q : pose.rotations) q = stage.Turn(q);
   }
-  track->poses[0] = Pose::Rest(placed_skeleton);
-  track->poses[0].root_position = rest_root;
+  placed.poses[0] = Pose::Rest(placed_skeleton);
+  return PoseTrack::FromValid(std::move(placed));
 }
 
-// Detail of the skirt at the mesh's vertices.
+// The detail of the skirt at the mesh's vertices: which share of which particles' displacements
+// each vertex takes.
 class SkirtDetail {
  public:
   SkirtDetail(const CharacterShape& shape, const SkirtDynamics& dynamics,
@@ -86,7 +87,8 @@ class SkirtDetail {
   }
   const std::vector<int>& vertices() const { return vertices_; }
 
-  // grid: 3 x P, body heights, unturned world axes. positions: 3 x V, meters.
+  // Adds the skirt's displacements. grid: 3 x P, body heights, unturned world axes. positions: 3 x
+  // V, meters.
   void Add(const Eigen::Matrix3Xf& grid, const Stage& stage, Eigen::Matrix3Xd* positions) const {
     for (size_t i = 0; i < vertices_.size(); ++i) {
       Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
@@ -114,7 +116,7 @@ absl::StatusOr<std::vector<Eigen::Matrix3Xf>> ComputeFrames(
     if (progress.cancelled()) return;
     const int t = item + 1;
     BoneTransforms bones;
-    ComputeBoneTransforms(truth.rig.skeleton, truth.track.poses[t], {}, &bones);
+    ComputeBoneTransforms(truth.rig.skeleton, truth.track.pose(t), {}, &bones);
     Eigen::Matrix3Xd positions;
     SkinVertices(truth.rig.weights, truth.rig.rest_positions, bones, &positions);
     detail.Add(grids[t], stage, &positions);
@@ -148,7 +150,8 @@ absl::StatusOr<Performer> GeneratePerformer(const PerformerOptions& options,
                     Eigen::Quaterniond(Eigen::AngleAxisd(
                         options.yaw_degrees * std::numbers::pi / 180, Eigen::Vector3d::UnitY()))};
   const int num_vertices = static_cast<int>(mesh.positions.size());
-  // Rounded through a matrix of its own: GCC 12.2 at -O2 drops the rounding of a single
+  // The rest shape is rounded to float32 first, so that frame 0 is exactly the rest shape of the
+  // truth. It goes through a matrix of its own: GCC 12.2 at -O2 drops the rounding of a single
   // Vector3d -> Vector3f -> Vector3d.
   Eigen::Matrix3Xf rest(3, num_vertices);
   for (int v = 0; v < num_vertices; ++v) {
@@ -161,11 +164,11 @@ absl::StatusOr<Performer> GeneratePerformer(const PerformerOptions& options,
   PLEAT_ASSIGN_OR_RETURN(Topology topology, Topology::FromTriangles(num_vertices, triangles));
 
   const SkirtDetail detail(shape, dynamics, mesh);
-  PerformerTruth truth{
-      .rig = {PlaceSkeleton(stage, shape.skeleton()), std::move(weights), rest.cast<double>()},
-      .track = std::move(track),
-      .is_skirt = std::vector<uint8_t>(num_vertices, 0)};
-  PlaceTrack(stage, truth.rig.skeleton, &truth.track);
+  Skeleton placed_skeleton = PlaceSkeleton(stage, shape.skeleton());
+  PoseTrack placed_track = PlaceTrack(stage, placed_skeleton, std::move(track));
+  PerformerTruth truth{.rig = {std::move(placed_skeleton), std::move(weights), rest.cast<double>()},
+                       .track = std::move(placed_track),
+                       .is_skirt = std::vector<uint8_t>(num_vertices, 0)};
   for (int v : detail.vertices()) truth.is_skirt[v] = 1;
   PLEAT_ASSIGN_OR_RETURN(
       std::vector<Eigen::Matrix3Xf> frames,

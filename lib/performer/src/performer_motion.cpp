@@ -18,7 +18,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
-constexpr double kEaseIn_s = .8;    // from standing still to moving
+constexpr double kEaseIn_s = .8;    // time from standing still to moving
 constexpr double kLookAhead_s = 3;  // planned beyond the end: steps aim at where the hips will be
 
 Quaterniond About(double angle, const Vector3d& axis) {
@@ -34,7 +34,7 @@ Vector3d Leftward(double heading) { return {std::cos(heading), 0, -std::sin(head
 // Angles of the body above the legs and height of the hips at one instant, radians and body
 // heights; index 0 left, 1 right. Zero is the rest pose.
 struct Bearing {
-  double drop = 0, sway = 0;  // of the hips: down, to the left
+  double drop = 0, sway = 0;  // movement of the hips: down, to the left
   double pelvis_pitch = 0, pelvis_yaw = 0, pelvis_roll = 0;
   double chest_pitch = 0, chest_yaw = 0, chest_roll = 0;
   double head_pitch = 0, head_yaw = 0;
@@ -67,6 +67,8 @@ class MotionGenerator {
   Random random_;
   const double tempo_ = random_.Uniform(.92, 1.08);
   const double jump_offset_s_ = random_.Uniform(0, 5);
+  // Members are initialized in this order, and each draws from random_: the order is part of what a
+  // seed means.
   const SmoothNoise tempo_noise_{&random_, 5}, turn_{&random_, 4}, spin_{&random_, 5};
   const SmoothNoise energy_{&random_, 6}, crouch_{&random_, 3.5}, twist_{&random_, 4.5};
   const SmoothNoise sway_{&random_, 3.8}, lean_{&random_, 5}, look_{&random_, 3};
@@ -78,7 +80,7 @@ class MotionGenerator {
   const std::array<SmoothNoise, 2> bend_{SmoothNoise{&random_, 3}, SmoothNoise{&random_, 3}};
 };
 
-// phase: 0 where the left heel meets the floor.
+// One instant of a walk. phase: 0 where the left heel meets the floor.
 Bearing MotionGenerator::Walk(double time_s, double phase) const {
   const double standing = phase - kTwoPi * Footwork::kStance / 2;  // 0: left foot below the hips
   Bearing b;
@@ -102,6 +104,7 @@ Bearing MotionGenerator::Walk(double time_s, double phase) const {
   return b;
 }
 
+// One instant of a dance: the same cycle of steps, with larger and less regular movements above it.
 Bearing MotionGenerator::Dance(double time_s, double phase) const {
   const double standing = phase - kTwoPi * Footwork::kStance / 2;
   const double energy = 1 + .30 * energy_(time_s);
@@ -151,6 +154,8 @@ double MotionGenerator::JumpHeight(double time_s) const {
   return 4 * kTop * u * (1 - u) * Smoothstep(kEaseIn_s, 2 * kEaseIn_s, time_s);
 }
 
+// Integrates heading and path over time. Steps are taken faster in a turn, and everything eases in
+// from standing still, so that frame 0 is the rest pose.
 Course MotionGenerator::PlanCourse(int num_frames) const {
   const double cycles_per_s = (walk_ ? .90 : .74) * tempo_;
   Course course;
@@ -202,6 +207,8 @@ void MotionGenerator::PoseUpperBody(const Bearing& b, double ease, Pose* pose) c
   }
 }
 
+// The legs follow the feet: two-bone inverse kinematics in the axes of the pelvis, then the foot's
+// own turn against that of the leg.
 void MotionGenerator::PoseLegs(const std::array<FootTarget, 2>& feet, double ease,
                                Pose* pose) const {
   const Quaterniond& pelvis = pose->rotations[kHips];
@@ -229,8 +236,7 @@ PoseTrack MotionGenerator::Generate() {
   const Course course =
       PlanCourse(options_.num_frames + static_cast<int>(std::ceil(kLookAhead_s * options_.fps)));
   const Footwork footwork(skeleton_, course, walk_ ? .75 : .45);
-  PoseTrack track;
-  track.fps = options_.fps;
+  PoseTrack::Parts track{.fps = options_.fps};
   for (int t = 0; t < options_.num_frames; ++t) {
     const double time_s = t / options_.fps;
     const double ease = course.liveliness[t];
@@ -251,7 +257,7 @@ PoseTrack MotionGenerator::Generate() {
     PoseLegs(feet, ease, &pose);
     track.poses.push_back(std::move(pose));
   }
-  return track;
+  return PoseTrack::FromValid(std::move(track));
 }
 
 }  // namespace

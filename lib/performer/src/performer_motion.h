@@ -13,9 +13,9 @@ struct MotionOptions {
   double fps = 30;
 };
 
-// A motion of `skeleton` (human template, units of body height, facing +z, floor y = 0) that begins
-// in the rest pose. The feet stand on the floor without sliding except in jumps. The first frames
-// do not depend on num_frames.
+// Generates a motion of `skeleton` (human template, units of body height, facing +z, floor y = 0)
+// that begins in the rest pose. The feet stand on the floor without sliding except in jumps. The
+// first frames do not depend on num_frames.
 PoseTrack GenerateMotion(const Skeleton& skeleton, const MotionOptions& options);
 
 }  // namespace pleat

@@ -1,5 +1,10 @@
-// M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004, section 4;
-// wanted lengths vary over the surface, and relaxed vertices return to the implicit surface.
+// Source: M. Botsch, L. Kobbelt, "A remeshing approach to multiresolution modeling", SGP 2004,
+// section 4. Here wanted lengths vary over the surface, and relaxed vertices return to the implicit
+// surface.
+//
+// Removed triangles stay in the list as holes (first entry -1) and removed vertices without
+// triangles, so indices hold through a pass; Compact() drops both at the end. A pass goes over the
+// edges as they were when it began, so each operation first checks that its edge is still there.
 #include "remesh.h"
 
 #include <algorithm>
@@ -27,6 +32,9 @@ class Remesher {
     for (const Vector3d& p : positions_) lengths_.push_back(options_.edge_length(p));
   }
 
+  // An edge at one of these bounds, 4/3 and 4/5 of the wanted length, is as far from it before the
+  // operation as after it, so an operation beyond the bound always brings lengths nearer (Botsch
+  // and Kobbelt).
   void SplitLongEdges() {
     for (const auto& [a, b] : Edges()) {
       if (Length(a, b) > 4. / 3 * WantedLength(a, b)) Split(a, b);
@@ -71,7 +79,8 @@ class Remesher {
     return std::any_of(vertex_triangles_[a].begin(), vertex_triangles_[a].end(),
                        [&](int t) { return Has(triangles_[t], b); });
   }
-  // The two triangles on the edge a-b: the one that runs a -> b first.
+  // Returns the two triangles on the edge a-b, the one that runs a -> b first; -1 where there is
+  // none.
   std::array<int, 2> EdgeTriangles(int a, int b) const {
     std::array<int, 2> found{-1, -1};
     for (int t : vertex_triangles_[a]) {
@@ -114,6 +123,7 @@ class Remesher {
   std::vector<double> lengths_;  // wanted at each vertex
 };
 
+// Each of the two triangles keeps one half and hands the other to a new triangle.
 void Remesher::Split(int a, int b) {
   const std::array<int, 2> sides = EdgeTriangles(a, b);
   if (sides[0] < 0 || sides[1] < 0) return;
@@ -136,6 +146,8 @@ void Remesher::Split(int a, int b) {
   }
 }
 
+// Refuses a collapse that would make an edge so long that it is split again, or turn a triangle by
+// more than 60 degrees.
 bool Remesher::CollapseKeepsShape(int a, int b, const Vector3d& merged) const {
   for (int v : {a, b}) {
     const int other = v == a ? b : a;
@@ -167,6 +179,8 @@ void Remesher::Collapse(int a, int b) {
   std::set_intersection(ring_a.begin(), ring_a.end(), ring_b.begin(), ring_b.end(),
                         std::back_inserter(common));
   if (common.size() != 2) return;
+  // A vertex of valence 3 would be a spike of three triangles, which later collapses could fold
+  // flat.
   for (int v : common) {
     if (Valence(v) <= 4) return;
   }
@@ -184,6 +198,8 @@ void Remesher::Collapse(int a, int b) {
   positions_[a] = merged;
 }
 
+// Flips the edge when that brings the valences of the four vertices nearer to six, unless it would
+// bend the surface by more than about 45 degrees or double an edge.
 void Remesher::Flip(int a, int b) {
   const std::array<int, 2> sides = EdgeTriangles(a, b);
   if (sides[0] < 0 || sides[1] < 0) return;
@@ -210,6 +226,9 @@ void Remesher::Flip(int a, int b) {
   vertex_triangles_[c].push_back(sides[1]);
 }
 
+// Moves every vertex towards the centroid of its triangles within the tangent plane, then back onto
+// the implicit surface. All vertices move at once, from the old positions, so the order and the
+// number of threads do not show.
 void Remesher::RelaxAndProject() {
   constexpr int kBlock = 256;
   const int num_vertices = static_cast<int>(positions_.size());

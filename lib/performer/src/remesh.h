@@ -13,9 +13,9 @@ struct RemeshOptions {
   int num_iterations = 8;
 };
 
-// Brings all edges near the wanted length and all vertices onto the zero set of `distance`.
-// Splits, collapses and flips keep a closed manifold closed, manifold and of the same genus.
-// kCancelled.
+// Brings all edges near the wanted length and all vertices onto the zero set of `distance`. Splits,
+// collapses and flips keep a closed manifold closed, manifold and of the same genus. Only
+// kCancelled is an error. `distance` is called from several threads.
 absl::StatusOr<TriangleSoup> RemeshIsotropic(TriangleSoup soup, const RemeshOptions& options,
                                              const Progress& progress);
 

@@ -1,7 +1,8 @@
 // Extended position-based dynamics: M. Macklin, M. Mueller, N. Chentanez, "XPBD: position-based
 // simulation of compliant constrained dynamics", MIG 2016, with small steps of one iteration
-// (Macklin et al., "Small steps in physics simulation", SCA 2019). Unit masses, so a compliance is
-// 1 / (angular frequency squared).
+// (Macklin et al., "Small steps in physics simulation", SCA 2019). Masses are 1, so a compliance is
+// 1 / (angular frequency squared). Constraints are solved one after the other in the order of
+// links_, on one thread: the order shows in the result.
 #include "skirt_dynamics.h"
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr double kAirDrag = .6;           // 1/s, against still air
 constexpr double kLegMargin = .015;       // cloth over skin, body heights
 constexpr double kStep_s = 1. / 400;      // longest substep
 
-// Catmull-Rom weights of four neighbors at fraction u.
+// Returns the Catmull-Rom weights of four neighbors at fraction u.
 std::array<double, 4> CubicWeights(double u) {
   return {((-.5 * u + 1) * u - .5) * u, (1.5 * u - 2.5) * u * u + 1, ((-1.5 * u + 2) * u + .5) * u,
           (.5 * u - .5) * u * u};
@@ -70,6 +71,8 @@ void SkirtDynamics::AddLink(int a, int b, double compliance) {
   links_.push_back({a, b, (rest_.col(a) - rest_.col(b)).norm(), compliance});
 }
 
+// The skinned bell, the legs and the forces at one pose. They are measured at whole frames;
+// Simulate() interpolates them for the substeps.
 void SkirtDynamics::MeasureSurroundings(const Pose& pose, double gravity, Surroundings* out) const {
   const Skeleton& skeleton = shape_.skeleton();
   BoneTransforms bones;
@@ -100,6 +103,8 @@ void SkirtDynamics::MeasureSurroundings(const Pose& pose, double gravity, Surrou
   }
 }
 
+// Pushes particles out of the capsules of the legs. The first ring is pinned and stays. Later
+// capsules may push back into earlier ones, which the next substep corrects.
 void SkirtDynamics::Collide(const std::vector<Capsule>& legs) {
   for (int id = kNumStrands; id < positions_.cols(); ++id) {
     Vector3d x = positions_.col(id);
@@ -114,6 +119,9 @@ void SkirtDynamics::Collide(const std::vector<Capsule>& legs) {
   }
 }
 
+// One substep: forces, then the constraints (links, the pull to the bell, the legs), then
+// velocities from the change of positions, which is where collisions and constraints take effect on
+// them.
 void SkirtDynamics::Step(const Surroundings& now, double step_s) {
   const Eigen::Matrix3Xd before = positions_;
   const double inverse_step2 = 1 / (step_s * step_s);
@@ -137,6 +145,9 @@ void SkirtDynamics::Step(const Surroundings& now, double step_s) {
   }
   for (int id = kNumStrands; id < positions_.cols(); ++id) {
     const double s = share_of_way_[id];
+    // The pull to the skinned bell falls from the waist to the hem: cloth follows the hips above
+    // and swings below. It is an XPBD constraint of rest length zero; the limit keeps a violent
+    // dance from tearing the skirt off.
     const double frequency = kHemFrequency + (kWaistFrequency - kHemFrequency) * std::pow(1 - s, 3);
     Vector3d offset = positions_.col(id) - now.targets.col(id);
     offset *= 1 - 1 / (1 + inverse_step2 / (frequency * frequency));
@@ -148,21 +159,22 @@ void SkirtDynamics::Step(const Surroundings& now, double step_s) {
   velocities_ = (positions_ - before) / step_s;
 }
 
+// Starts in pose 0 on the skinned bell with all velocities zero.
 absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SkirtDynamics::Simulate(const PoseTrack& track,
                                                                       double gravity,
                                                                       const Progress& progress) {
-  const int num_substeps = std::max(1, static_cast<int>(std::ceil(1 / (track.fps * kStep_s))));
-  const double step_s = 1 / (track.fps * num_substeps);
+  const int num_substeps = std::max(1, static_cast<int>(std::ceil(1 / (track.fps() * kStep_s))));
+  const double step_s = 1 / (track.fps() * num_substeps);
   Surroundings from, to, now;
-  MeasureSurroundings(track.poses[0], gravity, &from);
+  MeasureSurroundings(track.pose(0), gravity, &from);
   positions_ = from.targets;
   velocities_.setZero(3, positions_.cols());
   std::vector<Eigen::Matrix3Xf> displacements;
   displacements.push_back(Eigen::Matrix3Xf::Zero(3, positions_.cols()));
   for (int t = 1; t < track.num_frames(); ++t) {
-    MeasureSurroundings(track.poses[t], gravity, &to);
+    MeasureSurroundings(track.pose(t), gravity, &to);
     now = to;
-    now.target_velocities = (to.targets - from.targets) * track.fps;
+    now.target_velocities = (to.targets - from.targets) * track.fps();
     for (int i = 1; i <= num_substeps; ++i) {
       const double u = static_cast<double>(i) / num_substeps;
       now.targets = from.targets + u * (to.targets - from.targets);

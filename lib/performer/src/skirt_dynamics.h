@@ -9,17 +9,19 @@
 #include "absl/status/statusor.h"
 #include "character_shape.h"
 #include "pleat/base/progress.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 
-// Lookup of one surface point in the grid of particles: value = sum_i weights[i] * grid[ids[i]].
+// The lookup of one surface point in the grid of particles: value = sum_i weights[i] *
+// grid[ids[i]].
 struct SkirtSample {
   std::array<int, 16> ids{};
   std::array<float, 16> weights{};
 };
 
 // Particles on the bell, theta x s. Their displacement from the skinned bell is the skirt's detail.
+// The shape must outlive this object.
 class SkirtDynamics {
  public:
   static constexpr int kNumStrands = 72, kNumRings = 15;
@@ -28,12 +30,12 @@ class SkirtDynamics {
 
   explicit SkirtDynamics(const CharacterShape& shape);
 
-  // Displacements of all particles per frame, 3 x (kNumRings * kNumStrands), world axes.
-  // gravity: in body heights per second squared. kCancelled.
+  // Returns the displacements of all particles per frame, 3 x (kNumRings * kNumStrands), in world
+  // axes. gravity: in body heights per second squared. Only kCancelled is an error.
   absl::StatusOr<std::vector<Eigen::Matrix3Xf>> Simulate(const PoseTrack& track, double gravity,
                                                          const Progress& progress);
 
-  // Bicubic lookup at a surface point of the rest shape.
+  // Returns the bicubic lookup at a surface point of the rest shape.
   SkirtSample Locate(const Eigen::Vector3d& rest_point) const;
 
  private:

@@ -9,7 +9,8 @@
 
 namespace pleat {
 
-// Five sines of unrelated frequencies; values within about -1..1.
+// The sum of five sines of unrelated frequencies, scaled so that values lie mostly within -1..1. It
+// is smooth in all derivatives, so the motion has no jerks.
 class SmoothNoise {
  public:
   SmoothNoise(Random* random, double mean_period_s) {

@@ -27,7 +27,9 @@ Camera Camera::Fit(const ViewOptions& view, const Eigen::Ref<const Eigen::Matrix
   const Eigen::Vector2d extent = (high - low).head<2>().cwiseMax(1e-9);
   camera.scale_ = room.cwiseQuotient(extent).minCoeff();
   if (view.projection == Projection::kPerspective) {
-    // Pixels = focal * x / (distance - z): the nearest points need the most room.
+    // With pixels = focal * x / (distance - z) each point demands a distance at which it stays
+    // inside the picture; the largest demand wins. The bounding box bounds the distance from below,
+    // so that no point is behind the viewer.
     const double focal = std::min(view.width, view.height) / 2. /
                          std::tan(view.field_of_view_degrees / 2 * kRadians);
     const Eigen::Matrix3Xd centered = local.colwise() - (low + high) / 2;
@@ -53,12 +55,6 @@ Eigen::Vector3d Camera::Project(const Eigen::Vector3d& world) const {
     depth = -1 / away;  // linear over the picture plane, as interpolation needs
   }
   return {view_.width / 2. + scale * local.x(), view_.height / 2. - scale * local.y(), depth};
-}
-
-Eigen::Vector3d Camera::ToViewer(const Eigen::Vector3d& world) const {
-  const Eigen::Vector3d back = camera_from_world_.row(2).transpose();
-  if (view_.projection == Projection::kOrthographic) return back;
-  return (center_ + distance_ * back - world).normalized();
 }
 
 }  // namespace pleat

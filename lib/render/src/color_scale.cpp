@@ -1,4 +1,5 @@
-// Both maps as short piecewise-linear tables sampled from the published ones.
+// Both maps are short piecewise-linear tables sampled from the published ones; the difference
+// cannot be seen in 8 bits of a picture.
 #include "pleat/render/color_scale.h"
 
 #include <algorithm>

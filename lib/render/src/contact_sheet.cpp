@@ -41,7 +41,8 @@ absl::Status CheckTiles(const std::vector<SheetTile>& tiles, const ContactSheetO
   return absl::OkStatus();
 }
 
-// All tiles in the places where they will be drawn, 3 x (sum of V).
+// Returns the positions of all tiles where they will be drawn, 3 x (sum of V): one camera is fitted
+// to all of them.
 Eigen::Matrix3Xd PlaceTiles(const std::vector<SheetTile>& tiles, bool center,
                             std::vector<Eigen::Vector3d>* shifts) {
   Eigen::Index total = 0;

@@ -29,6 +29,8 @@ void Image::Blend(int x, int y, double opacity, Rgb color) {
   pixel = {mix(pixel.r, color.r), mix(pixel.g, color.g), mix(pixel.b, color.b)};
 }
 
+// The opacity of a pixel falls linearly over one pixel at the line's edge, by the distance of its
+// center from the segment. Ends are round, which DrawDot() uses.
 void Image::DrawLine(double x0, double y0, double x1, double y1, double thickness, Rgb color) {
   const double dx = x1 - x0, dy = y1 - y0;
   const double length_squared = std::max(dx * dx + dy * dy, 1e-12);

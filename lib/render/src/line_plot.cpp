@@ -14,7 +14,7 @@ namespace pleat {
 namespace {
 
 constexpr Rgb kInk{40, 40, 40}, kGrid{228, 228, 228}, kAxis{120, 120, 120};
-// Okabe and Ito (2008): told apart by color-blind readers, too.
+// The palette of Okabe and Ito (2008), which color-blind readers can tell apart, too.
 constexpr std::array<Rgb, 7> kPalette = {{{0, 114, 178},
                                           {213, 94, 0},
                                           {0, 158, 115},
@@ -39,7 +39,7 @@ struct Range {
   }
 };
 
-// Where the legend's entries go: rows from the left, below the title.
+// The place of an entry of the legend: rows from the left, below the title.
 struct LegendPlace {
   int x, y;
 };
@@ -61,6 +61,7 @@ std::vector<LegendPlace> PlaceLegend(const std::vector<PlotSeries>& series, int 
   return places;
 }
 
+// Draws one plot: the frame with its axes first, then the curves over the grid, the legend last.
 class Plot {
  public:
   Plot(const LinePlotOptions& options, std::vector<LegendPlace> legend, Range x, Range y)

@@ -1,4 +1,4 @@
-// stb_image_write as a private copy (STATIC): Debian also ships a compiled libstb.
+// stb_image_write is a private copy (STATIC), because Debian also ships a compiled libstb.
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #pragma GCC diagnostic push

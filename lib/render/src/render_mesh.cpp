@@ -1,4 +1,7 @@
-// Half-space rasterization (Pineda 1988) at twice the resolution, averaged 2 x 2.
+// Half-space rasterization (Pineda 1988) at twice the resolution, averaged 2 x 2. The depth of a
+// camera is linear over the picture, so it is interpolated like a plane; normals and colors are
+// interpolated the same way, which is slightly wrong under perspective and does not show at the
+// size of a mesh's triangles. It uses no threads.
 #include "pleat/render/render_mesh.h"
 
 #include <Eigen/Geometry>
@@ -6,6 +9,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+
+#include "pleat/mesh/normals.h"
 
 namespace pleat {
 namespace {
@@ -21,20 +26,8 @@ struct ProjectedVertex {
   Vector3f color;   // 0..255
 };
 
-// Area-weighted vertex normals, camera axes.
-Eigen::Matrix3Xf VertexNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
-                               const Eigen::Ref<const Eigen::Matrix3Xi>& triangles,
-                               const Eigen::Matrix3d& camera_from_world) {
-  Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, positions.cols());
-  for (int f = 0; f < triangles.cols(); ++f) {
-    const Vector3d a = positions.col(triangles(0, f));
-    const Vector3d area =
-        (positions.col(triangles(1, f)) - a).cross(positions.col(triangles(2, f)) - a);
-    for (int c = 0; c < 3; ++c) normals.col(triangles(c, f)) += area;
-  }
-  return (camera_from_world * normals).colwise().normalized().cast<float>();
-}
-
+// A key light from the upper left, a fill light from the right, and a little from above, all in
+// camera axes, so that a character is lit alike from every side.
 Rgb Shade(const Vector3f& color, const Vector3f& normal, float shading) {
   static const Vector3f kKey = Vector3f(-.45f, .60f, .66f).normalized();
   static const Vector3f kFill = Vector3f(.80f, .10f, .60f).normalized();
@@ -55,7 +48,7 @@ class Rasterizer {
 
   void DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b, const ProjectedVertex& c,
                     const Vector3f& back_color, float shading);
-  // A line hidden where the mesh is nearer; ends in samples with depth.
+  // Draws a line that is hidden where the mesh is nearer; its ends are in samples, with depth.
   void DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb color);
   Image Downsample() const;
 
@@ -99,7 +92,7 @@ void Rasterizer::DrawTriangle(const ProjectedVertex& a, const ProjectedVertex& b
 
 void Rasterizer::DrawHiddenLine(const Vector3d& from, const Vector3d& to, Rgb color) {
   const int steps = std::max(1, static_cast<int>(std::ceil((to - from).head<2>().norm())));
-  if (steps > 4 * (image_.width() + image_.height())) return;  // runs far out of the picture
+  if (steps > 4 * (image_.width() + image_.height())) return;  // it runs far out of the picture
   for (int i = 0; i <= steps; ++i) {
     const Vector3d p = from + (to - from) * i / steps;
     const int x = static_cast<int>(std::floor(p.x())), y = static_cast<int>(std::floor(p.y()));
@@ -181,7 +174,11 @@ Image RenderMesh(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
   assert(options.vertex_colors.empty() ||
          static_cast<int>(options.vertex_colors.size()) == num_vertices);
   const auto to_vector = [](Rgb c) { return Vector3f(c.r, c.g, c.b); };
-  const Eigen::Matrix3Xf normals = VertexNormals(positions, triangles, camera.camera_from_world());
+  const Eigen::Matrix3Xf normals =
+      (camera.camera_from_world() * SumTriangleNormals(positions, triangles))
+          .colwise()
+          .normalized()
+          .cast<float>();
   std::vector<ProjectedVertex> vertices(num_vertices);
   for (int v = 0; v < num_vertices; ++v) {
     const Vector3d p = camera.Project(positions.col(v));

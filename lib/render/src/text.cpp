@@ -12,7 +12,7 @@
 namespace pleat {
 namespace {
 
-constexpr int kLineHeight = 10;           // of the font at scale 1, descenders included
+constexpr int kLineHeight = 10;           // line of the font at scale 1, with descenders
 constexpr int kBytesPerCharacter = 1024;  // far more than one glyph's quads take
 
 std::string Printable(std::string_view text) {

@@ -16,10 +16,11 @@ namespace pleat {
 namespace {
 
 constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left and right
-// Evidence below this turns the character round; from `clear` on the residuals of other facings are
-// no doubt.
+// Evidence of at most kContraryEvidence turns the character round. Below kWeakEvidence the report
+// says that the front is unknown, and from kClearEvidence on the residuals of other facings are no
+// reason for doubt.
 constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
-constexpr double kShortArm = .05;  // of a leg under half a leg
+constexpr double kShortArm = .05;  // share of a leg that is missing to half a leg
 constexpr double kUpCosine = .9;   // 26 degrees: a character that leans is no reason for a warning
 
 FacingEvidence EvidenceOf(const MeshSequence& sequence, const FrameEmbedding& found) {
@@ -30,13 +31,13 @@ FacingEvidence EvidenceOf(const MeshSequence& sequence, const FrameEmbedding& fo
                  .joints = found.embedding.joints,
                  .forward = input_from_upright * Eigen::Vector3d(std::sin(yaw), 0, std::cos(yaw)),
                  .up = input_from_upright.col(1)});
-  // In the rest frame itself the knees bend as the template does: they say nothing.
+  // In the rest frame itself the knees bend as the template does, so they say nothing.
   if (sequence.num_frames() == 1) evidence.knees = 0;
   return evidence;
 }
 
 // Turns the character round when feet and knees speak against the facing that the search found and
-// for the opposite one. Only kCancelled is an error.
+// for the opposite one. A yaw that the user gives is never turned. Only kCancelled is an error.
 absl::Status CheckFacing(const MeshSequence& sequence, const AutoRigOptions& options,
                          FrameEmbedding* found, AutoRigSummary* summary, const Progress& progress) {
   summary->evidence = EvidenceOf(sequence, *found);
@@ -102,15 +103,12 @@ void WarnOfFacing(const Embedding& embedding, const AutoRigOptions& options,
 }
 
 void WarnOfSurface(const SurfaceReport& surface, AutoRigSummary* summary) {
-  if (surface.num_boundary_edges == 0 && surface.num_nonmanifold_edges == 0 &&
-      surface.num_components <= 1 && surface.num_flipped_triangles == 0) {
-    return;
-  }
+  if (surface.closed() && surface.num_components <= 1 && surface.num_flipped_triangles == 0) return;
   summary->warnings.push_back(absl::StrFormat(
       "the mesh is not one clean closed surface: %d components, %d boundary edges, %d "
       "non-manifold edges, %d triangles oriented inward, %d degenerate triangles, %d "
       "unreferenced vertices",
-      surface.num_components, surface.num_boundary_edges, surface.num_nonmanifold_edges,
+      surface.num_components, surface.num_boundary_edges, surface.num_non_manifold_edges,
       surface.num_flipped_triangles, surface.num_degenerate_triangles,
       surface.num_unreferenced_vertices));
 }

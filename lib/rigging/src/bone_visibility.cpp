@@ -64,6 +64,8 @@ NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& 
   }
   std::sort(by_distance.begin(), by_distance.end());
   NearestBones nearest;
+  // Visibility is expensive and distance is cheap, so bones are asked in the order of distance, and
+  // the first that is seen ends the search but for ties.
   for (const auto& [distance, b] : by_distance) {
     if (!nearest.bones.empty() && distance > nearest.distance * kTieRatio) break;
     if (inside && !IsVisibleInside(*inside, nearest_points[b], vertex, tolerance)) continue;

@@ -21,13 +21,16 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kMinYawChangeDegrees = 10;
-// Of a leg; arms to the wrist measure .56 to .64, those of people by Drillis and Contini .68.
+// The share of a leg below which an arm counts as short. Arms to the wrist measure .56 to .64,
+// those of people by Drillis and Contini .68.
 constexpr double kArmShare = .5;
-// Of the template's way from chest to hand: shorter arms may go on, longer ones are something else.
+// Shares of the template's way from chest to hand: shorter arms may go on, longer ones are
+// something else.
 constexpr double kWholeArm = .85, kLongestArm = 1.3;
-constexpr double kSharedArm = .6;  // of the way to the end that the search found
+constexpr double kSharedArm = .6;  // share of the way to the end that the search found
 
-// Share of the area of the body's components that lies farther than `reach` from every bone.
+// Returns the share of the area of the body's components that lies farther than `reach` from every
+// bone.
 double UncoveredShare(const SolidSurface& surface, const MainBody& body,
                       const Eigen::Matrix3Xd& joints, double reach) {
   double total = 0, uncovered = 0;
@@ -44,7 +47,7 @@ double UncoveredShare(const SolidSurface& surface, const MainBody& body,
   return uncovered / total;
 }
 
-// Step 8: all 18 joints, those of degree two along the paths.
+// Step 8: places all 18 joints, those of degree two at their shares of the paths.
 Eigen::Matrix3Xd PlaceAllJoints(const SphereGraph& graph, const SearchTree& tree,
                                 const std::vector<int>& spheres) {
   Eigen::Matrix3Xd joints(3, kNumHumanJoints);
@@ -67,13 +70,14 @@ Eigen::Matrix3Xd TurnedTemplate(double yaw_rad, double body_size) {
                       HumanTemplate().RestPositions());
 }
 
-// From the upright unit box to the input.
+// Turns points of the upright unit box into those of the input.
 Eigen::Matrix3Xd WorldFromUpright(const BodyVolume& volume, const Eigen::Matrix3d& upright,
                                   const Eigen::Matrix3Xd& points) {
   return ((upright.transpose() * points).colwise() - volume.offset) / volume.scale;
 }
 
-// One facing of the template and how far its search has come.
+// One facing of the template and how far its search has come. The members refer to each other (the
+// model to the tree, the search to the model), so an object must stay where it is.
 struct FacingSearch {
   FacingSearch(const SphereGraph& graph, double yaw_degrees, double floor_height, double body_size,
                const EmbeddingOptions& options)
@@ -107,8 +111,10 @@ struct FacingSearch {
   FacingResidual facing;
 };
 
-// Deepens all facings together until one of them has a placement; returns the cheapest, null when
-// there is none below the largest bound.
+// Deepens all facings together until one of them has a placement. Returns the cheapest, or null
+// when there is none below the largest bound. Facings are deepened side by side, not one after the
+// other, so that the right one ends the search before a wrong one has been looked at in depth. A
+// last round up to `facing_margin` above the best one measures how close the others come.
 absl::StatusOr<const FacingSearch*> SearchFacings(
     const EmbeddingOptions& options, const std::vector<std::unique_ptr<FacingSearch>>& searches,
     const Progress& progress) {
@@ -134,8 +140,9 @@ absl::StatusOr<const FacingSearch*> SearchFacings(
   return best;
 }
 
-// Placed hands, moved to the end of their limb where they lie before it. To the search a bent elbow
-// looks like a better end of the arm than a hand that points where the template's does not.
+// Moves placed hands to the end of their limb where they lie before it. To the search a bent elbow
+// looks like a better end of the arm than a hand that points where the template's does not
+// (docs/method/rig.md#arms-and-hands).
 std::vector<int> WithWholeArms(const PenaltyModel& model, std::vector<int> spheres) {
   const SphereGraph& graph = model.graph();
   const SearchTree& tree = model.tree();
@@ -168,7 +175,7 @@ std::vector<int> WithWholeArms(const PenaltyModel& model, std::vector<int> spher
   return spheres;
 }
 
-// Where a placement faces by its own left and right feet and hands, degrees in [0, 360).
+// Returns where a placement faces by its own left and right feet and hands, in degrees in [0, 360).
 double MeasuredYaw(const SphereGraph& graph, const FacingSearch& facing) {
   Eigen::Vector3d right_to_left = Eigen::Vector3d::Zero();
   for (size_t j = 0; j < facing.tree.size(); ++j) {
@@ -197,7 +204,7 @@ absl::StatusOr<const FacingSearch*> AdjustFacing(
   return adjusted.found ? &adjusted : best;
 }
 
-// Embedding::arm_shortfall.
+// Computes Embedding::arm_shortfall.
 double ArmShortfall(const Eigen::Matrix3Xd& joints) {
   const auto length = [&](int from, int over, int to) {
     return (joints.col(over) - joints.col(from)).norm() +

@@ -1,3 +1,36 @@
+// A* over partial placements. Joints are placed one by one in the order of the search tree; a state
+// is a placement of the first joints, and its children put the next joint on each of its candidate
+// spheres. With 7 joints and a hundred or so candidates each there are far too many placements to
+// look at, so two things have to be good: the bound on what a partial placement will still cost,
+// and the refusal of what cannot end well.
+//
+// The bound. Placing joint j costs a *pair* penalty, which depends on j's sphere and its parent's
+// alone, and a *context* penalty, which depends on other joints placed before. Context penalties
+// are never negative, so leaving them out bounds from below. What is left is a sum over the edges
+// of a tree, and its minimum comes from dynamic programming from the leaves up:
+//
+//   rest(k, p) = min over candidates c of k of
+//                    [ pair(k, c, p) + sum over children j of k of rest(j, c) ]
+//
+// At a partial placement the open joints fall into subtrees that hang on placed joints, and
+// subtrees do not see each other in pair penalties; so the sum of their rest(k, p) never exceeds
+// the true cost to come. The bound is tighter than the published one. With an admissible bound the
+// first complete placement that leaves the queue is a cheapest one: whatever is still queued has a
+// bound that is not lower.
+//
+// Deepening. Best-first search alone would keep every state that costs less than the optimum. For a
+// facing that does not fit the optimum is expensive, and that is nearly everything. So states whose
+// bound exceeds a limit are not kept at all, the limit starts at .02 and doubles until a placement
+// is found. Either the search ends with an exact optimum, or the limit itself is a proof that
+// nothing is cheaper. Repeating the earlier levels costs little, since the number of states grows
+// steeply with the limit. max_states ends a search whose states are many and all bad.
+//
+// A state stores only its last candidate and the index of the state before it; a placement is read
+// by walking back. Pair penalties need a path each, so they are tabulated once per model and serve
+// all limits. The context penalty is the expensive part of a child: it is computed only when the
+// pair penalty leaves the child under the limit. Ties go to the state that was made first, so the
+// result does not depend on anything but the input.
+
 #include "pleat/rigging/embedding_search.h"
 
 #include <algorithm>
@@ -13,15 +46,17 @@ namespace pleat {
 namespace {
 
 struct State {
-  double cost = 0;  // of the joints placed
+  double cost = 0;  // cost of the joints placed
   int num_placed = 0;
   int previous = -1;   // state without the last joint
-  int candidate = -1;  // of the last joint placed
+  int candidate = -1;  // candidate of the last joint placed
 };
 
 }  // namespace
 
-// Pair penalties of all joints and the admissible remainders made from them.
+// The pair penalties of all joints and the admissible remainders made from them. A parent has a
+// lower index than its children, so counting down visits leaves first. Forbidden pairs are
+// infinite, and so is the remainder where no candidate is left.
 class EmbeddingSearch::PairTable {
  public:
   explicit PairTable(const PenaltyModel& model) {
@@ -29,7 +64,7 @@ class EmbeddingSearch::PairTable {
     const int num_joints = static_cast<int>(tree.size());
     costs_.resize(num_joints);
     remainders_.resize(num_joints);
-    std::vector<Eigen::VectorXd> subtree(num_joints);  // of the children, per own candidate
+    std::vector<Eigen::VectorXd> subtree(num_joints);  // sum of the children's, per own candidate
     for (int j = 0; j < num_joints; ++j) subtree[j].setZero(model.candidates(j).size());
     for (int j = num_joints - 1; j > 0; --j) {
       const std::vector<int>& own = model.candidates(j);
@@ -45,9 +80,9 @@ class EmbeddingSearch::PairTable {
     }
   }
 
-  // Joint j on its candidate c, its parent on the parent's candidate p.
+  // The cost of joint j on its candidate c with its parent on the parent's candidate p.
   double cost(int j, int c, int p) const { return costs_[j](c, p); }
-  // The least pair penalties of the subtree of joint j.
+  // The least sum of pair penalties of the subtree of joint j, its own included.
   double remainder(int j, int p) const { return remainders_[j][p]; }
 
  private:
@@ -62,7 +97,7 @@ class EmbeddingSearch::BestFirst {
             const Progress& progress)
       : model_(model), table_(table), options_(options), progress_(progress) {}
 
-  // The cheapest placement that costs at most `limit`; kNotFound when there is none.
+  // Returns the cheapest placement that costs at most `limit`; kNotFound when there is none.
   absl::StatusOr<SearchResult> Run(double limit) {
     states_ = {State{}};
     for (size_t j = 0; j < model_.tree().size(); ++j) {
@@ -114,7 +149,8 @@ class EmbeddingSearch::BestFirst {
     std::vector<int> spheres(j);
     for (int k = 0; k < j; ++k) spheres[k] = model_.candidates(k)[placed[k]];
     const PlacementContext context = model_.MakeContext(j, spheres);
-    // Remainder of the open subtrees that hang on joints placed before j.
+    // The remainder of the open subtrees that hang on joints placed before j; those that hang on j
+    // itself depend on its candidate.
     double others = 0;
     for (size_t k = j + 1; k < tree.size(); ++k) {
       if (tree[k].parent < j)

@@ -31,7 +31,7 @@ std::vector<int> BonesOfVertices(const Eigen::Matrix3Xd& positions,
   return bones;
 }
 
-// Area-weighted mean of points.
+// An area-weighted mean of points.
 struct Centroid {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double area = 0;
@@ -42,7 +42,8 @@ struct Centroid {
   Eigen::Vector3d mean() const { return sum / area; }
 };
 
-// How far the foot's center lies before the line of its lower leg, meters; 0 without a foot.
+// Returns how far the foot's center lies before the line of its lower leg, in meters; 0 without a
+// foot.
 double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
                   const std::vector<int>& bones, const FacingHypothesis& hypothesis,
                   const Leg& leg) {
@@ -54,6 +55,7 @@ double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
   for (int f = 0; f < topology.num_triangles(); ++f) {
     const Eigen::Vector3i corners = topology.triangles().col(f);
     const int bone = bones[corners[0]];
+    // Bones are named after the joint in which they end: the bone of the ankle is the lower leg.
     if (bone != leg.ankle && bone != leg.toes) continue;
     const Eigen::Vector3d a = positions.col(corners[0]);
     const Eigen::Vector3d b = positions.col(corners[1]), c = positions.col(corners[2]);
@@ -78,7 +80,7 @@ double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
   return forward.dot(foot.mean() - below);
 }
 
-// Columns of the vertices whose bone is `bone`.
+// Returns the columns of the vertices whose bone is `bone`.
 std::vector<int> VerticesOf(const std::vector<int>& bones, int bone) {
   std::vector<int> vertices;
   for (size_t v = 0; v < bones.size(); ++v) {
@@ -94,7 +96,8 @@ Eigen::Matrix3d RotationOf(const Eigen::Matrix3Xd& rest, const Eigen::Matrix3Xd&
   return motion.ok() ? motion->rotation : Eigen::Matrix3d::Identity();
 }
 
-// Mean sine of the bend of both knees, positive where the lower leg goes back as a knee's does.
+// Returns the mean sine of the bend of both knees, positive where the lower leg goes back as a
+// knee's does.
 double MeanKneeBend(const MeshSequence& sequence, const Eigen::Matrix3Xd& rest,
                     const std::vector<int>& bones, const FacingHypothesis& hypothesis,
                     int max_frames) {

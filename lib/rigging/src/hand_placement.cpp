@@ -8,13 +8,13 @@
 namespace pleat {
 namespace {
 
-constexpr double kHandShare = .8;   // of the way from the shoulder to the tip
-constexpr double kElbowShare = .5;  // of the way from the shoulder to the hand, as in the template
-constexpr double kMaxTipShare = .35;    // of the arm: more than a hand is something that it touches
-constexpr double kTipRadius = .05;      // of the body's size, around the axis of the forearm
-constexpr double kMinForearmLeft = .5;  // of the forearm as it was found
+constexpr double kHandShare = .8;       // share of the way from the shoulder to the tip
+constexpr double kElbowShare = .5;      // share of the way to the hand, as in the template
+constexpr double kMaxTipShare = .35;    // share of the arm; beyond it, it touches something
+constexpr double kTipRadius = .05;      // share of the body's size, around the forearm's axis
+constexpr double kMinForearmLeft = .5;  // share of the forearm as it was found
 
-// How far the surface that is nearest to the forearm reaches beyond its hand.
+// Returns how far the surface that is nearest to the forearm reaches beyond its hand.
 double ReachBeyondHand(const SolidSurface& surface, const MainBody& body, double body_size,
                        const Eigen::Matrix3Xd& joints, int elbow, int hand) {
   const Eigen::Vector3d direction = (joints.col(hand) - joints.col(elbow)).normalized();
@@ -47,6 +47,8 @@ void PlaceHands(const SolidSurface& surface, const MainBody& body, double body_s
         std::max(kHandShare * arm - upper.norm(), kMinForearmLeft * fore.norm());
     if (reach > kMaxTipShare * arm || !(fore_length < fore.norm())) continue;
     joints->col(hand) = joints->col(elbow) + fore_length / fore.norm() * fore;
+    // The elbow stays on the line of the arm as it was found, which may bend there: it slides along
+    // the upper arm or into the forearm.
     const double to_elbow = kElbowShare * (upper.norm() + fore_length);
     if (to_elbow < upper.norm()) {
       joints->col(elbow) = joints->col(shoulder) + to_elbow / upper.norm() * upper;

@@ -15,10 +15,10 @@
 namespace pleat {
 namespace {
 
-constexpr double kToleranceFraction = 0.002;   // of the box diagonal: visibility, about 4 mm
-constexpr double kMinDistanceFraction = 1e-4;  // of the box diagonal: keeps c / d^2 finite
+constexpr double kToleranceFraction = 0.002;   // share of the diagonal: visibility, about 4 mm
+constexpr double kMinDistanceFraction = 1e-4;  // share of the diagonal: keeps c / d^2 finite
 
-// A third of the area of the triangles around each vertex, W.
+// Returns a third of the area of the triangles around each vertex, W.
 Eigen::VectorXd VertexAreas(const SolidSurface& surface) {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(surface.positions.cols());
   for (int f = 0; f < surface.triangles.cols(); ++f) {
@@ -31,7 +31,7 @@ Eigen::VectorXd VertexAreas(const SolidSurface& surface) {
   return areas;
 }
 
-// -L: the positive semi-definite cotangent matrix, as triplets.
+// Returns -L, the positive semi-definite cotangent matrix, as triplets.
 std::vector<Eigen::Triplet<double>> CotangentTriplets(const SolidSurface& surface) {
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(12 * surface.triangles.cols() + surface.positions.cols());
@@ -41,7 +41,8 @@ std::vector<Eigen::Triplet<double>> CotangentTriplets(const SolidSurface& surfac
     const double longest =
         std::max({(corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[1]).squaredNorm(),
                   (corners[0] - corners[2]).squaredNorm()});
-    // One floor for the three cotangents of a sliver keeps its matrix semi-definite.
+    // One floor for the three cotangents of a sliver keeps its matrix semi-definite; a floor for
+    // each would not.
     const double doubled_area =
         std::max((corners[1] - corners[0]).cross(corners[2] - corners[0]).norm(), 1e-3 * longest);
     for (int k = 0; k < 3; ++k) {
@@ -58,7 +59,8 @@ std::vector<Eigen::Triplet<double>> CotangentTriplets(const SolidSurface& surfac
   return triplets;
 }
 
-// Components none of whose vertices sees a bone get their nearest bones.
+// Gives components none of whose vertices sees a bone their nearest bones, through the air. Such a
+// component would have H = 0 everywhere and make the system singular.
 void HeatColdComponents(const SolidSurface& surface, const Skeleton& skeleton,
                         const Eigen::Matrix3Xd& joints, std::vector<NearestBones>* nearest,
                         HeatWeightsSummary* summary) {
@@ -119,6 +121,7 @@ absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
   }
   Eigen::SparseMatrix<double> system(num_vertices, num_vertices);
   system.setFromTriplets(triplets.begin(), triplets.end());
+  // One factorization serves all bones: they differ in the right side only.
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
   if (solver.info() != Eigen::Success) {
     return absl::InternalError("the heat equilibrium of the surface could not be solved");

@@ -7,7 +7,7 @@
 namespace pleat {
 namespace {
 
-// The spheres of `graph` that hang together and hold the most volume, turned.
+// Returns the spheres of `graph` that hang together and hold the most volume, turned.
 SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) {
   std::vector<int> group(graph.size(), -1);
   int best_group = -1;
@@ -25,6 +25,8 @@ SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) 
       best_group = seed;
     }
   }
+  // The spheres that stay are numbered anew in their old order; an edge is listed from its higher
+  // end, when both ends have their numbers.
   std::vector<int> index(graph.size(), -1);
   std::vector<Sphere> spheres;
   std::vector<std::pair<int, int>> edges;
@@ -39,7 +41,7 @@ SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) 
   return SphereGraph(std::move(spheres), edges);
 }
 
-// Components with a corner next to one of the spheres.
+// Finds the components with a triangle whose first corner is next to one of the spheres.
 std::vector<char> ComponentsAround(const SphereGraph& graph, const SolidSurface& surface,
                                    const Eigen::Matrix3Xd& positions, double spacing) {
   std::vector<char> is_body(surface.report.num_components, 0);

@@ -1,4 +1,4 @@
-// What of a volume is the character: the input of the embedding's search, stood upright.
+// Finds what of a volume is the character: the input of the embedding's search, stood upright.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +10,17 @@
 
 namespace pleat {
 
-// Everything in the unit box, turned by the rotation that stands the character upright.
+// The character, everything in the unit box, turned by the rotation that stands it upright.
 struct MainBody {
   SphereGraph graph;  // the spheres that hang together and hold the most volume
   std::vector<MedialSample> medial_samples;
   Eigen::Matrix3Xd positions;  // 3 x W, of volume.surface
   std::vector<char> is_body;   // per mesh component: false for what floats beside the character
-  Eigen::AlignedBox3d bounds;  // of the components that are body
+  Eigen::AlignedBox3d bounds;  // box of the components that are body
 };
 
+// Packs the spheres, connects them and keeps the group of spheres with the largest volume. The
+// field stays in the axes of the input: edges are found before the spheres are turned.
 MainBody FindMainBody(const BodyVolume& volume, int max_spheres,
                       const Eigen::Matrix3d& upright_from_input);
 

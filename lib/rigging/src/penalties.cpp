@@ -13,8 +13,8 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double Square(double x) { return x * x; }
 
-// 0 for equal directions, .09 at 45 degrees (arms of a T-pose against the template's), 2 at a right
-// angle, 10 for opposite ones; that of a right angle when one has no length.
+// Returns 0 for equal directions, .09 at 45 degrees (arms of a T-pose against the template's), 2 at
+// a right angle, 10 for opposite ones, and that of a right angle when one has no length.
 double DirectionMismatch(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const double lengths = a.norm() * b.norm();
   const double turn = lengths > 1e-12 ? 1 - a.dot(b) / lengths : 1;
@@ -75,7 +75,7 @@ PenaltyModel::PenaltyModel(const SphereGraph& graph, const SearchTree& tree, dou
   }
 }
 
-// The shape goes on behind a sphere with neighbors on opposite sides of it.
+// The shape goes on behind a sphere with neighbors on opposite sides of it; others are extremities.
 bool PenaltyModel::IsExtremity(int sphere) const {
   std::vector<Eigen::Vector3d> directions;
   for (int i : graph_.neighbors(sphere)) {
@@ -124,7 +124,8 @@ double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
   if (stretch < 0.5) return kInfinite;
   const PenaltyWeights& weights = options_.weights;
   const std::vector<int> path = graph_.Path(parent_sphere, sphere);
-  // A chain at the body's own size has the stretch 1 / template_scale.
+  // `stretch` is measured against the reduced template, so that only chains under half of it are
+  // forbidden. A chain at the body's own size has the stretch 1 / template_scale.
   const double natural = stretch * options_.template_scale;
   double cost = weights.length * (0.5 * Square(std::max(0.0, 1 / natural - 1)) +
                                   2 * Square(std::max(0.0, natural - 1.15)));
@@ -186,6 +187,7 @@ double PenaltyModel::ContextPenalty(const PlacementContext& context, int sphere)
   }
   if (length > 0) {
     double shared = 0;
+    // Walks back along the shortest path. Each step belongs to the sphere that it arrives at.
     for (int i = sphere; i != context.parent_sphere;) {
       const int before = graph_.Predecessor(context.parent_sphere, i);
       if (context.is_used[i]) {

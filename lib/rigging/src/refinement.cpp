@@ -2,30 +2,26 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <nanoflann.hpp>
 
+#include "pleat/geometry/point_index.h"
 #include "pleat/skeleton/human_template.h"
 
 namespace pleat {
 namespace {
 
-// Body segments as shares of stature: R. Drillis, R. Contini, "Body segment parameters", 1966
+constexpr int kSamplesPerLeaf = 10;  // of the search tree
+
+// Body segments as shares of the stature: R. Drillis, R. Contini, "Body segment parameters", 1966
 // (as tabulated in D. Winter, "Biomechanics and Motor Control of Human Movement").
 constexpr double kThigh = .245, kLowerLeg = .246, kTrunk = .818 - .530;  // shoulders above hips
 
-struct SampleCloud {
-  const std::vector<MedialSample>& samples;
-  size_t kdtree_get_point_count() const { return samples.size(); }
-  double kdtree_get_pt(size_t i, size_t axis) const { return samples[i].position[axis]; }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
+Eigen::Matrix3Xd PositionsOf(const std::vector<MedialSample>& samples) {
+  Eigen::Matrix3Xd positions(3, static_cast<Eigen::Index>(samples.size()));
+  for (size_t i = 0; i < samples.size(); ++i) {
+    positions.col(static_cast<Eigen::Index>(i)) = samples[i].position;
   }
-};
-
-using SampleTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, SampleCloud>,
-                                        SampleCloud, 3>;
+  return positions;
+}
 
 class RefinementObjective {
  public:
@@ -34,10 +30,11 @@ class RefinementObjective {
                       const RefinementOptions& options)
       : options_(options),
         template_joints_(template_joints),
-        cloud_{medial_samples},
-        tree_(3, cloud_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+        samples_(medial_samples),
+        places_(PositionsOf(medial_samples), kSamplesPerLeaf) {}
 
-  // The energy at `joints`; fills the Gauss-Newton system when `hessian` is not null.
+  // Returns the energy at `joints` and fills the Gauss-Newton system when `hessian` is not null.
+  // Gradient and matrix are halves of the true ones, which leaves the step the same.
   double Evaluate(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
                   Eigen::VectorXd* gradient) const {
     if (hessian) {
@@ -59,6 +56,8 @@ class RefinementObjective {
     return b == kLeftUpperLeg || b == kRightUpperLeg || b == kLeftUpperArm || b == kRightUpperArm;
   }
 
+  // The projector `across` turns with the bone, but its derivative is left out: it is small near
+  // the medial surface, and a step that does not lower the energy is refused.
   double Centering(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                    Eigen::VectorXd* gradient) const {
     const Eigen::Vector3d direction = (joints.col(b) - joints.col(Parent(b))).normalized();
@@ -68,12 +67,7 @@ class RefinementObjective {
     for (int k = 1; k <= options_.samples_per_bone; ++k) {
       const double share = static_cast<double>(k) / options_.samples_per_bone;
       const Eigen::Vector3d point = (1 - share) * joints.col(Parent(b)) + share * joints.col(b);
-      size_t nearest = 0;
-      double squared_distance = 0;
-      nanoflann::KNNResultSet<double> result(1);
-      result.init(&nearest, &squared_distance);
-      tree_.findNeighbors(result, point.data(), nanoflann::SearchParams());
-      const MedialSample& sample = cloud_.samples[nearest];
+      const MedialSample& sample = samples_[places_.Nearest(point, nullptr)];
       const double clarity = std::min(1.0, options_.limb_radius / sample.depth);
       const Eigen::Matrix3d metric =
           options_.centering / options_.samples_per_bone * clarity * clarity * across;
@@ -92,7 +86,7 @@ class RefinementObjective {
     return energy;
   }
 
-  // Length, angle and symmetry of bone b.
+  // Length, angle and symmetry of bone b. A mirror pair is counted once, at its lower index.
   double Shape(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                Eigen::VectorXd* gradient) const {
     const Eigen::Vector3d bone = joints.col(b) - joints.col(Parent(b));
@@ -106,7 +100,7 @@ class RefinementObjective {
            gradient);
     double energy = length_weight * length_residual * length_residual;
 
-    // |u - t|^2 = 2 (1 - cos)
+    // |u - t|^2 = 2 (1 - cos) makes the angle a sum of squares.
     const Eigen::Vector3d angle_residual = direction - target / target_length;
     const Eigen::Matrix3d turn =
         (Eigen::Matrix3d::Identity() - direction * direction.transpose()) / length;
@@ -170,7 +164,7 @@ class RefinementObjective {
     return energy;
   }
 
-  // One residual that depends on bones (from, to) with derivative `slopes` by to - from.
+  // Adds one residual that depends on bones (from, to), with derivative `slopes` by to - from.
   static void AddRow(double weight, double residual, const std::vector<std::pair<int, int>>& bones,
                      const std::vector<Eigen::Vector3d>& slopes, Eigen::MatrixXd* hessian,
                      Eigen::VectorXd* gradient) {
@@ -186,8 +180,8 @@ class RefinementObjective {
 
   const RefinementOptions& options_;
   const Eigen::Matrix3Xd& template_joints_;
-  SampleCloud cloud_;
-  SampleTree tree_;
+  const std::vector<MedialSample>& samples_;
+  PointIndex places_;
 };
 
 }  // namespace

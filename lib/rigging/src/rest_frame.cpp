@@ -15,18 +15,18 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxFullFrames = 1;    // of the probed ones, looked at again on the full grid
+constexpr int kMaxFullFrames = 1;    // probed frames that are looked at again on the full grid
 constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
-// Of the trusted residual: a frame that fits so well as it stands is not lying.
+// A multiple of the trusted residual: a frame that fits so well as it stands is not lying.
 constexpr double kStandingRatio = 1.5;
 constexpr double kDoubtfulResidual = .1;
 
-// The frames to look at, evenly spaced: the first one first, then each far from those before it, so
-// that a search that ends early has seen different poses.
+// Returns the frames to look at, evenly spaced: the first one first, then each far from those
+// before it, so that a search that ends early has seen different poses.
 std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
   if (options.rest_frame >= 0) return {options.rest_frame};
   const int count = std::clamp(options.max_frames_tried, 1, num_frames);
-  std::vector<int> order;  // of k in [0, count): odd multiples of halves, quarters, ...
+  std::vector<int> order;  // k in [0, count): multiples of halves, quarters, ...
   for (unsigned step = std::bit_ceil(static_cast<unsigned>(count)); step >= 1; step /= 2) {
     for (unsigned k = order.empty() ? 0 : step; k < static_cast<unsigned>(count); k += 2 * step) {
       order.push_back(static_cast<int>(k));
@@ -40,7 +40,8 @@ Eigen::Matrix3d TurnToY(const Eigen::Vector3d& up) {
   return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitY()).toRotationMatrix();
 }
 
-// The other coordinate axes (Z up is common), then the principal axes of the surface, both ways.
+// Returns the turns that stand up the other coordinate axes (Z up is common), then the principal
+// axes of the surface, both ways.
 std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
   std::vector<Eigen::Matrix3d> turns;
   for (const Eigen::Vector3d& up :
@@ -58,6 +59,9 @@ std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
   return turns;
 }
 
+// The search for the frame. Probes are cheap because of their coarse grid, the full grid is exact,
+// and either may succeed where the other fails; `best_` is the best of all that was seen on any
+// grid. It holds the volume as well, which the heat weights need again.
 class RestFrameSearch {
  public:
   RestFrameSearch(const MeshSequence& sequence, const AutoRigOptions& options,
@@ -82,7 +86,7 @@ class RestFrameSearch {
   }
 
  private:
-  // Frames with the least of this are rigged best.
+  // Frames with the least score are rigged best.
   double Score(const Embedding& embedding) const {
     return embedding.residual + options_.arm_shortfall_weight * embedding.arm_shortfall;
   }
@@ -124,7 +128,7 @@ class RestFrameSearch {
     return TryAt(frame, options_.probe_resolution, upright);
   }
 
-  // The same for a frame whose coarse grid was looked at already.
+  // Does the same for a frame whose coarse grid was looked at already.
   absl::Status TryProbed(FrameEmbedding probe) {
     PLEAT_RETURN_IF_ERROR(TryAt(probe.frame, options_.volume.resolution, probe.upright_from_input));
     if (!IsTrusted()) Offer(std::move(probe));
@@ -135,7 +139,8 @@ class RestFrameSearch {
     if (Score(tried.embedding) < Score(best_.embedding)) best_ = std::move(tried);
   }
 
-  // Only kCancelled is an error.
+  // Embeds one frame on one grid and offers the result. Only kCancelled is an error; the first
+  // failure is kept for the message, should no frame fit.
   absl::Status TryAt(int frame, int resolution, const Eigen::Matrix3d& upright) {
     absl::StatusOr<FrameEmbedding> tried = Embed(frame, resolution, upright);
     if (absl::IsCancelled(tried.status())) return tried.status();
@@ -147,7 +152,8 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // Ends with the first frame that is trusted; else the best of all are looked at again.
+  // Probes the other frames on the coarse grid. Ends with the first one that is trusted; otherwise
+  // the best of all are looked at again.
   absl::Status ProbeOthers(const std::vector<int>& frames) {
     std::vector<FrameEmbedding> probes;
     for (size_t k = 1; k < frames.size(); ++k) {
@@ -173,8 +179,8 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // Other orientations of the first and of the best probed frame; one is taken only when it is
-  // trusted, since a beast on its hind legs comes near to a human.
+  // Tries other orientations of the first and of the best probed frame. One is taken only when it
+  // is trusted, since a beast on its hind legs comes near to a human.
   absl::Status TurnOver(int first_frame) {
     std::vector<int> frames = {first_frame};
     if (!probed_.empty()) frames.push_back(probed_[0]);
@@ -195,8 +201,9 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // The orientation with the least residual under twice the trusted one, made exact by what the
-  // skeleton itself says about up; none when there is no such.
+  // Returns the orientation with the least residual under twice the trusted one, made exact by what
+  // the skeleton itself says about up; none when there is no such. Each bound is the best residual
+  // so far, so hopeless orientations are cheap.
   absl::StatusOr<std::optional<Eigen::Matrix3d>> FindOrientation(const BodyVolume& volume) const {
     std::optional<Eigen::Matrix3d> best;
     Eigen::Matrix3Xd joints;
@@ -258,10 +265,10 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  double least_residual_ = std::numeric_limits<double>::infinity();  // of all frames looked at
+  double least_residual_ = std::numeric_limits<double>::infinity();  // over all frames tried
   std::vector<int> probed_;                                          // best first
   std::vector<double> probe_residuals_;                              // infinite where nothing fits
-  absl::Status failure_;  // of the first frame that could not be embedded
+  absl::Status failure_;  // what kept the first failed frame from a rig
 };
 
 }  // namespace

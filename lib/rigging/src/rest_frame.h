@@ -1,4 +1,4 @@
-// The frame of a sequence that is rigged, and how the character stands in it.
+// Finds the frame of a sequence that is rigged, and how the character stands in it.
 #pragma once
 
 #include "absl/status/statusor.h"
@@ -17,14 +17,15 @@ struct FrameEmbedding {
   Embedding embedding;
 };
 
-// The first frame when it is trusted; else the best of a few, looked at on a coarse grid first; and
-// when none of them is trusted as it stands, also lying and upside down. kFailedPrecondition, with
-// what to do, when no human fits; kCancelled. Fills summary->num_frames_tried.
+// Returns the first frame when it is trusted, else the best of a few, looked at on a coarse grid
+// first; and when none of them is trusted as it stands, they are also tried lying and upside down
+// (docs/method/rig.md#rest-frame). The error is kFailedPrecondition, with what to do, when no human
+// fits, and kCancelled. Fills summary->num_frames_tried.
 absl::StatusOr<FrameEmbedding> FindRestFrame(const MeshSequence& sequence,
                                              const AutoRigOptions& options, AutoRigSummary* summary,
                                              const Progress& progress);
 
-// What a user can do about a sequence that cannot be rigged.
+// Says what a user can do about a sequence that cannot be rigged.
 inline constexpr char kRigAdvice[] =
     "choose another rest frame, one that stands upright with arms and legs apart, or bring your "
     "own rig";

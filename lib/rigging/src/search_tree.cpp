@@ -1,3 +1,23 @@
+// Why the search sees another skeleton than the rig has. A search over 18 joints would place knees
+// and elbows on spheres although the surface says little about them: a straight leg has no sign of
+// its knee. Joints of degree two are therefore dropped. What is left are the ends and the forks,
+// which the shape does show, and a chain between two of them is laid along the shortest path
+// through the body. The dropped joints come back at fixed shares of the path (`fractions`),
+// refinement moves them later, and the search loses nothing, since the penalty of a chain still
+// compares the direction of each of its bones with the path.
+//
+// The tree is rooted at the chest, not at the hips as the rig is: from the chest hang hips, head
+// and both hands, from the hips both feet. The chain from the chest to the hips thus runs against
+// the rig's bones (spine, then hips), and directions are those from the parent's side.
+//
+// The order of joints is the order in which the search places them, and it is part of the method:
+//
+// - A parent comes before its children. Placing, the tables of the bound, and the climb to a common
+//   ancestor (PenaltyModel::MakeContext) rely on it.
+// - Chest, hips and head come first. They have few candidates (the 50 largest spheres), and what
+//   they cost decides early whether a facing has a chance.
+// - Mirrored limbs follow each other, so that the second one is compared with the first.
+
 #include "pleat/rigging/search_tree.h"
 
 #include <Eigen/Geometry>
@@ -7,6 +27,7 @@
 namespace pleat {
 namespace {
 
+// Indices of parent and mirror are those in the list below.
 struct ReducedJoint {
   HumanJoint joint;
   int parent, mirror;

@@ -8,6 +8,7 @@
 namespace pleat {
 namespace {
 
+// Returns true when the ball over the segment from i to j holds no third center.
 bool IsGabrielEmpty(const std::vector<Sphere>& spheres, size_t i, size_t j) {
   const Eigen::Vector3d middle = 0.5 * (spheres[i].center + spheres[j].center);
   const double squared_reach = (spheres[i].center - middle).squaredNorm();
@@ -49,6 +50,8 @@ SphereGraph::SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pai
   ComputeShortestPaths();
 }
 
+// Dijkstra from every sphere. Ties go to the path that was found first, in the order of neighbors,
+// so the paths are the same everywhere.
 void SphereGraph::ComputeShortestPaths() {
   const int num = size();
   distances_.setConstant(num, num, std::numeric_limits<double>::infinity());

@@ -6,6 +6,7 @@
 #include "compressed_format.h"
 #include "integer_model.h"
 #include "pleat/base/status.h"
+#include "pleat/mesh/mesh_sections.h"
 
 namespace pleat {
 namespace {
@@ -94,8 +95,12 @@ absl::Status DecodeAppearance(std::string_view payload, const CompressedHeader& 
   // Coordinates are not compressed; corners and faces are counted by the topology, which is there.
   if (header.num_texcoords > payload.size() / 8) return Damaged();
   appearance->texcoords.resize(header.num_texcoords);
-  if (header.has_corner_texcoords) appearance->corner_texcoords.resize(topology.num_corners());
-  if (header.has_face_materials) appearance->face_materials.resize(topology.num_faces());
+  if (header.appearance_flags & kHasCornerTexcoords) {
+    appearance->corner_texcoords.resize(topology.num_corners());
+  }
+  if (header.appearance_flags & kHasFaceMaterials) {
+    appearance->face_materials.resize(topology.num_faces());
+  }
   return AppearanceWalk(topology, &coder, appearance).Run();
 }
 

@@ -7,13 +7,12 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
+#include "pleat/mesh/mesh_sections.h"
 
 namespace pleat {
 namespace {
 
-constexpr size_t kMaxNameBytes = 4096;
-constexpr uint32_t kMaxMaterials = 1 << 20, kMaxRate = 0x7fffffff;
-constexpr uint8_t kHasCornerTexcoords = 1, kHasFaceMaterials = 2;
+constexpr uint32_t kMaxMaterials = 1 << 20;
 
 uint32_t FirstBytes(const Sha256Digest& digest) {
   uint32_t result;
@@ -21,14 +20,11 @@ uint32_t FirstBytes(const Sha256Digest& digest) {
   return result;
 }
 
-std::string_view Clip(const std::string& name) {
-  return std::string_view(name).substr(0, kMaxNameBytes);
-}
-
 bool IsStep(double step) { return step > 0 && step < 1e12; }
 
-absl::Status ReadCounts(ByteReader* reader, const SequenceDecoderLimits& limits,
-                        CompressedHeader* header) {
+// Returns the number of materials.
+absl::StatusOr<uint32_t> ReadCounts(ByteReader* reader, const MeshLimits& limits,
+                                    CompressedHeader* header) {
   uint32_t counts[8];
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "counts"));
   header->num_vertices = counts[0];
@@ -36,21 +32,22 @@ absl::Status ReadCounts(ByteReader* reader, const SequenceDecoderLimits& limits,
   header->num_corners = counts[2];
   header->num_frames = counts[3];
   header->num_texcoords = counts[6];
-  if (counts[0] > limits.max_vertices || counts[1] > limits.max_faces ||
-      counts[3] > limits.max_frames || counts[6] > uint64_t{4} * limits.max_faces ||
-      counts[2] > uint64_t{8} * limits.max_faces || counts[7] > kMaxMaterials) {
+  PLEAT_RETURN_IF_ERROR(CheckCounts({.num_vertices = header->num_vertices,
+                                     .num_faces = header->num_faces,
+                                     .num_frames = header->num_frames},
+                                    limits));
+  if (header->num_corners > 8 * limits.max_faces || header->num_texcoords > 4 * limits.max_faces ||
+      counts[7] > kMaxMaterials) {
     return absl::ResourceExhaustedError(
-        absl::StrCat(counts[3], " frames of ", counts[0], " vertices and ", counts[1],
-                     " faces are over the limit of ", limits.max_frames, " frames, ",
-                     limits.max_vertices, " vertices and ", limits.max_faces, " faces"));
+        absl::StrCat(header->num_corners, " corners, ", header->num_texcoords,
+                     " texture coordinates and ", counts[7], " materials are over the limits"));
   }
-  if (counts[0] == 0 || counts[3] == 0 || counts[2] < uint64_t{3} * counts[1] || counts[4] == 0 ||
-      counts[4] > kMaxRate || counts[5] == 0 || counts[5] > kMaxRate) {
-    return absl::InvalidArgumentError("a count or the frame rate is out of range");
+  if (header->num_vertices == 0 || header->num_frames == 0 ||
+      header->num_corners < uint64_t{3} * header->num_faces) {
+    return absl::InvalidArgumentError("a count is out of range");
   }
-  header->frame_rate = {static_cast<int32_t>(counts[4]), static_cast<int32_t>(counts[5])};
-  header->material_names.resize(counts[7]);
-  return absl::OkStatus();
+  PLEAT_ASSIGN_OR_RETURN(header->frame_rate, MakeFrameRate(counts[4], counts[5]));
+  return counts[7];
 }
 
 absl::Status ReadQuantization(ByteReader* reader, CompressedHeader* header) {
@@ -72,7 +69,7 @@ absl::Status ReadQuantization(ByteReader* reader, CompressedHeader* header) {
   header->grid.bound_m = grid[1];
   header->grid.origin_m << grid[2], grid[3], grid[4];
   if (!IsStep(grid[0]) || !(grid[1] >= 0 && grid[1] < 1e12) ||
-      !(header->grid.origin_m.cwiseAbs().maxCoeff() < 1e12)) {
+      !(header->grid.origin_m.array().abs() < 1e12).all()) {
     return absl::InvalidArgumentError("the residual grid is out of range");
   }
   return absl::OkStatus();
@@ -91,11 +88,6 @@ uint32_t FramesChecksum(const std::vector<Eigen::Matrix3Xf>& frames) {
   return FirstBytes(hash.Finish());
 }
 
-void WriteMagic(ByteWriter* writer) {
-  writer->WriteRaw(kCompressedMagic);
-  writer->Write(kCompressedVersion);
-}
-
 void WriteSection(SectionKind kind, std::string_view payload, ByteWriter* writer) {
   writer->Write(static_cast<uint8_t>(kind));
   writer->Write(static_cast<uint32_t>(payload.size()));
@@ -109,11 +101,10 @@ std::string EncodeHeader(const CompressedHeader& header) {
        {header.num_vertices, header.num_faces, header.num_corners, header.num_frames,
         static_cast<uint32_t>(header.frame_rate.numerator),
         static_cast<uint32_t>(header.frame_rate.denominator), header.num_texcoords,
-        static_cast<uint32_t>(header.material_names.size())}) {
+        static_cast<uint32_t>(header.materials.material_names.size())}) {
     writer.Write(count);
   }
-  writer.Write(static_cast<uint8_t>((header.has_corner_texcoords ? kHasCornerTexcoords : 0) |
-                                    (header.has_face_materials ? kHasFaceMaterials : 0)));
+  writer.Write(static_cast<uint8_t>(header.appearance_flags));
   writer.Write(static_cast<uint8_t>(header.grid.kind));
   for (const float step : {header.steps.field_m, header.steps.rest_m, header.steps.rotation,
                            header.steps.translation_m}) {
@@ -126,24 +117,14 @@ std::string EncodeHeader(const CompressedHeader& header) {
   }
   writer.Write(static_cast<uint32_t>(header.segment_frames.size()));
   for (const uint32_t count : header.segment_frames) writer.Write(static_cast<uint16_t>(count));
-  writer.WriteString(Clip(header.name));
-  writer.WriteString(Clip(header.material_library));
-  for (const std::string& name : header.material_names) writer.WriteString(Clip(name));
+  WriteName(header.name, &writer);
+  WriteMaterialNames(header.materials, &writer);
   return writer.Release();
 }
 
 absl::StatusOr<std::vector<Section>> ReadSections(std::string_view bytes) {
   ByteReader reader(bytes);
-  absl::StatusOr<std::string_view> magic = reader.ReadRaw(kCompressedMagic.size(), "magic");
-  if (!magic.ok() || *magic != kCompressedMagic) {
-    return absl::InvalidArgumentError("this is not a compressed sequence of Pleat (.plt)");
-  }
-  PLEAT_ASSIGN_OR_RETURN(const uint32_t version, reader.Read<uint32_t>("version"));
-  if (version < kOldestCompressedVersion || version > kCompressedVersion) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("compressed sequence of version ", version, "; this program reads versions ",
-                     kOldestCompressedVersion, " to ", kCompressedVersion));
-  }
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t version, ReadFileKind(kCompressedKind, &reader));
   std::vector<Section> sections;
   do {
     PLEAT_ASSIGN_OR_RETURN(const uint8_t kind, reader.Read<uint8_t>("section"));
@@ -166,17 +147,13 @@ absl::StatusOr<std::vector<Section>> ReadSections(std::string_view bytes) {
   return sections;
 }
 
-absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload,
-                                              const SequenceDecoderLimits& limits) {
+absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload, const MeshLimits& limits) {
   CompressedHeader header;
   ByteReader reader(payload);
-  PLEAT_RETURN_IF_ERROR(ReadCounts(&reader, limits, &header));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_materials, ReadCounts(&reader, limits, &header));
   PLEAT_ASSIGN_OR_RETURN(const uint8_t flags, reader.Read<uint8_t>("flags"));
-  if (flags > (kHasCornerTexcoords | kHasFaceMaterials)) {
-    return absl::InvalidArgumentError(absl::StrCat("unknown flags ", flags));
-  }
-  header.has_corner_texcoords = (flags & kHasCornerTexcoords) != 0;
-  header.has_face_materials = (flags & kHasFaceMaterials) != 0;
+  PLEAT_RETURN_IF_ERROR(CheckAppearanceFlags(flags, header.num_corners, header.num_faces));
+  header.appearance_flags = flags;
   PLEAT_RETURN_IF_ERROR(ReadQuantization(&reader, &header));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_segments, reader.Read<uint32_t>("segments"));
   PLEAT_RETURN_IF_ERROR(reader.Require(num_segments, 2, "segments"));
@@ -193,12 +170,8 @@ absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload,
     return absl::InvalidArgumentError(absl::StrCat("the segments have ", num_frames,
                                                    " frames, the header says ", header.num_frames));
   }
-  PLEAT_ASSIGN_OR_RETURN(header.name, reader.ReadString(kMaxNameBytes, "name"));
-  PLEAT_ASSIGN_OR_RETURN(header.material_library,
-                         reader.ReadString(kMaxNameBytes, "material library"));
-  for (std::string& name : header.material_names) {
-    PLEAT_ASSIGN_OR_RETURN(name, reader.ReadString(kMaxNameBytes, "material name"));
-  }
+  PLEAT_ASSIGN_OR_RETURN(header.name, ReadName(&reader, "name"));
+  PLEAT_RETURN_IF_ERROR(ReadMaterialNames(&reader, num_materials, &header.materials));
   if (reader.remaining() != 0) return absl::DataLossError("the header is too long");
   return header;
 }

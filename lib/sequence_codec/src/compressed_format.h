@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "motion_segment.h"
 #include "pleat/base/bytes.h"
+#include "pleat/base/sealed_file.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "residual_coder.h"
@@ -34,18 +35,16 @@ struct Section {
 struct CompressedHeader {
   uint32_t num_vertices = 0, num_faces = 0, num_corners = 0, num_frames = 0;
   FrameRate frame_rate;
-  uint32_t num_texcoords = 0;
-  bool has_corner_texcoords = false, has_face_materials = false;
+  uint32_t num_texcoords = 0, appearance_flags = 0;
   MotionSteps steps;
   ResidualGrid grid;
-  std::string name, material_library;
-  std::vector<std::string> material_names;
+  std::string name;
+  MeshAppearance materials;              // its names alone
   std::vector<uint32_t> segment_frames;  // frames of every segment; their sum is num_frames
 };
 
-inline constexpr std::string_view kCompressedMagic = "PLEATCMP";
 // Version 1 had no kFaceList.
-inline constexpr uint32_t kCompressedVersion = 2, kOldestCompressedVersion = 1;
+inline constexpr FileKind kCompressedKind = {"PLEATCMP", 2, 1, "compressed sequence (.plt)"};
 inline constexpr int kMaxSegmentFrames = 512;
 
 // First four bytes of the SHA-256.
@@ -53,7 +52,6 @@ uint32_t ShortChecksum(std::string_view bytes);
 // Of the positions of some frames, as float32.
 uint32_t FramesChecksum(const std::vector<Eigen::Matrix3Xf>& frames);
 
-void WriteMagic(ByteWriter* writer);
 void WriteSection(SectionKind kind, std::string_view payload, ByteWriter* writer);
 std::string EncodeHeader(const CompressedHeader& header);
 
@@ -61,8 +59,7 @@ std::string EncodeHeader(const CompressedHeader& header);
 // kDataLoss.
 absl::StatusOr<std::vector<Section>> ReadSections(std::string_view bytes);
 // All counts are checked against `limits`.
-absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload,
-                                              const SequenceDecoderLimits& limits);
+absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload, const MeshLimits& limits);
 
 // Texture coordinates and materials; `appearance` has the names already when decoding.
 std::string EncodeAppearance(const MeshAppearance& appearance, const Topology& topology);

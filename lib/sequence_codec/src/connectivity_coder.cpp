@@ -1,3 +1,46 @@
+// A walk that conquers the surface face by face, written once for both directions. The region of
+// faces done so far is bounded by *open edges*: sides of done faces that no other face uses yet,
+// kept as the directed edges that such a face would have (open_edges.h). The walk takes them first
+// in, first out, as gates. At a gate from -> to it codes:
+//
+// 1. whether a face lies behind it at all (if not, the edge is a border of the surface, and
+//    closes);
+// 2. its number of corners; two of them are known, `from` and `to`;
+// 3. for each further corner, how it is named: a new vertex, the end of an open edge that leaves
+//    the corner before (kAfterTo), the start of one that arrives at `from` (kBeforeFrom, for the
+//    last corner only), or any other vertex, by its difference to the corner before. The two middle
+//    kinds close a gap in the border;
+// 4. for a new vertex its number in the file, and for the face its number and the corner that the
+//    file names first.
+//
+// Then the sides of the face either close open edges or become open ones and gates. A gate whose
+// edge was closed meanwhile is skipped. When no gate is left, the free face with the lowest number
+// starts the next component. The walk depends on nothing but the mesh, so VisitOrder() can tell a
+// writer how to number faces such that step 4 costs nothing for them.
+//
+// Numbers are the larger part of the code. A number is coded as its rank among those that are still
+// free (Fenwick trees, free_numbers.h): first as one of the free numbers next to those of its
+// neighbors, and else as a difference to a guess.
+//
+// The decoder mirrors the encoder because there is only one walk. A model's Code...() returns the
+// value in both directions; the encoder passes it in, the decoder ignores what it passes. What the
+// encoder knows beforehand (`known_`, `edge_faces_`) is used only for the value that is coded next.
+// Contexts, guesses and the order of the walk come from what has been coded: valences, open edges,
+// free numbers, history. This is the invariant to keep in any change.
+//
+// Any soup is accepted. Edges are directed and may be open more than once, so a third face at an
+// edge, or a face that is flipped against its neighbor, is simply not "behind" it: it is reached
+// over another edge or starts a component, and the edge counts as border. Of several faces behind a
+// gate the one with the lowest number comes first.
+//
+// Hostile bytes. The caller has checked the counts against limits and against the bytes that are
+// there. The walk takes each face's size from the count of corners that are left before it
+// allocates, checks each vertex and rank, and stops at a code that was read beyond its end. A loop
+// either codes a face or uses up a gate, and there is at most one gate per corner. The one thing
+// that could be quadratic is looking for an edge at a vertex that has very many, so a decoder
+// counts the edges it looked at (OpenEdges::CheckEffort) and refuses beyond what any real mesh
+// needs.
+
 #include "connectivity_coder.h"
 
 #include <algorithm>
@@ -24,7 +67,7 @@ struct Gate {
   int face = 0;      // its number
 };
 
-// How a corner is named.
+// How a corner is named. The values are part of the format.
 enum CornerKind { kNewVertex = 0, kAfterTo = 1, kBeforeFrom = 2, kOtherVertex = 3 };
 
 uint64_t EdgeKey(int from, int to) {
@@ -79,7 +122,8 @@ class ConnectivityWalk {
  private:
   absl::Status Damaged() const { return absl::DataLossError("the connectivity is damaged"); }
 
-  // Encoder: a face that has the directed edge and is not coded yet, or -1.
+  // For the encoder: a face that has the directed edge and is not coded yet, or -1. The lowest
+  // number is taken, as the order inside of a hash table is not the same everywhere.
   int FindFace(const Gate& gate) const {
     const auto [begin, end] = edge_faces_.equal_range(EdgeKey(gate.from, gate.to));
     int found = -1;
@@ -89,13 +133,16 @@ class ConnectivityWalk {
     return found;
   }
 
+  // Codes the number of corners of a face and takes them off what is left, before anything of that
+  // size is allocated.
   absl::Status CodeSize(int* size) {
     *size = sizes_.CodeUnsigned(coder_, *size - 3, {0}, 0) + 3;
     num_corners_ -= *size;
     return num_corners_ < 0 || coder_->overrun() ? Damaged() : absl::OkStatus();
   }
 
-  // The first face of a component: the free one with the lowest number.
+  // Codes the first face of a component: the free one with the lowest number, which therefore need
+  // not be coded. Its rotation is that of the file.
   absl::Status CodeSeed() {
     std::vector<int32_t> corners;
     if (known_ != nullptr) {
@@ -113,6 +160,7 @@ class ConnectivityWalk {
     return Finish(free_faces_.Select(0), 0, std::move(corners));
   }
 
+  // Codes what lies behind a gate.
   absl::Status CodeBehind(const Gate& gate) {
     const int face = known_ != nullptr ? FindFace(gate) : -1;
     const int present = borders_.CodeUnsigned(
@@ -147,7 +195,8 @@ class ConnectivityWalk {
     return vertices.empty() ? -1 : vertices.back();
   }
 
-  // The corner that follows `before`; `after`: the corner behind it where that is known, or -1.
+  // Codes the corner that follows `before`. `after` is the corner behind it where that is known, or
+  // -1; `opposite` is a vertex of the face at the gate, for the guess of a new number.
   absl::Status CodeCorner(int before, int after, int opposite, int32_t* vertex) {
     const bool any = num_done_ > 0;
     const int next = any ? Newest(open_edges_.EndsFrom(before)) : -1;
@@ -159,6 +208,8 @@ class ConnectivityWalk {
              : *vertex == previous ? kBeforeFrom
                                    : kOtherVertex;
     }
+    // What the two border guesses are like: which exist, and whether they meet in one vertex, where
+    // the gap is about to close.
     const int situation = (next >= 0) + 2 * (previous >= 0) + 4 * (next >= 0 && next == previous);
     const int valence_before = std::min<int>(valence_[before], 9);
     const int valence_after = after < 0 ? 10 : std::min<int>(valence_[after], 9);
@@ -184,10 +235,11 @@ class ConnectivityWalk {
     return kind == kNewVertex ? CodeNewVertex(before, after, opposite, vertex) : absl::OkStatus();
   }
 
+  // Codes the number of a vertex that the walk meets for the first time.
   absl::Status CodeNewVertex(int before, int after, int opposite, int32_t* vertex) {
     if (free_vertices_.num_free() == 0) return Damaged();
     if (after < 0) after = before;
-    // The file's numbers of neighbors are near each other: the middle one of three.
+    // The file's numbers of neighbors are near each other, so the guess is the middle one of three.
     const int guess =
         std::max(std::min(before, after), std::min(std::max(before, after), opposite));
     const int spread =
@@ -203,7 +255,8 @@ class ConnectivityWalk {
     return absl::OkStatus();
   }
 
-  // The face's own number in the file and which of its corners the file names first.
+  // Codes the face's own number in the file and which of its corners the file names first. The
+  // guess is the mean number of the faces around its corners.
   absl::Status CodeNumber(int behind, int face, int rotation, std::vector<int32_t> corners) {
     int64_t sum = 0, count = 0;
     for (const int32_t v : corners) {
@@ -220,7 +273,7 @@ class ConnectivityWalk {
     const int size = static_cast<int>(corners.size());
     const int lowest =
         static_cast<int>(std::min_element(corners.begin(), corners.end()) - corners.begin());
-    // As the place of the file's first corner among `corners`.
+    // Coded as the place of the file's first corner among `corners`.
     const int first = rotations_.CodeUnsigned(coder_, (size - rotation) % size,
                                               {std::min(lowest, 7), last_first_}, 0);
     if (first >= size) return Damaged();
@@ -229,6 +282,8 @@ class ConnectivityWalk {
     return Finish(face, first, std::move(corners));
   }
 
+  // Closes or opens the sides of a face and gives it to the result, turned so that the file's first
+  // corner comes first.
   absl::Status Finish(int face, int first, std::vector<int32_t> corners) {
     const size_t size = corners.size();
     for (size_t i = 0; i < size; ++i) {
@@ -248,7 +303,9 @@ class ConnectivityWalk {
     return absl::OkStatus();
   }
 
-  // The rank of a free number: one of the neighbors of `near`, or a signed difference to `base`.
+  // Codes the rank of a free number: as one of the free numbers next to the first two of `near`, or
+  // as a signed difference to `base`. `history` holds the last hits and misses, since files are
+  // numbered regularly over long stretches.
   struct RankModel {
     IntegerModel<2> hits{{256, 16 * 4}, 1};
     int history = 0;
@@ -257,7 +314,7 @@ class ConnectivityWalk {
     int Code(BinaryCoder* coder, const FreeNumbers& free, const std::array<int, 3>& near, int base,
              int context, int rank) {
       for (int i = 0; i < 4; ++i) {
-        const int candidate = free.Rank(near[i / 2]) - i % 2;  // the free number above, or below
+        const int candidate = free.Rank(near[i / 2]) - i % 2;  // the next free number, or the last
         const int hit = hits.CodeUnsigned(coder, rank == candidate,
                                           {(history & 63) * 4 + i, context * 4 + i}, 0);
         history = (history << 1 | (hit != 0)) & 255;
@@ -271,11 +328,11 @@ class ConnectivityWalk {
   int num_corners_;
   const Topology* known_;
   BinaryCoder* coder_;
-  std::unordered_multimap<uint64_t, int> edge_faces_;  // encoder
+  std::unordered_multimap<uint64_t, int> edge_faces_;  // encoder only: faces by directed edge
   OpenEdges open_edges_;
   std::vector<int32_t> valence_;  // faces so far
   std::vector<bool> seen_;
-  std::vector<int64_t> face_sum_;  // of the numbers of those faces
+  std::vector<int64_t> face_sum_;  // the sum of the numbers of those faces
   FreeNumbers free_vertices_, free_faces_;
   std::vector<std::vector<int32_t>> faces_;  // by number
   std::vector<bool> done_;

@@ -56,7 +56,7 @@ class SectionReader {
 
 struct SequenceDecoder::State {
   std::string bytes;
-  SequenceDecoderLimits limits;
+  MeshLimits limits;
   CompressedHeader header;
   Topology topology;
   MeshAppearance appearance;
@@ -86,8 +86,7 @@ struct SequenceDecoder::State {
                          static_cast<int>(header.num_corners), &coder));
     topology_bytes = payload.size();
     PLEAT_ASSIGN_OR_RETURN(payload, reader->Next(SectionKind::kAppearance, "appearance"));
-    appearance.material_library = header.material_library;
-    appearance.material_names = header.material_names;
+    appearance = header.materials;
     PLEAT_RETURN_IF_ERROR(DecodeAppearance(payload, header, topology, &appearance));
     topology_bytes += payload.size();
     PLEAT_ASSIGN_OR_RETURN(payload, reader->Next(SectionKind::kRest, "rest shape"));
@@ -203,8 +202,7 @@ uint64_t SequenceDecoder::memory_bytes() const {
   return state_->bytes.size() + bytes_per_vertex * state_->header.num_vertices;
 }
 
-absl::StatusOr<SequenceDecoder> SequenceDecoder::Open(std::string bytes,
-                                                      const SequenceDecoderLimits& limits) {
+absl::StatusOr<SequenceDecoder> SequenceDecoder::Open(std::string bytes, const MeshLimits& limits) {
   auto state = std::make_unique<State>();
   state->bytes = std::move(bytes);
   state->limits = limits;

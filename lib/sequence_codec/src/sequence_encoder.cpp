@@ -12,6 +12,7 @@
 #include "field_coder.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
+#include "pleat/mesh/mesh_sections.h"
 #include "rest_shape.h"
 
 namespace pleat {
@@ -45,11 +46,10 @@ CompressedHeader MakeHeader(const MeshSequence& sequence, const SequenceAnalysis
   header.num_frames = static_cast<uint32_t>(sequence.num_frames());
   header.frame_rate = sequence.frame_rate();
   header.num_texcoords = static_cast<uint32_t>(appearance.texcoords.size());
-  header.has_corner_texcoords = !appearance.corner_texcoords.empty();
-  header.has_face_materials = !appearance.face_materials.empty();
+  header.appearance_flags = AppearanceFlags(appearance);
   header.name = sequence.name();
-  header.material_library = appearance.material_library;
-  header.material_names = appearance.material_names;
+  header.materials.material_library = appearance.material_library;
+  header.materials.material_names = appearance.material_names;
   for (const SegmentAnalysis& segment : analysis.segments) {
     header.segment_frames.push_back(static_cast<uint32_t>(segment.num_frames));
   }
@@ -209,7 +209,7 @@ absl::StatusOr<std::string> SequenceEncoder::Encode(double step_m, const Residua
   header.steps = StepsFor(step_m, analysis_, sequence_.num_frames());
   header.grid = grid;
   ByteWriter writer;
-  WriteMagic(&writer);
+  WriteFileKind(kCompressedKind, &writer);
   WriteSection(SectionKind::kHeader, EncodeHeader(header), &writer);
   WriteSection(is_face_list_ ? SectionKind::kFaceList : SectionKind::kTopology, topology_, &writer);
   WriteSection(SectionKind::kAppearance, appearance_, &writer);

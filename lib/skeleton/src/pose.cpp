@@ -1,6 +1,9 @@
 #include "pleat/skeleton/pose.h"
 
 #include <cassert>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
 
 namespace pleat {
 
@@ -9,6 +12,29 @@ Pose Pose::Rest(const Skeleton& skeleton) {
   pose.root_position = skeleton.rest_position(0);
   pose.rotations.assign(skeleton.num_joints(), Eigen::Quaterniond::Identity());
   return pose;
+}
+
+absl::Status CheckPose(const Pose& pose) {
+  constexpr double kUnitTolerance = 1e-2;
+  if (!pose.root_position.allFinite()) {
+    return absl::InvalidArgumentError("the pose's root position is not finite");
+  }
+  for (size_t j = 0; j < pose.rotations.size(); ++j) {
+    const double norm = pose.rotations[j].norm();
+    if (!(std::abs(norm - 1) < kUnitTolerance)) {  // written so that a NaN fails
+      return absl::InvalidArgumentError(absl::StrCat("the rotation of joint ", j, " (rotations[", j,
+                                                     "]) has norm ", norm,
+                                                     "; send unit quaternions"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckJointCount(const Pose& pose, int num_joints) {
+  if (static_cast<int>(pose.rotations.size()) == num_joints) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("the pose has ", pose.rotations.size(),
+                                                 " rotations, the skeleton has ", num_joints,
+                                                 " joints"));
 }
 
 void ComputeBoneTransforms(const Skeleton& skeleton, const Pose& pose,

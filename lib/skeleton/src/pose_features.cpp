@@ -11,10 +11,6 @@
 namespace pleat {
 namespace {
 
-int ValuesPerJoint(RotationRepresentation representation) {
-  return representation == RotationRepresentation::kQuaternion ? 4 : 3;
-}
-
 // The coordinates of `rotation` on the branch nearest to `reference` (3 or 4 values).
 void ToCoordinates(RotationRepresentation representation, const Eigen::Quaterniond& rotation,
                    const Eigen::Ref<const Eigen::VectorXd>& reference,
@@ -41,7 +37,7 @@ void ToCoordinates(RotationRepresentation representation, const Eigen::Quaternio
 
 // A reference that any rotation may be compared with before a track is known.
 Eigen::VectorXd NeutralReference(RotationRepresentation representation, int num_joints) {
-  const int k = ValuesPerJoint(representation);
+  const int k = NumCoordinates(representation);
   Eigen::VectorXd reference = Eigen::VectorXd::Zero((num_joints - 1) * k);
   if (k == 4) {
     for (int j = 0; j + 1 < num_joints; ++j) reference[4 * j] = 1;
@@ -53,26 +49,22 @@ Eigen::VectorXd NeutralReference(RotationRepresentation representation, int num_
 
 PoseFeatures::PoseFeatures(PoseFeatureOptions options, int num_joints, Eigen::VectorXd reference)
     : options_(options), reference_(std::move(reference)) {
-  assert(reference_.size() == (num_joints - 1) * ValuesPerJoint(options.representation));
+  assert(reference_.size() == (num_joints - 1) * NumCoordinates(options.representation));
   (void)num_joints;
 }
 
 Eigen::VectorXd PoseFeatures::Reference(const PoseFeatureOptions& options, const PoseTrack& track) {
-  assert(!track.poses.empty());
-  const int num_joints = static_cast<int>(track.poses[0].rotations.size());
-  const int k = ValuesPerJoint(options.representation);
+  assert(track.num_frames() > 0);
+  const int num_joints = track.num_joints();
+  const int k = NumCoordinates(options.representation);
   Eigen::VectorXd current = NeutralReference(options.representation, num_joints);
   const Eigen::VectorXd neutral = current;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(current.size());
-  size_t clip = 0;
   for (int t = 0; t < track.num_frames(); ++t) {
-    if (clip < track.clip_starts.size() && track.clip_starts[clip] == t) {
-      current = neutral;  // a new clip starts on the neutral branch again
-      ++clip;
-    }
+    if (track.StartsClip(t)) current = neutral;  // a new clip starts on the neutral branch again
     for (int j = 1; j < num_joints; ++j) {
       const Eigen::VectorXd before = current.segment((j - 1) * k, k);
-      ToCoordinates(options.representation, track.poses[t].rotations[j], before,
+      ToCoordinates(options.representation, track.pose(t).rotations[j], before,
                     current.segment((j - 1) * k, k));
     }
     sum += current;
@@ -83,7 +75,7 @@ Eigen::VectorXd PoseFeatures::Reference(const PoseFeatureOptions& options, const
 void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
                               Eigen::Ref<Eigen::VectorXd> row) const {
   assert(static_cast<int>(poses.size()) == options_.history && row.size() == num_features());
-  const int k = ValuesPerJoint(options_.representation);
+  const int k = NumCoordinates(options_.representation);
   const int block = static_cast<int>(reference_.size());
   for (int h = 0; h < options_.history; ++h) {
     for (int j = 0; j * k < block; ++j) {
@@ -91,7 +83,7 @@ void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
                     reference_.segment(j * k, k), row.segment(h * block + j * k, k));
     }
   }
-  if (!options_.differences) return;
+  if (options_.history_form == HistoryForm::kPoses) return;
   for (int h = options_.history - 1; h > 0; --h) {  // oldest first: each still needs its successor
     row.segment(h * block, block) =
         row.segment((h - 1) * block, block) - row.segment(h * block, block);
@@ -101,7 +93,7 @@ void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
 Eigen::MatrixXd PoseFeatures::ComputeTrack(const PoseTrack& track) const {
   Eigen::MatrixXd rows(track.num_frames(), num_features());
   Eigen::VectorXd row(num_features());
-  PoseHistory history(track, track.fps, options_.history);
+  PoseHistory history(track, track.fps(), options_.history);
   std::vector<const Pose*> poses;
   for (int t = 0; t < track.num_frames(); ++t) {
     history.At(t, &poses);

@@ -13,6 +13,7 @@ namespace pleat {
 FrameSkinning::FrameSkinning(const Rig& rig) : num_vertices_(rig.weights.num_vertices()) {
   for (const Joint& joint : rig.skeleton.joints()) parents_.push_back(joint.parent);
   blocks_.resize((num_vertices_ + kSkinningLanes - 1) / kSkinningLanes);
+  // Most pairs of bones never share a vertex, so SetMotions() compares the signs of few.
   std::set<std::pair<int, int>> pairs;
   for (size_t i = 0; i < blocks_.size() * kSkinningLanes; ++i) {
     const int v = std::min(static_cast<int>(i), num_vertices_ - 1);
@@ -51,7 +52,8 @@ void FrameSkinning::SetMotions(const BoneTransforms& transforms,
     motion.topLeftCorner<3, 3>() = transforms.linear[b].cast<float>();
     motion.topRightCorner<3, 1>() = transforms.translation[b].cast<float>();
     motion.row(3) = Eigen::Quaterniond(axes[b]).coeffs().transpose().cast<float>();
-    // Neighbors along the skeleton agree, so that few frames need signs.
+    // Of q and -q the one nearer to the parent's is taken. Neighbors along the skeleton then agree,
+    // so that few frames need signs.
     if (parents_[b] >= 0 && motion.row(3).dot(motion_of(parents_[b]).row(3)) < 0) {
       motion.row(3) *= -1;
     }
@@ -85,6 +87,8 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
   constexpr int kLanes = kSkinningLanes;
   assert(positions->cols() == num_vertices_ && first_block >= 0 &&
          first_block + num_blocks <= this->num_blocks());
+  // The kernels write whole blocks, but the last one may reach beyond the matrix: it goes here
+  // first.
   float last[3 * kLanes];
   float signed_weights[kMaxInfluences * kLanes];
   SkinBlockInputs inputs{.columns = motions.columns.data(),
@@ -94,6 +98,8 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
     const Block& block = blocks_[i];
     inputs.block = &block;
     inputs.quaternion_weights = block.weights;
+    // The slow way, for the few frames in which the quaternions of two bones of a vertex disagree
+    // although neighbors along the skeleton agree.
     if (!motions.signs.empty() && details != nullptr) {
       for (int place = 0; place < kMaxInfluences * kLanes; ++place) {
         const size_t strongest = block.bones[place % kLanes];

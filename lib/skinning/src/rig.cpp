@@ -22,6 +22,7 @@ void SkinVertices(const SkinWeights& weights, const Eigen::Ref<const Eigen::Matr
 
 void BlendRotations(const SkinWeights& weights, const std::vector<int>& vertices,
                     const BoneTransforms& transforms, std::vector<Eigen::Quaterniond>* rotations) {
+  // Rigs have at most 256 joints, so the quaternions of the bones fit on the stack.
   constexpr int kMaxStackJoints = 256;
   const int num_joints = static_cast<int>(transforms.rotation.size());
   assert(num_joints <= kMaxStackJoints);

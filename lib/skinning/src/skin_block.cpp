@@ -1,3 +1,6 @@
+// The same body is compiled for each instruction set. Each sum has one order, over the four
+// influences of a vertex, whatever the width of the registers; so all kernels give the same bits,
+// and a prediction does not depend on the machine.
 #include "skin_block.h"
 
 #if defined(__x86_64__)

@@ -1,4 +1,4 @@
-// One block of 16 vertices, on the widest registers of this processor.
+// Skins one block of 16 vertices, on the widest registers of this processor.
 #pragma once
 
 #include "pleat/simd/dispatch.h"
@@ -6,15 +6,15 @@
 
 namespace pleat {
 
-inline constexpr int kMotionParameters = 16;  // of a bone
+inline constexpr int kMotionParameters = 16;  // numbers of a bone
 
-// Up to so many bones the processor can look up in registers.
+// The processor can look up numbers of up to this many bones in registers.
 inline constexpr int kLookupBones = 32;
 
-// columns: 16 numbers of each bone. tables: kMotionParameters x kLookupBones, the parameters of all
-// bones; null where there are more bones. quaternion_weights: those of `block` with signs (4 x 16).
-// details: 48 values, x of all, y, z; or null. positions: 48 values, xyz of each vertex. All
-// kernels give the same bits.
+// The inputs of a kernel. columns: 16 numbers of each bone. tables: kMotionParameters x
+// kLookupBones, the parameters of all bones; null where there are more bones. quaternion_weights:
+// those of `block` with signs (4 x 16). details: 48 values, x of all vertices, then y, then z; or
+// null. The output has 48 values, x, y, z of each vertex. All kernels give the same bits.
 struct SkinBlockInputs {
   const FrameSkinning::Block* block = nullptr;
   const float* columns = nullptr;
@@ -23,7 +23,7 @@ struct SkinBlockInputs {
   const float* details = nullptr;
 };
 
-// Those this processor can run, the fastest first.
+// Returns the kernels that this processor can run, the fastest first.
 const KernelVariants<SkinBlockFunction>& SkinBlockVariants();
 
 }  // namespace pleat

@@ -17,6 +17,7 @@ absl::StatusOr<SkinWeights> SkinWeights::FromDense(const Eigen::Ref<const Eigen:
   const size_t kept = std::min<size_t>(kMaxInfluences, order.size());
   for (Eigen::Index v = 0; v < dense.rows(); ++v) {
     std::iota(order.begin(), order.end(), 1);
+    // Ties go to the lower bone, so that equal weights give the same influences everywhere.
     std::stable_sort(order.begin(), order.end(),
                      [&](int a, int b) { return dense(v, a) > dense(v, b); });
     double total = 0;

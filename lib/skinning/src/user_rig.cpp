@@ -36,7 +36,8 @@ absl::Status CheckInfluences(const std::vector<std::vector<JointInfluence>>& inf
   return absl::OkStatus();
 }
 
-// Adds an end to every leaf that moves vertices.
+// Adds an end to every leaf that moves vertices. The end is as far behind the weighted center of
+// the vertices as the joint lies before it, so the bone runs through them.
 absl::StatusOr<Skeleton> WithEnds(const Skeleton& skeleton,
                                   const std::vector<std::vector<JointInfluence>>& influences,
                                   const Eigen::Ref<const Eigen::Matrix3Xd>& positions) {
@@ -72,7 +73,7 @@ double SquaredDistanceToBone(const Skeleton& skeleton, int bone, const Eigen::Ve
   return (start + share * along - point).squaredNorm();
 }
 
-// The bone that begins in `joint` and is nearest to `point`.
+// Returns the bone that begins in `joint` and is nearest to `point`.
 int BoneOfJoint(const Skeleton& skeleton, int joint, const Eigen::Vector3d& point) {
   int nearest = -1;
   double least = std::numeric_limits<double>::infinity();

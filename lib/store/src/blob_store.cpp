@@ -1,15 +1,21 @@
 #include "pleat/store/blob_store.h"
 
 #include <fcntl.h>
+#include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "file_sync.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
@@ -19,69 +25,96 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kTemporarySuffix[] = ".tmp-XXXXXX";  // for mkostemp; Open removes what is left
+
 absl::Status NoSuchBlob(const std::string& id) {
   return absl::NotFoundError(absl::StrCat("no stored file has the id '", id, "'"));
 }
 
-}  // namespace
-
-bool IsContentId(std::string_view id) {
-  return id.size() == 64 && std::all_of(id.begin(), id.end(), [](char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-         });
+// From errno.
+absl::Status CannotStore(const std::string& id) {
+  return absl::ErrnoToStatus(errno, absl::StrCat("cannot store the file '", id, "'"));
 }
 
-absl::StatusOr<BlobStore> BlobStore::Open(std::string folder, uint64_t reserve_bytes) {
+absl::Status MakeFolder(const std::string& path) {
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", folder, "'"));
+  fs::create_directories(path, error);
+  if (!error) return absl::OkStatus();
+  return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", path, "'"));
+}
+
+// False with errno set when the disk does not take all of them.
+bool WriteAll(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes.remove_prefix(static_cast<size_t>(written));
   }
+  return true;
+}
+
+}  // namespace
+
+absl::StatusOr<BlobStore> BlobStore::Open(std::string folder, uint64_t reserve_bytes,
+                                          SyncHook before_sync) {
+  PLEAT_RETURN_IF_ERROR(MakeFolder(folder));
+  std::error_code error;
   // What a crash left of unfinished writes.
   std::vector<fs::path> unfinished;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, error)) {
     if (entry.path().extension().string().starts_with(".tmp-")) unfinished.push_back(entry.path());
   }
   for (const fs::path& path : unfinished) fs::remove(path, error);
-  return BlobStore(std::move(folder), reserve_bytes);
+  return BlobStore(std::move(folder), reserve_bytes, std::move(before_sync));
+}
+
+std::string BlobStore::FolderOf(const std::string& id) const {
+  return absl::StrCat(folder_, "/", id.substr(0, 2));
 }
 
 std::string BlobStore::PathOf(const std::string& id) const {
-  return absl::StrCat(folder_, "/", id.substr(0, 2), "/", id);
+  return absl::StrCat(FolderOf(id), "/", id);
+}
+
+absl::StatusOr<StagedFile> BlobStore::Stage(std::string_view bytes) {
+  std::string id = ToHex(ComputeSha256(bytes));
+  if (Contains(id)) return StagedFile::AlreadyStored(std::move(id));
+  PLEAT_RETURN_IF_ERROR(CheckSpace(bytes.size()));
+  PLEAT_RETURN_IF_ERROR(MakeFolder(FolderOf(id)));
+  std::string path = PathOf(id) + kTemporarySuffix;
+  const int fd = mkostemp(path.data(), O_CLOEXEC);
+  if (fd < 0) return CannotStore(id);
+  StagedFile file(std::move(id), std::move(path), StagedFile::Unpublished::kRemove);
+  absl::Status status =
+      WriteAll(fd, bytes) && fchmod(fd, 0644) == 0 ? absl::OkStatus() : CannotStore(file.id());
+  if (status.ok()) status = SyncFile(fd, file.path(), before_sync_);
+  close(fd);
+  if (!status.ok()) return status;
+  return file;
+}
+
+absl::Status BlobStore::Publish(StagedFile file) {
+  const std::string& id = file.id();
+  if (file.already_stored()) {
+    if (!Contains(id)) {
+      return absl::AbortedError(absl::StrCat("the stored file '", id, "' was deleted meanwhile"));
+    }
+  } else {
+    PLEAT_RETURN_IF_ERROR(MakeFolder(FolderOf(id)));
+    if (rename(file.path().c_str(), PathOf(id).c_str()) != 0) return CannotStore(id);
+    file.path_.clear();
+  }
+  // Also for a file that was there: whoever published it may have failed right here.
+  PLEAT_RETURN_IF_ERROR(SyncFolder(FolderOf(id), before_sync_));
+  return SyncFolder(folder_, before_sync_);
 }
 
 absl::StatusOr<std::string> BlobStore::Put(std::string_view bytes) {
-  std::string id = ToHex(ComputeSha256(bytes));
-  if (Contains(id)) return id;
-  PLEAT_RETURN_IF_ERROR(CheckSpace(bytes.size()));
-  PLEAT_RETURN_IF_ERROR(WriteFile(PathOf(id), bytes));
+  PLEAT_ASSIGN_OR_RETURN(StagedFile file, Stage(bytes));
+  std::string id = file.id();
+  PLEAT_RETURN_IF_ERROR(Publish(std::move(file)));
   return id;
-}
-
-absl::Status BlobStore::Adopt(const std::string& path, const std::string& id) {
-  if (!IsContentId(id)) return NoSuchBlob(id);
-  const std::string target = PathOf(id);
-  const std::string parent = fs::path(target).parent_path();
-  std::error_code error;
-  fs::create_directories(parent, error);
-  if (error) {
-    return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", parent, "'"));
-  }
-  // Content first, then the name, then the folder: the order that survives a crash.
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool synced = file >= 0 && fsync(file) == 0;
-  if (file >= 0) close(file);
-  if (!synced || rename(path.c_str(), target.c_str()) != 0) {
-    return absl::ErrnoToStatus(errno, absl::StrCat("cannot move an upload to '", target, "'"));
-  }
-  for (const std::string& changed : {parent, folder_}) {
-    const int folder = open(changed.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder >= 0) {
-      fsync(folder);
-      close(folder);
-    }
-  }
-  return absl::OkStatus();
 }
 
 absl::StatusOr<std::string> BlobStore::Get(const std::string& id) const {

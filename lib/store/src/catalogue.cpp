@@ -2,10 +2,12 @@
 
 #include <sqlite3.h>
 
+#include <mutex>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
+#include "sync_hook_vfs.h"
 
 namespace pleat {
 namespace {
@@ -29,8 +31,8 @@ const char* KindName(EntryKind kind) {
   return "unknown";
 }
 
-absl::Status DatabaseError(sqlite3* database, absl::string_view action) {
-  const int code = sqlite3_errcode(database);
+// `code` is the result of a call on `database`, which also has the words for it.
+absl::Status DatabaseError(sqlite3* database, int code, absl::string_view action) {
   const std::string text =
       absl::StrCat("cannot ", action, " the catalogue: ", sqlite3_errmsg(database));
   switch (code) {
@@ -49,31 +51,72 @@ absl::Status DatabaseError(sqlite3* database, absl::string_view action) {
 
 }  // namespace
 
-// One prepared statement with its bound values.
+// One open database with the mutex of its user.
+class Catalogue::Connection {
+ public:
+  static absl::StatusOr<std::unique_ptr<Connection>> Open(const std::string& path,
+                                                          const char* vfs) {
+    sqlite3* database = nullptr;
+    const int code =
+        sqlite3_open_v2(path.c_str(), &database,
+                        SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, vfs);
+    std::unique_ptr<Connection> connection(new Connection(database));
+    if (code != SQLITE_OK) {
+      return DatabaseError(database, code, absl::StrCat("open '", path, "',"));
+    }
+    sqlite3_busy_timeout(database, kBusyTimeoutMs);
+    return connection;
+  }
+  ~Connection() { sqlite3_close(database_); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  std::mutex& mutex() { return mutex_; }
+  sqlite3* database() { return database_; }  // call with mutex() held
+
+  absl::Status Execute(const char* sql) {
+    const int code = sqlite3_exec(database_, sql, nullptr, nullptr, nullptr);
+    return code == SQLITE_OK ? absl::OkStatus() : DatabaseError(database_, code, "prepare");
+  }
+
+ private:
+  explicit Connection(sqlite3* database) : database_(database) {}
+
+  std::mutex mutex_;
+  sqlite3* database_;
+};
+
+// One prepared statement with its bound values. The first call that fails, be it preparing or
+// binding, decides what Step returns, so callers check in one place.
 class Catalogue::Statement {
  public:
-  Statement(sqlite3* database, const char* sql) : database_(database) {
-    sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr);
-  }
+  Statement(Connection* connection, const char* sql)
+      : database_(connection->database()),
+        code_(sqlite3_prepare_v2(database_, sql, -1, &statement_, nullptr)) {}
   ~Statement() { sqlite3_finalize(statement_); }
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
   void Bind(int index, const std::string& text) {
-    sqlite3_bind_text64(statement_, index, text.data(), text.size(), SQLITE_TRANSIENT, SQLITE_UTF8);
+    if (code_ != SQLITE_OK) return;
+    code_ = sqlite3_bind_text64(statement_, index, text.data(), text.size(), SQLITE_TRANSIENT,
+                                SQLITE_UTF8);
   }
   void BindBlob(int index, const std::string& bytes) {
-    sqlite3_bind_blob64(statement_, index, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
+    if (code_ != SQLITE_OK) return;
+    code_ = sqlite3_bind_blob64(statement_, index, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
   }
-  void Bind(int index, int value) { sqlite3_bind_int(statement_, index, value); }
+  void Bind(int index, int value) {
+    if (code_ == SQLITE_OK) code_ = sqlite3_bind_int(statement_, index, value);
+  }
 
   // True when there is a row.
   absl::StatusOr<bool> Step(absl::string_view action) {
-    if (statement_ == nullptr) return DatabaseError(database_, action);
+    if (code_ != SQLITE_OK) return DatabaseError(database_, code_, action);
     const int code = sqlite3_step(statement_);
     if (code == SQLITE_ROW) return true;
     if (code == SQLITE_DONE) return false;
-    return DatabaseError(database_, action);
+    return DatabaseError(database_, code, action);
   }
   std::string Bytes(int column) {
     const void* data = sqlite3_column_blob(statement_, column);
@@ -85,25 +128,34 @@ class Catalogue::Statement {
  private:
   sqlite3* database_;
   sqlite3_stmt* statement_ = nullptr;
+  int code_;
 };
 
-absl::StatusOr<std::unique_ptr<Catalogue>> Catalogue::Open(const std::string& path) {
-  sqlite3* database = nullptr;
-  const int code =
-      sqlite3_open_v2(path.c_str(), &database,
-                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, nullptr);
-  std::unique_ptr<Catalogue> catalogue(new Catalogue(database));
-  if (code != SQLITE_OK) return DatabaseError(database, absl::StrCat("open '", path, "',"));
+Catalogue::Catalogue() = default;
+
+// The last connection to close writes the log back into the database, so it must be the writer.
+Catalogue::~Catalogue() {
+  reader_.reset();
+  writer_.reset();
+}
+
+absl::StatusOr<std::unique_ptr<Catalogue>> Catalogue::Open(const std::string& path,
+                                                           SyncHook before_sync) {
+  std::unique_ptr<Catalogue> catalogue(new Catalogue);
+  if (before_sync) catalogue->vfs_ = std::make_unique<SyncHookVfs>(std::move(before_sync));
+  const char* vfs = catalogue->vfs_ == nullptr ? nullptr : catalogue->vfs_->name();
+  PLEAT_ASSIGN_OR_RETURN(catalogue->writer_, Connection::Open(path, vfs));
   PLEAT_RETURN_IF_ERROR(catalogue->Prepare(path));
+  PLEAT_ASSIGN_OR_RETURN(catalogue->reader_, Connection::Open(path, vfs));
+  PLEAT_RETURN_IF_ERROR(catalogue->reader_->Execute("PRAGMA query_only=ON"));
   return catalogue;
 }
 
 absl::Status Catalogue::Prepare(const std::string& path) {
-  sqlite3_busy_timeout(database_, kBusyTimeoutMs);
-  PLEAT_RETURN_IF_ERROR(Execute("PRAGMA journal_mode=WAL"));
-  PLEAT_RETURN_IF_ERROR(Execute("PRAGMA synchronous=FULL"));
+  PLEAT_RETURN_IF_ERROR(writer_->Execute("PRAGMA journal_mode=WAL"));
+  PLEAT_RETURN_IF_ERROR(writer_->Execute("PRAGMA synchronous=FULL"));
   {
-    Statement check(database_, "PRAGMA quick_check(1)");
+    Statement check(writer_.get(), "PRAGMA quick_check(1)");
     PLEAT_ASSIGN_OR_RETURN(const bool row, check.Step("check"));
     if (!row || check.Bytes(0) != "ok") {
       return absl::DataLossError(absl::StrCat("the catalogue '", path,
@@ -113,7 +165,7 @@ absl::Status Catalogue::Prepare(const std::string& path) {
   }
   int version = 0;
   {
-    Statement query(database_, "PRAGMA user_version");
+    Statement query(writer_.get(), "PRAGMA user_version");
     PLEAT_ASSIGN_OR_RETURN(const bool row, query.Step("read"));
     if (row) version = query.Int(0);
   }
@@ -123,28 +175,19 @@ absl::Status Catalogue::Prepare(const std::string& path) {
                                                       kSchemaVersion, "; use a newer pleatd"));
   }
   PLEAT_RETURN_IF_ERROR(
-      Execute("CREATE TABLE IF NOT EXISTS entries ("
-              " position INTEGER PRIMARY KEY AUTOINCREMENT,"
-              " kind TEXT NOT NULL,"
-              " id TEXT NOT NULL,"
-              " record BLOB NOT NULL,"
-              " attempts INTEGER NOT NULL DEFAULT 0,"
-              " UNIQUE (kind, id))"));
-  return Execute(absl::StrCat("PRAGMA user_version=", kSchemaVersion).c_str());
-}
-
-Catalogue::~Catalogue() { sqlite3_close(database_); }
-
-absl::Status Catalogue::Execute(const char* sql) {
-  if (sqlite3_exec(database_, sql, nullptr, nullptr, nullptr) == SQLITE_OK) {
-    return absl::OkStatus();
-  }
-  return DatabaseError(database_, "prepare");
+      writer_->Execute("CREATE TABLE IF NOT EXISTS entries ("
+                       " position INTEGER PRIMARY KEY AUTOINCREMENT,"
+                       " kind TEXT NOT NULL,"
+                       " id TEXT NOT NULL,"
+                       " record BLOB NOT NULL,"
+                       " attempts INTEGER NOT NULL DEFAULT 0,"
+                       " UNIQUE (kind, id))"));
+  return writer_->Execute(absl::StrCat("PRAGMA user_version=", kSchemaVersion).c_str());
 }
 
 absl::Status Catalogue::Put(EntryKind kind, const CatalogueEntry& entry) {
-  std::lock_guard lock(mutex_);
-  Statement statement(database_,
+  std::lock_guard lock(writer_->mutex());
+  Statement statement(writer_.get(),
                       "INSERT INTO entries (kind, id, record, attempts) VALUES (?1, ?2, ?3, ?4) "
                       "ON CONFLICT (kind, id) DO UPDATE SET record=?3, attempts=?4");
   statement.Bind(1, KindName(kind));
@@ -155,8 +198,9 @@ absl::Status Catalogue::Put(EntryKind kind, const CatalogueEntry& entry) {
 }
 
 absl::StatusOr<CatalogueEntry> Catalogue::Get(EntryKind kind, const std::string& id) {
-  std::lock_guard lock(mutex_);
-  Statement statement(database_, "SELECT record, attempts FROM entries WHERE kind=?1 AND id=?2");
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(reader_.get(),
+                      "SELECT record, attempts FROM entries WHERE kind=?1 AND id=?2");
   statement.Bind(1, KindName(kind));
   statement.Bind(2, id);
   PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
@@ -165,8 +209,8 @@ absl::StatusOr<CatalogueEntry> Catalogue::Get(EntryKind kind, const std::string&
 }
 
 absl::StatusOr<std::vector<CatalogueEntry>> Catalogue::List(EntryKind kind) {
-  std::lock_guard lock(mutex_);
-  Statement statement(database_,
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(reader_.get(),
                       "SELECT id, record, attempts FROM entries WHERE kind=?1 ORDER BY position");
   statement.Bind(1, KindName(kind));
   std::vector<CatalogueEntry> entries;
@@ -178,12 +222,12 @@ absl::StatusOr<std::vector<CatalogueEntry>> Catalogue::List(EntryKind kind) {
 }
 
 absl::Status Catalogue::Delete(EntryKind kind, const std::string& id) {
-  std::lock_guard lock(mutex_);
-  Statement statement(database_, "DELETE FROM entries WHERE kind=?1 AND id=?2");
+  std::lock_guard lock(writer_->mutex());
+  Statement statement(writer_.get(), "DELETE FROM entries WHERE kind=?1 AND id=?2");
   statement.Bind(1, KindName(kind));
   statement.Bind(2, id);
   PLEAT_RETURN_IF_ERROR(statement.Step("change").status());
-  if (sqlite3_changes(database_) > 0) return absl::OkStatus();
+  if (sqlite3_changes(writer_->database()) > 0) return absl::OkStatus();
   return absl::NotFoundError(absl::StrCat("no ", KindName(kind), " '", id, "'"));
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "file_sync.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
@@ -65,7 +67,10 @@ absl::StatusOr<std::string> Upload::ReadComplete() {
   return bytes;
 }
 
-absl::Status Upload::MoveTo(BlobStore* blobs) { return blobs->Adopt(path_, id_); }
+absl::StatusOr<StagedFile> Upload::Stage() {
+  PLEAT_RETURN_IF_ERROR(SyncFile(fd_, path_, area_->before_sync_));
+  return StagedFile(id_, path_, StagedFile::Unpublished::kKeep);
+}
 
 void Upload::Discard() {
   if (ftruncate(fd_, 0) == 0) lseek(fd_, 0, SEEK_SET);
@@ -73,8 +78,8 @@ void Upload::Discard() {
   received_bytes_ = 0;
 }
 
-absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder,
-                                                             int max_age_hours) {
+absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder, int max_age_hours,
+                                                             SyncHook before_sync) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
@@ -87,7 +92,7 @@ absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder,
       fs::remove(entry.path(), ignored);
     }
   }
-  return std::unique_ptr<UploadArea>(new UploadArea(std::move(folder)));
+  return std::unique_ptr<UploadArea>(new UploadArea(std::move(folder), std::move(before_sync)));
 }
 
 uint64_t UploadArea::ReceivedBytes(const std::string& id) const {

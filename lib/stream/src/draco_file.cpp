@@ -15,15 +15,15 @@ namespace {
 constexpr int kMaxAttributes = 64;
 constexpr int kMaxComponents = 16;
 
-absl::Status CheckLimit(uint64_t count, uint64_t limit, absl::string_view what) {
-  if (count <= limit) return absl::OkStatus();
+absl::Status CheckLimit(uint64_t count, int64_t limit, absl::string_view what) {
+  if (count <= static_cast<uint64_t>(limit)) return absl::OkStatus();
   return absl::ResourceExhaustedError(
       absl::StrCat("the Draco file declares ", count, " ", what, ", the limit is ", limit));
 }
 
 // Few attributes of few components, and no more points than allowed.
-bool AttributesAreSmall(const draco::PointCloud& cloud, const DracoFileLimits& limits) {
-  if (cloud.num_points() > 2 * uint64_t{limits.max_vertices}) return false;
+bool AttributesAreSmall(const draco::PointCloud& cloud, const MeshLimits& limits) {
+  if (int64_t{cloud.num_points()} > 2 * limits.max_vertices) return false;
   if (cloud.num_attributes() > kMaxAttributes) return false;
   for (int a = 0; a < cloud.num_attributes(); ++a) {
     if (cloud.attribute(a)->num_components() > kMaxComponents) return false;
@@ -108,15 +108,14 @@ absl::StatusOr<DracoGeometry> FromMesh(const draco::Mesh& mesh) {
   return geometry;
 }
 
-absl::Status CheckCounts(const DracoHeader& header, const DracoFileLimits& limits,
-                         ByteReader* reader) {
+absl::Status CheckCounts(const DracoHeader& header, const MeshLimits& limits, ByteReader* reader) {
   // Behind metadata, whose length nobody says, the counts are Draco's to read.
   if (header.has_metadata()) return absl::OkStatus();
   if (header.type == static_cast<uint8_t>(DracoType::kMesh)) {
     PLEAT_ASSIGN_OR_RETURN(const DracoMeshCounts counts,
                            ReadDracoMeshCounts(reader, header.method));
     PLEAT_RETURN_IF_ERROR(CheckLimit(counts.num_points, limits.max_vertices, "vertices"));
-    return CheckLimit(counts.num_faces, limits.max_triangles, "triangles");
+    return CheckLimit(counts.num_faces, limits.max_faces, "triangles");
   }
   PLEAT_ASSIGN_OR_RETURN(const int32_t num_points, reader->Read<int32_t>("points"));
   if (num_points < 0) return MalformedDraco("a negative number of points");
@@ -125,8 +124,7 @@ absl::Status CheckCounts(const DracoHeader& header, const DracoFileLimits& limit
 
 }  // namespace
 
-absl::StatusOr<DracoGeometry> DecodeDracoFile(std::string_view bytes,
-                                              const DracoFileLimits& limits) {
+absl::StatusOr<DracoGeometry> DecodeDracoFile(std::string_view bytes, const MeshLimits& limits) {
   ByteReader reader(bytes);
   PLEAT_ASSIGN_OR_RETURN(const DracoHeader header, ReadDracoHeader(&reader));
   PLEAT_RETURN_IF_ERROR(CheckCounts(header, limits, &reader));
@@ -138,7 +136,7 @@ absl::StatusOr<DracoGeometry> DecodeDracoFile(std::string_view bytes,
     PLEAT_RETURN_IF_ERROR(header.method == kDracoEdgebreaker
                               ? RunDracoDecoder<draco::MeshEdgebreakerDecoder>(bytes, check, &mesh)
                               : RunDracoDecoder<draco::MeshSequentialDecoder>(bytes, check, &mesh));
-    PLEAT_RETURN_IF_ERROR(CheckLimit(mesh.num_faces(), limits.max_triangles, "triangles"));
+    PLEAT_RETURN_IF_ERROR(CheckLimit(mesh.num_faces(), limits.max_faces, "triangles"));
     return FromMesh(mesh);
   }
   draco::PointCloud cloud;

@@ -27,7 +27,7 @@ absl::Status CheckControlVertices(const StreamHeader& header) {
 
 }  // namespace
 
-absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLimits& limits) {
+absl::Status CheckStreamHeader(const StreamHeader& header, const MeshLimits& limits) {
   if (header.content == StreamContent::kParameters) {
     return absl::InvalidArgumentError("a stream of parameters holds no Draco frames");
   }
@@ -42,10 +42,9 @@ absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLim
                                                    " vertices and ", header.num_points,
                                                    " points, the limit is ", limits.max_vertices));
   }
-  if (header.num_triangles < 1 || header.num_triangles > limits.max_triangles) {
+  if (header.num_triangles < 1 || header.num_triangles > limits.max_faces) {
     return absl::InvalidArgumentError(absl::StrCat("the stream declares ", header.num_triangles,
-                                                   " triangles, the limit is ",
-                                                   limits.max_triangles));
+                                                   " triangles, the limit is ", limits.max_faces));
   }
   PLEAT_RETURN_IF_ERROR(header.box.Validate());
   PLEAT_RETURN_IF_ERROR(CheckControlVertices(header));
@@ -89,8 +88,7 @@ FrameDecoder::FrameDecoder(StreamHeader header, Topology topology, Eigen::Matrix
       topology_(std::move(topology)),
       reference_(std::move(reference)) {}
 
-absl::StatusOr<FrameDecoder> FrameDecoder::Create(StreamHeader header,
-                                                  const FrameDecoderLimits& limits) {
+absl::StatusOr<FrameDecoder> FrameDecoder::Create(StreamHeader header, const MeshLimits& limits) {
   PLEAT_RETURN_IF_ERROR(CheckStreamHeader(header, limits));
   Eigen::Matrix3Xf points, reference;
   std::vector<int32_t> point_vertices;

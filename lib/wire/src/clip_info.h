@@ -5,9 +5,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "check_count.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 

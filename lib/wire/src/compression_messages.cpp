@@ -4,10 +4,11 @@
 
 #include "check_count.h"
 #include "clip_info.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 

@@ -6,10 +6,11 @@
 #include "absl/strings/str_cat.h"
 #include "check_count.h"
 #include "clip_info.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 v1::Sequence ToProto(const SequenceInfo& info) {
@@ -84,7 +85,7 @@ v1::Job ToProto(const JobInfo& info) {
 }
 
 absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
-  if (message.id().empty() || message.id().size() > kIdLength) {
+  if (message.id().empty() || message.id().size() > kContentIdLength) {
     return absl::InvalidArgumentError("job.id must have 1 to 64 bytes");
   }
   if (!(message.fraction() >= 0 && message.fraction() <= 1)) {

@@ -1,11 +1,10 @@
 #include "pleat/wire/skeleton_messages.h"
 
-#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
-#include "pleat/wire/utf8.h"
+#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {
@@ -26,25 +25,27 @@ absl::StatusOr<Eigen::Vector3d> FromProto(const v1::Vector3& message, absl::stri
   return vector;
 }
 
-absl::StatusOr<Eigen::Quaterniond> FromProto(const v1::Quaternion& message,
-                                             absl::string_view what) {
-  const Eigen::Quaterniond rotation(message.w(), message.x(), message.y(), message.z());
-  if (!(std::abs(rotation.norm() - 1) <= 1e-2)) {  // written so that a NaN fails
-    return absl::InvalidArgumentError(
-        absl::StrCat(what, " has norm ", rotation.norm(), "; send unit quaternions"));
+// The pose as it is: whoever keeps it checks its numbers.
+absl::StatusOr<Pose> ReadPose(const v1::Pose& message) {
+  if (message.rotations_size() < 1 || message.rotations_size() > kMaxWireJoints) {
+    return absl::InvalidArgumentError(absl::StrCat("pose.rotations has ", message.rotations_size(),
+                                                   " entries, allowed are 1 to ", kMaxWireJoints));
   }
-  return rotation;
+  Pose pose;
+  const v1::Vector3& root = message.root_position();
+  pose.root_position << root.x(), root.y(), root.z();
+  pose.rotations.reserve(message.rotations_size());
+  for (const v1::Quaternion& q : message.rotations()) {
+    pose.rotations.emplace_back(q.w(), q.x(), q.y(), q.z());
+  }
+  return pose;
+}
+
+absl::Status Inside(const std::string& what, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat(what, ": ", absl::string_view(status.message())));
 }
 
 }  // namespace
-
-absl::Status CheckContentId(const std::string& id, absl::string_view what) {
-  bool good = id.size() == kIdLength;
-  for (const char c : id) good = good && ((c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'));
-  if (good) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      absl::StrCat(what, " must be 64 lower-case hexadecimal digits"));
-}
 
 absl::Status CheckName(const std::string& name, absl::string_view what) {
   if (name.size() <= kMaxWireNameBytes) return absl::OkStatus();
@@ -109,20 +110,8 @@ v1::Pose ToProto(const Pose& pose) {
 }
 
 absl::StatusOr<Pose> FromProto(const v1::Pose& message) {
-  if (message.rotations_size() < 1 || message.rotations_size() > kMaxWireJoints) {
-    return absl::InvalidArgumentError(absl::StrCat("pose.rotations has ", message.rotations_size(),
-                                                   " entries, allowed are 1 to ", kMaxWireJoints));
-  }
-  Pose pose;
-  PLEAT_ASSIGN_OR_RETURN(pose.root_position,
-                         FromProto(message.root_position(), "pose.root_position"));
-  pose.rotations.reserve(message.rotations_size());
-  for (int j = 0; j < message.rotations_size(); ++j) {
-    PLEAT_ASSIGN_OR_RETURN(
-        Eigen::Quaterniond rotation,
-        FromProto(message.rotations(j), absl::StrCat("pose.rotations[", j, "]")));
-    pose.rotations.push_back(rotation);
-  }
+  PLEAT_ASSIGN_OR_RETURN(Pose pose, ReadPose(message));
+  PLEAT_RETURN_IF_ERROR(CheckPose(pose));
   return pose;
 }
 
@@ -132,10 +121,7 @@ absl::StatusOr<std::vector<Pose>> FromProto(
   poses.reserve(messages.size());
   for (int i = 0; i < messages.size(); ++i) {
     absl::StatusOr<Pose> pose = FromProto(messages[i]);
-    if (!pose.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(what, "[", i, "]: ", absl::string_view(pose.status().message())));
-    }
+    if (!pose.ok()) return Inside(absl::StrCat(what, "[", i, "]"), pose.status());
     poses.push_back(*std::move(pose));
   }
   return poses;
@@ -143,35 +129,30 @@ absl::StatusOr<std::vector<Pose>> FromProto(
 
 v1::PoseTrack ToProto(const PoseTrack& track) {
   v1::PoseTrack message;
-  message.set_fps(track.fps);
-  for (const Pose& pose : track.poses) *message.add_poses() = ToProto(pose);
-  for (const int start : track.clip_starts) message.add_clip_starts(start);
+  message.set_fps(track.fps());
+  for (const Pose& pose : track.poses()) *message.add_poses() = ToProto(pose);
+  for (const int start : track.clip_starts()) message.add_clip_starts(start);
   return message;
 }
 
 absl::StatusOr<PoseTrack> FromProto(const v1::PoseTrack& message) {
-  PoseTrack track;
-  track.fps = message.fps();
-  if (!(track.fps >= .01 && track.fps <= 10000)) {
+  // The limits of the wire; the rest is what every track must be.
+  if (!(message.fps() >= .01 && message.fps() <= 10000)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("track.fps is ", track.fps, ", allowed are .01 to 10000"));
+        absl::StrCat("track.fps is ", message.fps(), ", allowed are .01 to 10000"));
   }
-  if (message.poses_size() == 0) {
-    return absl::InvalidArgumentError("track.poses is empty; send at least one pose");
+  PoseTrack::Parts parts{.fps = message.fps()};
+  parts.poses.reserve(message.poses_size());
+  for (int t = 0; t < message.poses_size(); ++t) {
+    absl::StatusOr<Pose> pose = ReadPose(message.poses(t));
+    if (!pose.ok()) return Inside(absl::StrCat("track.poses[", t, "]"), pose.status());
+    parts.poses.push_back(*std::move(pose));
   }
-  PLEAT_ASSIGN_OR_RETURN(track.poses, FromProto(message.poses(), "track.poses"));
-  if (message.clip_starts_size() == 0) return track;
-  track.clip_starts.assign(message.clip_starts().begin(), message.clip_starts().end());
-  int previous = -1;
-  for (size_t c = 0; c < track.clip_starts.size(); ++c) {
-    const int start = track.clip_starts[c];
-    if ((c == 0 && start != 0) || start <= previous || start >= track.num_frames()) {
-      return absl::InvalidArgumentError(absl::StrCat("track.clip_starts[", c, "] is ", start,
-                                                     "; the first is 0, all ascend and stay below ",
-                                                     track.num_frames()));
-    }
-    previous = start;
+  if (message.clip_starts_size() > 0) {
+    parts.clip_starts.assign(message.clip_starts().begin(), message.clip_starts().end());
   }
+  absl::StatusOr<PoseTrack> track = PoseTrack::Create(std::move(parts));
+  if (!track.ok()) return Inside("track", track.status());
   return track;
 }
 

@@ -1,6 +1,7 @@
 #include "pleat/wire/stream_messages.h"
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/skeleton_messages.h"
 

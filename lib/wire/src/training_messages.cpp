@@ -1,62 +1,60 @@
 #include "pleat/wire/training_messages.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
 #include <string>
+#include <type_traits>
 
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
-#include "pleat/wire/utf8.h"
 
 namespace pleat {
 
+// A message has the fields of TrainOptions under the same names, choices as strings (tested): the
+// one list of options is the list of the wire, too.
+
 v1::TrainOptions ToProto(const TrainOptions& options) {
   v1::TrainOptions message;
-  message.set_learner(options.learner);
-  message.set_fit(options.fit);
-  message.set_detail_axes(options.detail_axes);
-  message.set_deformation(options.deformation);
-  message.set_detail_coordinates(options.detail_coordinates);
-  message.set_rotations(options.rotations);
-  message.set_history(options.history);
-  message.set_resolution_percent(options.resolution_percent);
-  message.set_rest_frame(options.rest_frame);
-  message.set_yaw_degrees(options.yaw_degrees);
-  message.set_latent_dimensions(options.latent_dimensions);
-  message.set_iterations(options.iterations);
-  message.set_dynamics_weight(options.dynamics_weight);
-  message.set_detail_energy(options.detail_energy);
-  message.set_max_components(options.max_components);
-  message.set_seed(options.seed);
-  message.set_history_form(options.history_form);
-  message.set_upsampling(options.upsampling);
-  message.set_bend_stiffness(options.bend_stiffness);
-  message.set_refine(options.refine);
-  message.set_smoothness(options.smoothness);
+  const google::protobuf::Reflection& fields = *message.GetReflection();
+  VisitTrainOptions(options, [&](const char* name, const auto& value) {
+    using T = std::decay_t<decltype(value)>;
+    const auto* field = v1::TrainOptions::descriptor()->FindFieldByName(name);
+    if constexpr (std::is_enum_v<T>) {
+      fields.SetString(&message, field, ChoiceName(value));
+    } else if constexpr (std::is_same_v<T, double>) {
+      fields.SetDouble(&message, field, value);
+    } else if constexpr (std::is_same_v<T, uint64_t>) {
+      fields.SetUInt64(&message, field, value);
+    } else {
+      fields.SetInt32(&message, field, value);
+    }
+  });
   return message;
 }
 
 absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
   TrainOptions options;
-  if (message.has_learner()) options.learner = message.learner();
-  if (message.has_fit()) options.fit = message.fit();
-  if (message.has_detail_axes()) options.detail_axes = message.detail_axes();
-  if (message.has_deformation()) options.deformation = message.deformation();
-  if (message.has_detail_coordinates()) options.detail_coordinates = message.detail_coordinates();
-  if (message.has_rotations()) options.rotations = message.rotations();
-  if (message.has_history()) options.history = message.history();
-  if (message.has_resolution_percent()) options.resolution_percent = message.resolution_percent();
-  if (message.has_rest_frame()) options.rest_frame = message.rest_frame();
-  if (message.has_yaw_degrees()) options.yaw_degrees = message.yaw_degrees();
-  if (message.has_latent_dimensions()) options.latent_dimensions = message.latent_dimensions();
-  if (message.has_iterations()) options.iterations = message.iterations();
-  if (message.has_dynamics_weight()) options.dynamics_weight = message.dynamics_weight();
-  if (message.has_detail_energy()) options.detail_energy = message.detail_energy();
-  if (message.has_max_components()) options.max_components = message.max_components();
-  if (message.has_seed()) options.seed = message.seed();
-  if (message.has_history_form()) options.history_form = message.history_form();
-  if (message.has_upsampling()) options.upsampling = message.upsampling();
-  if (message.has_bend_stiffness()) options.bend_stiffness = message.bend_stiffness();
-  if (message.has_refine()) options.refine = message.refine();
-  if (message.has_smoothness()) options.smoothness = message.smoothness();
+  const google::protobuf::Reflection& fields = *message.GetReflection();
+  absl::Status status;
+  VisitTrainOptions(options, [&](const char* name, auto& value) {
+    using T = std::decay_t<decltype(value)>;
+    const auto* field = v1::TrainOptions::descriptor()->FindFieldByName(name);
+    if (!fields.HasField(message, field)) return;
+    if constexpr (std::is_enum_v<T>) {
+      absl::StatusOr<T> choice = ParseChoice<T>(name, fields.GetString(message, field));
+      if (choice.ok()) value = *choice;
+      status.Update(choice.status());
+    } else if constexpr (std::is_same_v<T, double>) {
+      value = fields.GetDouble(message, field);
+    } else if constexpr (std::is_same_v<T, uint64_t>) {
+      value = fields.GetUInt64(message, field);
+    } else {
+      value = fields.GetInt32(message, field);
+    }
+  });
+  PLEAT_RETURN_IF_ERROR(status);
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   return options;
 }

@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -58,13 +59,15 @@ void LogForGrpc(gpr_log_func_args* args) {
 
 class GrpcServerImpl final : public GrpcServer {
  public:
-  GrpcServerImpl(LocalCharacterService* service, const GrpcServerOptions& options)
-      : batcher_(&pose_executor_, options.max_batch),
-        pose_executor_(options.num_pose_threads),
-        storage_executor_(options.num_storage_threads) {
-    context_.service = service;
-    context_.pose_executor = &pose_executor_;
-    context_.batcher = &batcher_;
+  GrpcServerImpl(CharacterService* service, const GrpcServerOptions& options)
+      : storage_executor_(options.num_storage_threads) {
+    if (options.pose_executor == nullptr) own_pose_executor_.emplace(0);
+    context_.sequences = &service->sequences();
+    context_.jobs = &service->jobs();
+    context_.models = &service->models();
+    context_.poses = &service->poses();
+    context_.compressed_sequences = &service->compressed_sequences();
+    context_.pose_executor = own_pose_executor_ ? &*own_pose_executor_ : options.pose_executor;
     context_.storage_executor = &storage_executor_;
     context_.max_open_streams = options.max_open_streams;
     services_.push_back(MakeSequenceService(&context_));
@@ -131,11 +134,10 @@ class GrpcServerImpl final : public GrpcServer {
   }
 
  private:
-  // Reactors post to the executors until the server is gone, so the server goes first; the last
-  // tasks of the executors use the batcher, so it goes last.
+  // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
-  PoseBatcher batcher_;
-  Executor pose_executor_, storage_executor_;
+  std::optional<Executor> own_pose_executor_;
+  Executor storage_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   std::mutex shutdown_mutex_;
   std::unique_ptr<grpc::Server> server_;
@@ -144,7 +146,7 @@ class GrpcServerImpl final : public GrpcServer {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::Start(LocalCharacterService* service,
+absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::Start(CharacterService* service,
                                                               const GrpcServerOptions& options) {
   auto server = std::make_unique<GrpcServerImpl>(service, options);
   PLEAT_RETURN_IF_ERROR(server->Bind(options));

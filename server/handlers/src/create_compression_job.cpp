@@ -1,7 +1,7 @@
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/service_messages.h"
-#include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
 
@@ -11,7 +11,7 @@ absl::Status CreateCompressionJob(HandlerContext& context,
   PLEAT_RETURN_IF_ERROR(CheckContentId(request.sequence_id(), "sequence_id"));
   PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, FromProto(request.options()));
   PLEAT_ASSIGN_OR_RETURN(const JobInfo info,
-                         context.service->CreateCompressionJob(request.sequence_id(), options));
+                         context.jobs->CreateCompression(request.sequence_id(), options));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();
 }

@@ -1,3 +1,4 @@
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/service_messages.h"
@@ -15,7 +16,7 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions options, FromProto(request.options()));
   PLEAT_ASSIGN_OR_RETURN(
       const JobInfo info,
-      context.service->CreateTrainingJob(
+      context.jobs->CreateTraining(
           {.sequence_ids = {request.sequence_ids().begin(), request.sequence_ids().end()},
            .options = options,
            .model_name = request.model_name(),

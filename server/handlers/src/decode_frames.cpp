@@ -3,11 +3,11 @@
 #include <string>
 #include <utility>
 
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/pull_stream.h"
-#include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
 namespace {
@@ -17,13 +17,13 @@ constexpr int64_t kBytesPerVertex = 3 * sizeof(float);
 
 // Sends the shape, then frame after frame, in chunks.
 struct Decode {
-  LocalCharacterService* service;
+  CompressedSequenceService* compressed;
   v1::DecodeFramesRequest request;
   std::unique_ptr<DecodeSession> session = nullptr;
   std::string shape{};
   size_t shape_sent = 0;
   const Eigen::Matrix3Xf* frame = nullptr;  // that is being sent; of the session
-  int number = 0;                           // of that frame
+  int number = 0;                           // of that frame, or of the next one
   int64_t next_vertex = 0;
 
   absl::StatusOr<bool> Next(v1::DecodeFramesResponse* response) {
@@ -35,9 +35,8 @@ struct Decode {
     }
     shape = {};
     if (frame == nullptr) {
-      if (session->done()) return false;
-      number = session->next_frame();
       PLEAT_ASSIGN_OR_RETURN(frame, session->Next());
+      if (frame == nullptr) return false;
       next_vertex = 0;
     }
     const int64_t count = std::min(frame->cols() - next_vertex, kChunkBytes / kBytesPerVertex);
@@ -46,16 +45,20 @@ struct Decode {
     positions->set_first_vertex(static_cast<int>(next_vertex));
     positions->set_xyz(frame->data() + 3 * next_vertex, count * kBytesPerVertex);
     next_vertex += count;
-    if (next_vertex == frame->cols()) frame = nullptr;
+    if (next_vertex == frame->cols()) {
+      frame = nullptr;
+      ++number;
+    }
     return true;
   }
 
   absl::Status Open() {
     PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
-    PLEAT_ASSIGN_OR_RETURN(
-        session, service->OpenDecode(request.id(), {request.begin_frame(), request.end_frame()}));
+    PLEAT_ASSIGN_OR_RETURN(session, compressed->OpenDecode(request.id(), {request.begin_frame(),
+                                                                          request.end_frame()}));
     PLEAT_ASSIGN_OR_RETURN(const MeshSequence first, session->Shape());
     shape = EncodeSequence(first);
+    number = request.begin_frame();
     return absl::OkStatus();
   }
 };
@@ -64,7 +67,7 @@ struct Decode {
 
 grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
     HandlerContext* context, const v1::DecodeFramesRequest& request) {
-  const auto decode = std::make_shared<Decode>(Decode{context->service, request});
+  const auto decode = std::make_shared<Decode>(Decode{context->compressed_sequences, request});
   return new PullStream<v1::DecodeFramesResponse>(
       context, context->storage_executor, "DecodeFrames",
       [decode](v1::DecodeFramesResponse* response) { return decode->Next(response); });

@@ -12,7 +12,7 @@ namespace pleat {
 namespace {
 
 struct Clip {
-  LocalCharacterService* service;
+  PoseService* poses;
   v1::EvaluateClipRequest request;
   std::unique_ptr<ClipSession> session = nullptr;
 
@@ -21,8 +21,8 @@ struct Clip {
       PLEAT_ASSIGN_OR_RETURN(SessionRequest opening,
                              FromProto(request.character(), request.options()));
       PLEAT_ASSIGN_OR_RETURN(PoseTrack track, FromProto(request.track()));
-      PLEAT_ASSIGN_OR_RETURN(session, service->OpenClip(opening.model_id, std::move(track),
-                                                        std::move(opening.options)));
+      PLEAT_ASSIGN_OR_RETURN(
+          session, poses->OpenClip(opening.model_id, std::move(track), std::move(opening.options)));
       request.Clear();
       *response->mutable_header() = ToProto(session->header());
       return true;
@@ -39,7 +39,7 @@ struct Clip {
 
 grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
     HandlerContext* context, const v1::EvaluateClipRequest& request) {
-  const auto clip = std::make_shared<Clip>(Clip{context->service, request});
+  const auto clip = std::make_shared<Clip>(Clip{context->poses, request});
   return new PullStream<v1::EvaluateClipResponse>(
       context, context->pose_executor, "EvaluateClip",
       [clip](v1::EvaluateClipResponse* response) { return clip->Next(response); });

@@ -1,7 +1,7 @@
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/service_messages.h"
-#include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
 
@@ -10,7 +10,7 @@ absl::Status GetCompressedSequence(HandlerContext& context,
                                    v1::GetCompressedSequenceResponse* response) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(request.id(), "id"));
   PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info,
-                         context.service->GetCompressedSequence(request.id()));
+                         context.compressed_sequences->Get(request.id()));
   *response->mutable_compressed_sequence() = ToProto(info);
   return absl::OkStatus();
 }

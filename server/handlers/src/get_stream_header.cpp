@@ -1,3 +1,4 @@
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/skeleton_messages.h"
@@ -10,7 +11,7 @@ absl::Status GetStreamHeader(HandlerContext& context, const v1::GetStreamHeaderR
   PLEAT_RETURN_IF_ERROR(CheckContentId(request.model_id(), "model_id"));
   PLEAT_ASSIGN_OR_RETURN(const FrameEncoderOptions encoder, FromProto(request.options()));
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<PoseSession> session,
-                         context.service->OpenSession(request.model_id(), {.encoder = encoder}));
+                         context.poses->OpenSession(request.model_id(), {.encoder = encoder}));
   *response->mutable_header() = ToProto(session->header());
   return absl::OkStatus();
 }

@@ -9,7 +9,7 @@ absl::Status ListCompressedSequences(HandlerContext& context,
                                      const v1::ListCompressedSequencesRequest& request,
                                      v1::ListCompressedSequencesResponse* response) {
   PLEAT_ASSIGN_OR_RETURN(const std::vector<CompressedSequenceInfo> infos,
-                         context.service->ListCompressedSequences());
+                         context.compressed_sequences->List());
   PLEAT_ASSIGN_OR_RETURN(const PageRange page,
                          FindPage(infos, request.page_size(), request.page_token()));
   for (size_t i = page.begin; i < page.end; ++i) {

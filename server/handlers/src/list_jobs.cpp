@@ -7,7 +7,7 @@ namespace pleat {
 
 absl::Status ListJobs(HandlerContext& context, const v1::ListJobsRequest& request,
                       v1::ListJobsResponse* response) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> infos, context.service->ListJobs());
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> infos, context.jobs->List());
   PLEAT_ASSIGN_OR_RETURN(const PageRange page,
                          FindPage(infos, request.page_size(), request.page_token()));
   for (size_t i = page.begin; i < page.end; ++i) *response->add_jobs() = ToProto(infos[i]);

@@ -7,7 +7,7 @@ namespace pleat {
 
 absl::Status ListModels(HandlerContext& context, const v1::ListModelsRequest& request,
                         v1::ListModelsResponse* response) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<ModelInfo> infos, context.service->ListModels());
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<ModelInfo> infos, context.models->List());
   PLEAT_ASSIGN_OR_RETURN(const PageRange page,
                          FindPage(infos, request.page_size(), request.page_token()));
   for (size_t i = page.begin; i < page.end; ++i) *response->add_models() = ToProto(infos[i]);

@@ -7,7 +7,7 @@ namespace pleat {
 
 absl::Status ListSequences(HandlerContext& context, const v1::ListSequencesRequest& request,
                            v1::ListSequencesResponse* response) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<SequenceInfo> infos, context.service->ListSequences());
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<SequenceInfo> infos, context.sequences->List());
   PLEAT_ASSIGN_OR_RETURN(const PageRange page,
                          FindPage(infos, request.page_size(), request.page_token()));
   for (size_t i = page.begin; i < page.end; ++i) *response->add_sequences() = ToProto(infos[i]);

@@ -1,16 +1,11 @@
 #include <grpcpp/server_context.h>
 
-#include <atomic>
-#include <chrono>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
-#include "pleat/local/live_queue.h"
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/run_unary.h"
 #include "pleat/wire/skeleton_messages.h"
@@ -26,7 +21,7 @@ namespace {
 class LiveReactor final
     : public grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>,
       public Drainable,
-      private PoseWork {
+      private LiveListener {
  public:
   LiveReactor(HandlerContext* context, grpc::CallbackServerContext* call)
       : slot_(context), context_(context), call_(call), entry_(&context->live_sessions, this) {
@@ -80,23 +75,23 @@ class LiveReactor final
       return absl::OkStatus();
     }
     if (request_.part_case() == v1::LiveSessionRequest::kAcknowledgement) {
-      return queue_->Acknowledge(request_.acknowledgement().frames_received());
+      return stream_->Acknowledge(request_.acknowledgement().frames_received());
     }
     if (request_.part_case() != v1::LiveSessionRequest::kPose) {
       return absl::InvalidArgumentError(
           "after the start, every message of a session is a pose or an acknowledgement");
     }
-    PLEAT_RETURN_IF_ERROR(queue_->Acknowledge(request_.pose().frames_received()));
-    queue_->Push(FromProto(request_.pose()), std::chrono::steady_clock::now());
+    PLEAT_RETURN_IF_ERROR(stream_->Acknowledge(request_.pose().frames_received()));
+    stream_->Push(FromProto(request_.pose()));
     return absl::OkStatus();
   }
 
   bool HasWork() const {
     if (stage_ != Stage::kOpen) return stage_ == Stage::kStarting;
-    return queue_->ready() || (input_ended_ && !queue_->empty());  // no acknowledgement can come
+    return stream_->ready() || (input_ended_ && !stream_->empty());  // no acknowledgement can come
   }
   bool WantsToRead() const {
-    return stage_ == Stage::kNew || (stage_ == Stage::kOpen && queue_->HasRoom());
+    return stage_ == Stage::kNew || (stage_ == Stage::kOpen && stream_->HasRoom());
   }
   bool Ended() const { return cancelled_ || !status_.ok() || (input_ended_ && !HasWork()); }
 
@@ -113,8 +108,7 @@ class LiveReactor final
         LogFailure("LiveSession", status_);
       }
       const grpc::Status status = ToGrpcStatus(status_);
-      queue_.reset();
-      session_.reset();  // lets go of the model now, not when the client has read the status
+      stream_.reset();  // lets go of the model now, not when the client has read the status
       lock.unlock();
       Finish(status);
       return;
@@ -126,7 +120,7 @@ class LiveReactor final
     if (!working_ && !writing_ && HasWork()) {
       working_ = true;
       if (stage_ == Stage::kOpen) {
-        context_->batcher->Submit(&session_->model(), this);
+        stream_->Answer();
       } else {
         context_->pose_executor->Post(
             [this] { Answered(CallGuarded([this] { return Start(); })); });
@@ -134,25 +128,10 @@ class LiveReactor final
     }
   }
 
-  // From here on to Answered on the executor. Nothing else touches session_, turn_ and response_.
-  bool Prepare(PoseQuery* query) override {
-    {
-      std::lock_guard lock(mutex_);
-      has_turn_ = !Ended();
-      if (has_turn_) queue_->Take(&turn_);
-    }
-    start_ = std::chrono::steady_clock::now();
-    if (!has_turn_ || !turn_.status.ok()) return false;
-    poses_.clear();
-    for (const Pose& pose : turn_.poses) poses_.push_back(&pose);
-    *query = session_->QueryOf(&poses_);
-    return true;
-  }
-  PoseEvaluator& evaluator() override { return session_->evaluator(); }
-  void Evaluated(const PoseQuery* query, double evaluate_us, int num_together) override {
-    if (!has_turn_) return Answered(absl::CancelledError("the session has ended"));
+  // On a thread of the service. Nothing else touches response_ until it is written.
+  void OnReply(LiveReply&& reply) override {
     Answered(CallGuarded([&] {
-      Show(query, evaluate_us, num_together);
+      Fill(std::move(reply));
       return absl::OkStatus();
     }));
   }
@@ -176,47 +155,36 @@ class LiveReactor final
     PLEAT_ASSIGN_OR_RETURN(const LiveRules rules, RulesOf(start));
     PLEAT_ASSIGN_OR_RETURN(SessionRequest opening, FromProto(start.character(), start.options()));
     PLEAT_ASSIGN_OR_RETURN(
-        session_, context_->service->OpenSession(opening.model_id, std::move(opening.options)));
-    *response_.mutable_header() = ToProto(session_->header());
+        std::unique_ptr<PoseStream> stream,
+        context_->poses->OpenStream(opening.model_id, std::move(opening.options), rules, this));
+    *response_.mutable_header() = ToProto(stream->header());
     std::lock_guard lock(mutex_);
-    queue_.emplace(rules, session_->model().options().history,
-                   session_->model().skeleton().num_joints());
+    stream_ = std::move(stream);
     stage_ = Stage::kOpen;
     return absl::OkStatus();
   }
 
-  // A pose that cannot be shown is an answer, not an error. query: null when its turn says why not.
-  void Show(const PoseQuery* query, double evaluate_us, int num_together) {
+  // A pose that cannot be shown is an answer, not an error.
+  void Fill(LiveReply&& reply) {
     response_.Clear();
-    if (turn_.keyframe) session_->RequestKeyframe();
-    const absl::Status status =
-        query != nullptr ? session_->Encode(*query, evaluate_us, &frame_) : turn_.status;
-    *response_.mutable_report() =
-        ReportOf(turn_, start_ - turn_.arrived, status.ok() ? &frame_ : nullptr, num_together);
-    if (status.ok()) {
-      *response_.mutable_frame() = ToProto(turn_.number, std::move(frame_));
+    *response_.mutable_report() = ReportOf(reply);
+    if (reply.frame.ok()) {
+      *response_.mutable_frame() = ToProto(reply.number, *std::move(reply.frame));
     } else {
-      *response_.mutable_rejection() = RejectionOf(turn_.number, status);
+      *response_.mutable_rejection() = RejectionOf(reply.number, reply.frame.status());
     }
   }
 
   StreamSlot slot_;
   HandlerContext* context_;
   grpc::CallbackServerContext* call_;
-  // Used while working_, by Advance when nothing is under way; response_ also while writing_.
-  std::unique_ptr<PoseSession> session_;
-  v1::LiveSessionResponse response_;
-  LiveTurn turn_;
-  bool has_turn_ = false;
-  EncodedFrame frame_;              // its bytes become those of response_
-  std::vector<const Pose*> poses_;  // of turn_
-  std::chrono::steady_clock::time_point start_;
+  v1::LiveSessionResponse response_;  // used while working_ or writing_
 
   std::mutex mutex_;  // guards all below
   v1::LiveSessionRequest request_;
   Stage stage_ = Stage::kNew;
-  std::optional<LiveQueue> queue_;  // of the open session
-  absl::Status status_;             // why it ends
+  std::unique_ptr<PoseStream> stream_;  // of the open session
+  absl::Status status_;                 // why it ends
   bool reading_ = false, writing_ = false, working_ = false;
   bool input_ended_ = false, cancelled_ = false, finished_ = false;
   LiveRegistry::Entry entry_;

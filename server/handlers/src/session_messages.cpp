@@ -37,9 +37,9 @@ absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start) {
   LiveRules rules;
   rules.latest_wins = start.latest_wins();
   if (start.max_in_flight() == 0) return rules;
-  if (start.max_in_flight() < 0 || start.max_in_flight() > LiveRules::kMaxInFlight) {
+  if (start.max_in_flight() < 0 || start.max_in_flight() > kMaxPosesInFlight) {
     return absl::InvalidArgumentError(absl::StrCat("max_in_flight is ", start.max_in_flight(),
-                                                   ", allowed are 0 to ", LiveRules::kMaxInFlight));
+                                                   ", allowed are 0 to ", kMaxPosesInFlight));
   }
   rules.max_in_flight = start.max_in_flight();
   return rules;
@@ -48,7 +48,7 @@ absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start) {
 namespace {
 
 absl::Status Read(const v1::LiveSessionRequest::LivePose& message, LivePose* pose) {
-  if (message.history_size() >= kMaxHistory) {
+  if (message.history_size() >= kMaxPosesPerQuery) {
     return absl::InvalidArgumentError("pose.history has more than 7 entries");
   }
   PLEAT_ASSIGN_OR_RETURN(pose->pose, FromProto(message.pose()));
@@ -81,16 +81,14 @@ v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status) {
   return message;
 }
 
-v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duration waited,
-                        const EncodedFrame* frame, int num_together) {
+v1::LiveReport ReportOf(const LiveReply& reply) {
   v1::LiveReport message;
-  message.set_num_superseded(static_cast<uint32_t>(turn.num_superseded));
-  message.set_queue_us(
-      static_cast<uint32_t>(std::chrono::duration_cast<std::chrono::microseconds>(waited).count()));
-  if (frame != nullptr) {
-    message.set_evaluate_us(static_cast<uint32_t>(frame->evaluate_us));
-    message.set_encode_us(static_cast<uint32_t>(frame->encode_us));
-    message.set_evaluated_together(static_cast<uint32_t>(num_together));
+  message.set_num_superseded(static_cast<uint32_t>(reply.num_superseded));
+  message.set_queue_us(static_cast<uint32_t>(reply.queue_us));
+  if (reply.frame.ok()) {
+    message.set_evaluate_us(static_cast<uint32_t>(reply.frame->evaluate_us));
+    message.set_encode_us(static_cast<uint32_t>(reply.frame->encode_us));
+    message.set_evaluated_together(static_cast<uint32_t>(reply.num_together));
   }
   message.set_server_cpu_us(ProcessorMicroseconds());
   return message;

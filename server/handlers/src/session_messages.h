@@ -1,13 +1,11 @@
 // Pose sessions on the wire.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "pleat/local/live_queue.h"
-#include "pleat/local/pose_session.h"
+#include "pleat/service/pose_service.h"
 #include "pleat/v1/pose_service.pb.h"
 
 namespace pleat {
@@ -26,8 +24,6 @@ absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start);
 // What is wrong with the pose is its status.
 LivePose FromProto(const v1::LiveSessionRequest::LivePose& message);
 v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status);
-// frame: null when the pose was rejected.
-v1::LiveReport ReportOf(const LiveTurn& turn, std::chrono::steady_clock::duration waited,
-                        const EncodedFrame* frame, int num_together);
+v1::LiveReport ReportOf(const LiveReply& reply);
 
 }  // namespace pleat

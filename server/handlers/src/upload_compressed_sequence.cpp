@@ -1,4 +1,3 @@
-#include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/upload_stream.h"
 #include "pleat/wire/service_messages.h"
@@ -8,22 +7,17 @@ namespace pleat {
 grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadCompressedSequence(
     HandlerContext* context, v1::UploadCompressedSequenceResponse* response) {
   using Response = v1::UploadCompressedSequenceResponse;
-  LocalCharacterService* service = context->service;
-  return new UploadStream<Response>(
+  CompressedSequenceService* compressed = context->compressed_sequences;
+  return new UploadStream<CompressedSequenceInfo, Response>(
       context, response,
       {.rpc = "UploadCompressedSequence",
-       .find = [service](const std::string& id, Response* reply) -> absl::Status {
-         PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info,
-                                service->GetCompressedSequence(id));
-         *reply->mutable_compressed_sequence() = ToProto(info);
-         return absl::OkStatus();
-       },
-       .finish = [service](Upload* upload, Response* reply) -> absl::Status {
-         PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info,
-                                service->FinishCompressedUpload(upload));
-         *reply->mutable_compressed_sequence() = ToProto(info);
-         return absl::OkStatus();
-       }});
+       .find = [compressed](const std::string& id) { return compressed->Get(id); },
+       .begin =
+           [compressed](const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
+             return compressed->BeginUpload(id, size_bytes, offset_bytes);
+           },
+       .reply = [](const CompressedSequenceInfo& info,
+                   Response* reply) { *reply->mutable_compressed_sequence() = ToProto(info); }});
 }
 
 }  // namespace pleat

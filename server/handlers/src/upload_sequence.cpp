@@ -1,4 +1,3 @@
-#include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/upload_stream.h"
 #include "pleat/wire/service_messages.h"
@@ -8,20 +7,17 @@ namespace pleat {
 grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
     HandlerContext* context, v1::UploadSequenceResponse* response) {
   using Response = v1::UploadSequenceResponse;
-  LocalCharacterService* service = context->service;
-  return new UploadStream<Response>(
+  SequenceService* sequences = context->sequences;
+  return new UploadStream<SequenceInfo, Response>(
       context, response,
       {.rpc = "UploadSequence",
-       .find = [service](const std::string& id, Response* reply) -> absl::Status {
-         PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, service->GetSequence(id));
-         *reply->mutable_sequence() = ToProto(info);
-         return absl::OkStatus();
-       },
-       .finish = [service](Upload* upload, Response* reply) -> absl::Status {
-         PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info, service->FinishUpload(upload));
-         *reply->mutable_sequence() = ToProto(info);
-         return absl::OkStatus();
-       }});
+       .find = [sequences](const std::string& id) { return sequences->Get(id); },
+       .begin =
+           [sequences](const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
+             return sequences->BeginUpload(id, size_bytes, offset_bytes);
+           },
+       .reply = [](const SequenceInfo& info,
+                   Response* reply) { *reply->mutable_sequence() = ToProto(info); }});
 }
 
 }  // namespace pleat

@@ -40,17 +40,22 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
     Schedule();
   }
   void OnDone() override {
-    if (listening_) job_->RemoveListener(token_);
-    self_.reset();  // tasks that are still posted keep the object and find it finished
+    subscription_.reset();  // no call of the listener is left
+    self_.reset();          // tasks that are still posted keep the object and find it finished
   }
 
  private:
   explicit WatchReactor(HandlerContext* context) : slot_(context), context_(context) {}
 
   void Open(const std::string& job_id) {
-    absl::StatusOr<std::shared_ptr<JobStateMachine>> job = context_->service->FindJob(job_id);
     absl::Status status = slot_.status();
-    if (status.ok()) status = job.status();
+    if (status.ok()) {
+      // Until open_ is set, what the listener starts does nothing.
+      absl::StatusOr<std::unique_ptr<JobSubscription>> subscription =
+          context_->jobs->Subscribe(job_id, [this] { Schedule(); });
+      status = subscription.status();
+      if (status.ok()) subscription_ = *std::move(subscription);
+    }
     if (!status.ok()) {
       LogFailure("WatchJob", status);
       {
@@ -60,9 +65,6 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
       Finish(ToGrpcStatus(status));
       return;
     }
-    job_ = *std::move(job);
-    token_ = job_->AddListener([this] { Schedule(); });
-    listening_ = true;
     {
       std::lock_guard lock(mutex_);
       open_ = true;
@@ -95,12 +97,12 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
 
   // Fills the message with the newest state when the client has not got it. Called with the lock.
   bool TakeNews() {
-    const JobSnapshot snapshot = job_->snapshot();
-    if (cancelled_ || (sent_any_ && snapshot.revision == sent_revision_)) return false;
+    const JobUpdate update = subscription_->current();
+    if (cancelled_ || (sent_any_ && update.revision == sent_revision_)) return false;
     sent_any_ = true;
-    sent_revision_ = snapshot.revision;
-    sent_final_ = IsFinal(snapshot.info.state);
-    *message_.mutable_job() = ToProto(snapshot.info);
+    sent_revision_ = update.revision;
+    sent_final_ = IsFinal(update.info.state);
+    *message_.mutable_job() = ToProto(update.info);
     return true;
   }
 
@@ -108,7 +110,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
   bool IsOver(absl::Status* status) const {
     if (cancelled_) {
       *status = absl::CancelledError("the client gave up");
-    } else if (!sent_final_ && (context_->draining || context_->service->shutting_down())) {
+    } else if (!sent_final_ && (context_->draining || !subscription_->status().ok())) {
       *status = absl::UnavailableError("the server is shutting down; watch the job again later");
     }
     return sent_final_ || !status->ok();
@@ -117,9 +119,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
   StreamSlot slot_;
   HandlerContext* context_;
   std::shared_ptr<WatchReactor> self_;  // until OnDone
-  std::shared_ptr<JobStateMachine> job_;
-  int token_ = 0;
-  bool listening_ = false;
+  std::unique_ptr<JobSubscription> subscription_;
 
   std::mutex mutex_;  // all below
   v1::WatchJobResponse message_;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "pleat/wire/utf8.h"
+#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {

@@ -10,9 +10,9 @@
 #include "client/run_pleat.h"
 #include "client/test_sequence.h"
 #include "pleat/base/file.h"
-#include "pleat/mesh/shapes.h"
 #include "pleat/stream/frame_encoder.h"
 #include "support/hostile_bytes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 

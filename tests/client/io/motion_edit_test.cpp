@@ -21,7 +21,7 @@ const std::vector<std::string> kJoints = {"hips", "spine", "head"};
 
 // Joint 1 turns about z by 10 degrees more in every frame; the root walks along x.
 PoseTrack TurningTrack(int num_frames) {
-  PoseTrack track;
+  PoseTrack::Parts track;
   for (int t = 0; t < num_frames; ++t) {
     Pose pose;
     pose.root_position = {0.1 * t, 1, 0};
@@ -30,7 +30,7 @@ PoseTrack TurningTrack(int num_frames) {
         Eigen::AngleAxisd(t * 10 * std::numbers::pi / 180, Eigen::Vector3d::UnitZ());
     track.poses.push_back(pose);
   }
-  return track;
+  return PoseTrack::FromValid(std::move(track));
 }
 
 double DegreesBetween(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
@@ -41,7 +41,7 @@ TEST(MotionEdit, NoEditsChangeNothing) {
   const PoseTrack track = TurningTrack(5);
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack edited, EditMotion(kJoints, track, {}));
   ASSERT_EQ(edited.num_frames(), 5);
-  EXPECT_EQ(edited.poses[3].rotations[1].coeffs(), track.poses[3].rotations[1].coeffs());
+  EXPECT_EQ(edited.pose(3).rotations[1].coeffs(), track.pose(3).rotations[1].coeffs());
 }
 
 TEST(MotionEdit, ScalesAnglesPastAHalfTurn) {
@@ -51,7 +51,7 @@ TEST(MotionEdit, ScalesAnglesPastAHalfTurn) {
   for (int t = 0; t < 30; ++t) {
     const Eigen::Quaterniond expected(
         Eigen::AngleAxisd(t * 5 * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()));
-    EXPECT_NEAR(DegreesBetween(edited.poses[t].rotations[1], expected), 0, 1e-6) << t;
+    EXPECT_NEAR(DegreesBetween(edited.pose(t).rotations[1], expected), 0, 1e-6) << t;
   }
 }
 
@@ -62,9 +62,9 @@ TEST(MotionEdit, OffsetsTurnAboutRestAxesAfterTheMotion) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack edited, EditMotion(kJoints, track, edits));
   const Eigen::Quaterniond quarter(
       Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
-  EXPECT_NEAR(DegreesBetween(edited.poses[3].rotations[1], quarter * track.poses[3].rotations[1]),
-              0, 1e-6);
-  EXPECT_NEAR(DegreesBetween(edited.poses[3].rotations[2], Eigen::Quaterniond::Identity()), 30,
+  EXPECT_NEAR(DegreesBetween(edited.pose(3).rotations[1], quarter * track.pose(3).rotations[1]), 0,
+              1e-6);
+  EXPECT_NEAR(DegreesBetween(edited.pose(3).rotations[2], Eigen::Quaterniond::Identity()), 30,
               1e-6);
 }
 
@@ -72,30 +72,29 @@ TEST(MotionEdit, AllMeansEveryJointButTheRoot) {
   MotionEdits edits;
   edits.offset_rotation = {"all=0,0,10"};
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack edited, EditMotion(kJoints, TurningTrack(1), edits));
-  EXPECT_NEAR(DegreesBetween(edited.poses[0].rotations[0], Eigen::Quaterniond::Identity()), 0,
-              1e-9);
-  EXPECT_NEAR(DegreesBetween(edited.poses[0].rotations[2], Eigen::Quaterniond::Identity()), 10,
+  EXPECT_NEAR(DegreesBetween(edited.pose(0).rotations[0], Eigen::Quaterniond::Identity()), 0, 1e-9);
+  EXPECT_NEAR(DegreesBetween(edited.pose(0).rotations[2], Eigen::Quaterniond::Identity()), 10,
               1e-6);
 }
 
 TEST(MotionEdit, SlowsDownWithinEveryClip) {
-  PoseTrack track = TurningTrack(6);
-  track.clip_starts = {0, 4};
+  const PoseTrack track =
+      PoseTrack::FromValid({.poses = TurningTrack(6).poses(), .clip_starts = {0, 4}});
   MotionEdits edits;
   edits.time_scale = 2;
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack edited, EditMotion(kJoints, track, edits));
-  EXPECT_THAT(edited.clip_starts, ElementsAre(0, 7));
+  EXPECT_THAT(edited.clip_starts(), ElementsAre(0, 7));
   ASSERT_EQ(edited.num_frames(), 10);
-  EXPECT_NEAR(edited.poses[3].root_position.x(), 0.15, 1e-12);
-  EXPECT_NEAR(edited.poses[6].root_position.x(), 0.3, 1e-12);
-  EXPECT_NEAR(edited.poses[7].root_position.x(), 0.4, 1e-12);
+  EXPECT_NEAR(edited.pose(3).root_position.x(), 0.15, 1e-12);
+  EXPECT_NEAR(edited.pose(6).root_position.x(), 0.3, 1e-12);
+  EXPECT_NEAR(edited.pose(7).root_position.x(), 0.4, 1e-12);
 }
 
 TEST(MotionEdit, MovesTheRoot) {
   MotionEdits edits;
   edits.offset_root = {"1,0,-2"};
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack edited, EditMotion(kJoints, TurningTrack(1), edits));
-  EXPECT_TRUE(edited.poses[0].root_position.isApprox(Eigen::Vector3d(1, 1, -2)));
+  EXPECT_TRUE(edited.pose(0).root_position.isApprox(Eigen::Vector3d(1, 1, -2)));
 }
 
 TEST(MotionEdit, NamesWhatIsWrong) {

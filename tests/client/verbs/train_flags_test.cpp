@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_replace.h"
 #include "cli/exit_code.h"
+#include "support/option_choices.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -51,9 +52,25 @@ TEST(TrainFlags, EveryOptionHasAFlagWithHelp) {
 TEST(TrainFlags, AliasesOfTheShortNames) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions options,
                              Parse({"--axes", "world", "--yaw", "90", "--resolution", "5"}));
-  EXPECT_EQ(options.detail_axes, "world");
+  EXPECT_EQ(options.detail_axes, DetailAxes::kWorld);
   EXPECT_EQ(options.yaw_degrees, 90);
   EXPECT_EQ(options.resolution_percent, 5);
+}
+
+TEST(TrainFlags, EveryChoiceIsAFlagValueAndInTheHelp) {
+  CLI::App app;
+  TrainFlags flags;
+  AddTrainFlags(&app, &flags);
+  ForEachChoice(
+      [&app](const std::string& option, const std::string& name, const TrainOptions& expected) {
+        const std::string flag = "--" + absl::StrReplaceAll(option, {{"_", "-"}});
+        PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions options, Parse({flag, name}));
+        EXPECT_EQ(options, expected) << flag << " " << name;
+        EXPECT_THAT(app.get_option(flag)->get_description(), HasSubstr(name + " ("));
+        const absl::Status unknown = Parse({flag, "magic"}).status();
+        EXPECT_TRUE(IsUsageError(unknown)) << flag;
+        EXPECT_THAT(std::string(unknown.message()), HasSubstr(name));
+      });
 }
 
 TEST(TrainFlags, WrongValuesAreUsageErrorsThatNameOptionAndRange) {

@@ -1,4 +1,4 @@
-// Little-endian byte writer and bounds-checked reader, the base of every binary format.
+// A little-endian byte writer and a bounds-checked reader: the base of every binary format.
 #pragma once
 
 #include <bit>
@@ -15,12 +15,15 @@
 
 namespace pleat {
 
+// The writer and the reader copy values as they lie in memory, so the machine has to be
+// little-endian itself.
 static_assert(std::endian::native == std::endian::little, "formats are written little-endian");
 
 template <typename T>
 concept Scalar = std::integral<T> || std::floating_point<T>;
 
-// Appends scalars, arrays and length-prefixed strings to a growing buffer.
+// Appends scalars, arrays and length-prefixed strings to a growing buffer. It writes no padding and
+// no type marks: a format is what its code writes, in that order.
 class ByteWriter {
  public:
   template <Scalar T>
@@ -31,7 +34,8 @@ class ByteWriter {
   void WriteArray(std::span<const T> values) {
     bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
   }
-  void WriteString(std::string_view text) {  // uint32 length, then the bytes
+  // Writes the length as uint32, then the bytes; `text` must be shorter than 4 GiB.
+  void WriteString(std::string_view text) {
     Write(static_cast<uint32_t>(text.size()));
     bytes_.append(text);
   }
@@ -45,8 +49,9 @@ class ByteWriter {
   std::string bytes_;
 };
 
-// Reads what ByteWriter wrote from hostile bytes: each call checks that the bytes are there before
-// it allocates or copies. Errors are kDataLoss and name `what` and the offset.
+// Reads what ByteWriter wrote, from bytes that may be hostile: each call checks that the bytes are
+// there before it allocates or copies. Errors are kDataLoss and name `what` and the offset. The
+// bytes must outlive the reader and every view that ReadRaw() returns.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -62,7 +67,7 @@ class ByteReader {
     offset_ += sizeof(T);
     return value;
   }
-  // Fills `values` completely or fails.
+  // Fills `values` completely or fails and leaves the offset where it was.
   template <Scalar T>
   absl::Status ReadArray(std::span<T> values, absl::string_view what) {
     if (absl::Status status = Require(values.size(), sizeof(T), what); !status.ok()) return status;
@@ -70,10 +75,13 @@ class ByteReader {
     offset_ += values.size_bytes();
     return absl::OkStatus();
   }
+  // Reads a string of ByteWriter::WriteString. A declared length above `max_bytes` is an error
+  // before anything is allocated.
   absl::StatusOr<std::string> ReadString(size_t max_bytes, absl::string_view what);
-  // `count` raw bytes as a view into the input.
+  // Returns `count` raw bytes as a view into the input.
   absl::StatusOr<std::string_view> ReadRaw(size_t count, absl::string_view what);
-  // OK when `count` items of `item_bytes` each are still there: call it before allocating for them.
+  // Returns OK when `count` items of `item_bytes` each are still there. Call it before allocating
+  // for a count that the file declares.
   absl::Status Require(uint64_t count, uint64_t item_bytes, absl::string_view what) const;
 
  private:

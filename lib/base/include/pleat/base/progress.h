@@ -9,16 +9,17 @@
 
 namespace pleat {
 
-// One report: where a computation stands.
+// One report of where a computation stands.
 struct ProgressUpdate {
   std::string stage;                // e.g. "rig", "fit", "learn"
-  double fraction = 0;              // of the whole computation, 0..1
-  std::optional<double> objective;  // of the running optimizer, when there is one
+  double fraction = 0;              // share of the whole computation, 0..1
+  std::optional<double> objective;  // value of the running optimizer, if any
 };
 
-// Handed down by value to everything that may run longer than a second. The default token reports
-// to nobody and is never cancelled. Copies share the sink and the cancellation test; the sink is
-// called from the thread that computes.
+// A token that is handed down by value to everything that may run longer than a second. The default
+// token reports to nobody and is never cancelled. Copies share the sink and the cancellation test.
+// The sink is called from the thread that computes and need not be safe for several threads:
+// parallel loops report between their batches. The cancellation test is called from any thread.
 class Progress {
  public:
   using Sink = std::function<void(const ProgressUpdate&)>;
@@ -27,14 +28,14 @@ class Progress {
   Progress() = default;
   Progress(Sink sink, CancelTest cancel_test);
 
-  // Reports that `fraction` (0..1) of this token's range is done. Returns kCancelled when the
-  // caller asked to stop: pass that status on at once.
+  // Reports that `fraction` (0..1) of this token's range is done. Returns kCancelled, without a
+  // report, when the caller asked to stop: pass that status on at once.
   absl::Status Report(double fraction, std::optional<double> objective = std::nullopt) const;
 
-  // The token of a sub-step named `stage` that covers [begin, end] of this token's range.
+  // Returns the token of a sub-step named `stage` that covers [begin, end] of this token's range.
   Progress Stage(const std::string& stage, double begin, double end) const;
 
-  // True when the caller asked to stop. Cheap; call at least every 100 ms of work.
+  // Returns true when the caller asked to stop. It is cheap; call it at least every 100 ms of work.
   bool cancelled() const;
 
  private:

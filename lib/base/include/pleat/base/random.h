@@ -1,11 +1,13 @@
-// A seeded random source whose numbers are the same on every platform and standard library.
+// A seeded random source whose bits are the same on every platform and standard library, unlike
+// those of the distributions of <random>.
 #pragma once
 
 #include <cstdint>
 
 namespace pleat {
 
-// xoshiro256** (Blackman and Vigna 2018), seeded through splitmix64.
+// The generator xoshiro256** (Blackman and Vigna 2018), seeded through splitmix64. Not for secrets,
+// and not for two threads at once.
 class Random {
  public:
   explicit Random(uint64_t seed);

@@ -1,4 +1,4 @@
-// SHA-256 content ids and checksums (OpenSSL's implementation).
+// SHA-256 for content ids and checksums, by OpenSSL.
 #pragma once
 
 #include <array>
@@ -11,7 +11,8 @@ namespace pleat {
 
 using Sha256Digest = std::array<uint8_t, 32>;
 
-// Incremental hash for data that arrives in chunks.
+// An incremental hash for data that arrives in chunks. A moved-from object may only be assigned to
+// or destroyed.
 class Sha256 {
  public:
   Sha256();
@@ -27,9 +28,10 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
+// Returns the digest of `bytes` in one call.
 Sha256Digest ComputeSha256(std::string_view bytes);
 
-// 64 lower-case hexadecimal digits.
+// Returns 64 lower-case hexadecimal digits.
 std::string ToHex(const Sha256Digest& digest);
 
 }  // namespace pleat

@@ -1,8 +1,25 @@
-// Status helpers shared by every module: absl::Status carries what, where, why and what to do.
+// Status helpers shared by every module. An absl::Status says what failed, where, why, and what to
+// do.
 #pragma once
+
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace pleat {
+
+// The same error with "where: " in front of its message; OK stays OK.
+absl::Status WithContext(absl::string_view where, absl::Status status);
+
+template <typename T>
+absl::StatusOr<T> WithContext(absl::string_view where, absl::StatusOr<T> value) {
+  if (value.ok()) return value;
+  return WithContext(where, std::move(value).status());
+}
+
+}  // namespace pleat
 
 // Returns from the enclosing function when `expression` (an absl::Status) is not OK.
 #define PLEAT_RETURN_IF_ERROR(expression)                                                  \
@@ -13,7 +30,8 @@
 #define PLEAT_STATUS_CONCAT_INNER(a, b) a##b
 #define PLEAT_STATUS_CONCAT(a, b) PLEAT_STATUS_CONCAT_INNER(a, b)
 
-// PLEAT_ASSIGN_OR_RETURN(auto mesh, ReadMesh(path)); assigns the value or returns the error.
+// PLEAT_ASSIGN_OR_RETURN(auto mesh, ReadMesh(path)); assigns the value or returns the error. It
+// expands to several statements, so it cannot be the body of an `if` without braces.
 #define PLEAT_ASSIGN_OR_RETURN(declaration, expression)                         \
   auto PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__) = (expression);          \
   if (!PLEAT_STATUS_CONCAT(pleat_status_or_, __LINE__).ok())                    \

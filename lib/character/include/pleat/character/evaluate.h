@@ -34,10 +34,11 @@ absl::StatusOr<FrameSplit> SplitFrames(EvaluationProtocol protocol, int num_fram
 
 struct EvaluateOptions {
   EvaluationProtocol protocol = EvaluationProtocol::kBlocks10;
-  TrainOptions train;  // learner "auto" chooses by validation inside the training frames
+  TrainOptions train;  // learner auto chooses by validation inside the training frames
   TrainResources resources;
-  // Which learners are measured; the chosen one is always among them.
-  std::vector<std::string> learners = {"sgplvm", "gp", "regional"};
+  // Which learners are measured (not auto); the chosen one is always among them.
+  std::vector<LearnerChoice> learners = {LearnerChoice::kSgplvm, LearnerChoice::kGp,
+                                         LearnerChoice::kRegional};
   bool measure_baselines = true;
   // Protocol cross: further clips to train on, of the connectivity of the first.
   std::vector<MeshSequence> more_training_clips;

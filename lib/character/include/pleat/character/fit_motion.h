@@ -6,7 +6,7 @@
 #include "pleat/character/character_model.h"
 #include "pleat/character/train_character.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 

@@ -10,7 +10,7 @@
 #include "absl/status/status.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 
@@ -82,12 +82,22 @@ class PoseEvaluator {
       const PoseTrack& track, const std::vector<double>& bone_scales,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
       const Progress& progress = {});
+  // The same without the learned detail.
+  absl::Status EvaluateSkinnedClip(
+      const PoseTrack& track, const std::vector<double>& bone_scales,
+      const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
+      const Progress& progress = {});
 
  private:
   struct Scratch;  // of one query
   // The one with this number, made when it is needed first.
   Scratch* ScratchAt(size_t number);
-  absl::Status Prepare(const PoseQuery& query, Scratch* scratch) const;
+  size_t NumPosesOf(const PoseQuery& query) const;  // that are looked at, with their history
+  absl::Status Check(const PoseQuery& query) const;
+  // EvaluateBatch of queries that are checked already; those with a status that is not OK are left.
+  void EvaluateChecked(std::span<PoseQuery> queries);
+  // Computes what is predicted from.
+  void Prepare(const PoseQuery& query, Scratch* scratch) const;
   // The coefficients of those with details, which come first.
   void Predict(std::span<Scratch* const> scratches) const;
   // The motions of the bones in history[0] and the expansion of the coefficients.

@@ -8,29 +8,28 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "pleat/character/option_choices.h"
 
 namespace pleat {
 
+// Names and help texts of the choices: option_choices.h.
 struct TrainOptions {
-  // "auto" (validated on held-out training frames) or one of LearnerNames().
-  std::string learner = "auto";
-  std::string fit = "all-joints";  // "all-joints" (Levenberg-Marquardt) or "walk" (the paper's)
-  std::string refine = "full";     // rig on the training frames: "none" (paper), "joints", "full"
-  // What is learned: "fine" (details, what the mesh does beyond its skinned rig; the paper's
-  // choice) or "full" (all deformation beyond the motion of the root, which the paper compares
-  // with).
-  std::string deformation = "fine";
-  std::string detail_axes = "local";  // "local" (each vertex's own blend), "root", "world" (paper)
-  // "offsets" (paper) or "differential": every control vertex against the mean of its neighbors.
-  std::string detail_coordinates = "offsets";
-  std::string rotations = "expmap";  // pose features: "expmap" (paper), "euler", "quaternion"
-  int history = 2;                   // poses per feature row, 1..8 (paper: 2)
-  std::string history_form = "differences";  // of those poses, or "poses" (paper)
-  double resolution_percent = 100;           // share of the vertices that learn, 1..100 (paper: 5)
-  std::string upsampling = "refined";  // control -> all: "rbf" (paper), "refined" on the input
-  int rest_frame = -1;                 // frame to rig, -1 = found automatically
-  double yaw_degrees = -1;             // facing of the character about +y from +z, -1 = automatic
-  double bend_stiffness = 0.0001;      // pose fit: pull of a bone to its parent, 0..1
+  LearnerChoice learner = LearnerChoice::kAuto;  // auto: validated on held-out training frames
+  PoseFitMethod fit = PoseFitMethod::kAllJoints;
+  RigRefinement refine = RigRefinement::kFull;
+  // What is learned: what the mesh does beyond its skinned rig, or all deformation beyond the
+  // motion of the root (which the paper compares with).
+  DetailBase deformation = DetailBase::kSkinned;
+  DetailAxes detail_axes = DetailAxes::kLocal;
+  DetailCoordinates detail_coordinates = DetailCoordinates::kOffsets;
+  RotationRepresentation rotations = RotationRepresentation::kExponentialMap;  // pose features
+  int history = 2;                                       // poses per feature row, 1..8 (paper: 2)
+  HistoryForm history_form = HistoryForm::kDifferences;  // of those poses
+  double resolution_percent = 100;  // share of the vertices that learn, 1..100 (paper: 5)
+  Upsampling upsampling = Upsampling::kRefined;
+  int rest_frame = -1;             // frame to rig, -1 = found automatically
+  double yaw_degrees = -1;         // facing of the character about +y from +z, -1 = automatic
+  double bend_stiffness = 0.0001;  // pose fit: pull of a bone to its parent, 0..1
   double smoothness = 0;           // pose fit: pull to the poses before and after, 0..1; 0 = none
   int latent_dimensions = 13;      // q of the SGPLVM, 1..32 (lost in the paper; its preset: 4)
   int iterations = 100;            // SCG iterations of the SGPLVM, 1..10000 (paper: 100)
@@ -45,8 +44,7 @@ struct TrainOptions {
   friend bool operator==(const TrainOptions&, const TrainOptions&) = default;
 };
 
-// Every learner but "auto": "regional", "gp", "sgplvm" (the paper's), "back-constrained" (the same
-// with latent points that are a smooth function of the pose), "ridge" (linear).
+// The name of every learner but "auto".
 const std::vector<std::string>& LearnerNames();
 
 // OK when every option is in the range above; else names option, value and range.
@@ -56,10 +54,11 @@ absl::Status ValidateTrainOptions(const TrainOptions& options);
 std::string FormatTrainOptions(const TrainOptions& options);
 
 // Parses such lines; options that are not mentioned keep their default. kInvalidArgument names an
-// unknown option or a value that does not parse.
+// unknown option or a value that does not parse or is not known.
 absl::StatusOr<TrainOptions> ParseTrainOptions(absl::string_view text);
 
-// Calls visit(name, member&) for every option: the one list that file, report and flags share.
+// Calls visit(name, member&) for every option: the one list that file, wire, report and flags
+// share. A member is an enum with ChoicesOf, an int, a double or a uint64_t.
 template <typename Options, typename Visitor>
 void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("learner", options.learner);

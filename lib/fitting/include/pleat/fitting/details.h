@@ -1,5 +1,6 @@
 // Details: what the mesh does beyond its skinned rig (docs/method/details.md; paper, section
 // III-C).
+//
 //   d_t(v) = B_t(v)^T (p_t(v) - p_S,t(v)),  p_S,t the detail base
 #pragma once
 
@@ -10,30 +11,32 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/rig.h"
 
 namespace pleat {
 
-// The axes B_t(v) in which a vertex's detail is written.
+// The axes B_t(v) in which the detail of a vertex is written.
 enum class DetailAxes {
   kWorld,  // the paper's: B = I
   kRoot,   // the rotation of the root: details turn with the body
   kLocal,  // the rotation of the vertex's own blend: details also follow the limbs
 };
 
-// B_t(v) of `vertices`, in that order. No allocation once `rotations` has the right size.
+// Writes B_t(v) of `vertices` to `rotations`, in that order. It does not allocate once `rotations`
+// has the right size.
 void ComputeDetailRotations(DetailAxes axes, const SkinWeights& weights,
                             const std::vector<int>& vertices, const BoneTransforms& transforms,
                             std::vector<Eigen::Quaterniond>* rotations);
 
-// What details are added to.
+// The positions that details are added to.
 enum class DetailBase {
   kSkinned,  // the skinned mesh: details are fine, the paper's choice
   kRoot,     // the rest mesh moved by the root alone: details are the full deformation
 };
 
-// 3 x V, meters. No allocation once `positions` has the right size.
+// Writes the base of all vertices to `positions` (3 x V, meters). It does not allocate once
+// `positions` has the right size.
 void ComputeDetailBase(DetailBase base, const Rig& rig, const BoneTransforms& transforms,
                        Eigen::Matrix3Xd* positions);
 
@@ -43,18 +46,18 @@ struct ComputeDetailsOptions {
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
 
-// Row t: the details of frame t at `vertices` (C indices), meters: x, y, z of the first, of the
-// second, ... (T x 3C). kInvalidArgument when the counts of sequence, rig and track differ or a
-// vertex is out of range; kCancelled.
+// Returns the details of all frames at `vertices` (C indices) as a T x 3C matrix in meters: row t
+// holds x, y, z of the first vertex, of the second, and so on. The error is kInvalidArgument when
+// the counts of sequence, rig and track differ or a vertex is out of range, and kCancelled.
 absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, const Rig& rig,
                                                const PoseTrack& track,
                                                const std::vector<int>& vertices,
                                                const ComputeDetailsOptions& options = {},
                                                const Progress& progress = {});
 
-// The inverse for one frame: column c of `positions` = base_c + rotations[c] * details_c.
-// base: 3 x C, meters; rotations: C, of ComputeDetailRotations; details: 3C. `positions` (3 x C)
-// may be the matrix behind `base`. No allocation once it has the right size.
+// The inverse for one frame: column c of `positions` = base_c + rotations[c] * details_c. base: 3 x
+// C, meters; rotations: C, from ComputeDetailRotations; details: 3C. `positions` (3 x C) may be the
+// matrix behind `base`. It does not allocate once `positions` has the right size.
 void ApplyDetails(const Eigen::Ref<const Eigen::Matrix3Xd>& base,
                   const std::vector<Eigen::Quaterniond>& rotations,
                   const Eigen::Ref<const Eigen::VectorXd>& details, Eigen::Matrix3Xd* positions);

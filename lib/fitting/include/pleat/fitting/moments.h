@@ -1,4 +1,4 @@
-// Moments of a rig and of a frame: all that a pose fit needs to know about the vertices
+// The moments of a rig and of a frame: all that a pose fit needs to know about the vertices
 // (docs/method/fit.md#moments). Computed once, they make the cost of a solver iteration independent
 // of V.
 #pragma once
@@ -11,8 +11,9 @@
 
 namespace pleat {
 
-// Once per rig. u_i = [rest position relative to `center`; 1], W the skinning weights (rows
-// normalized to sum 1). Independent of the joints, so joints can be refined against it.
+// The moments of a rig, computed once. u_i = [rest position relative to `center`; 1], and W are the
+// skinning weights (rows normalized to sum 1). They do not depend on the joints, so joints can be
+// refined against them.
 struct RigMoments {
   int num_joints = 0;
   double num_vertices = 0;
@@ -23,23 +24,29 @@ struct RigMoments {
   std::vector<Eigen::Matrix4d> weighted;
 };
 
-// Once per frame, from the only loop over vertices. Positions are relative to `center`.
+// The moments of a frame, from the only loop over vertices. Positions are relative to `center`,
+// which keeps the sums small and makes sum_i y_i vanish.
 struct FrameMoments {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // mean position of the frame, meters
   std::vector<Eigen::Matrix<double, 4, 3>> cross;    // Y_k = sum_i W_ik u_i y_i^T, per bone
   double sum_squares = 0;                            // sum_i |y_i|^2
 };
 
+// Computes the moments of `rig`, which must have vertices. O(V) with up to 16 products per vertex.
 RigMoments ComputeRigMoments(const Rig& rig);
 
-// `positions`: 3 x V, meters (float32, as sequences hold them); `rig_moments` of the same rig.
+// Computes the moments of a frame. positions: 3 x V, meters (float32, as sequences hold them);
+// `rig_moments` must be of the same rig.
 FrameMoments ComputeFrameMoments(const Rig& rig, const RigMoments& rig_moments,
                                  const Eigen::Matrix3Xf& positions);
 
 // The moments seen through the joint chain. With world rotations R_a of the bones and the root
 // position r, linear blend skinning of a chain with pivots is linear in them:
+//
 //   v_i = r + sum_a R_a g_ia,   g_ia = W_ia (u_i - q_parent(a)) + S_ia (q_a - q_parent(a)),
-// S_ia the summed weights of the strict descendants of a. Entry a = 0 (the root has no bone) is 0.
+//
+// where S_ia is the summed weight of the strict descendants of a: bone a carries what it moves
+// itself, and moves its end for all that hangs below. Entry a = 0 is 0, since the root has no bone.
 struct ChainMoments {
   int num_joints = 0;
   double num_vertices = 0;
@@ -47,9 +54,10 @@ struct ChainMoments {
   Eigen::Matrix3Xd sums;  // 3 x J, column a = sum_i g_ia
 };
 
+// Folds the chain into the moments. This depends on the joints and is cheap, O(J^3) at most.
 ChainMoments ComputeChainMoments(const RigMoments& moments, const Skeleton& skeleton);
 
-// 3J x 3, block a = sum_i g_ia y_i^T.
+// Returns the cross moments of the chain with a frame: 3J x 3, block a = sum_i g_ia y_i^T.
 Eigen::MatrixXd ComputeChainCross(const RigMoments& moments, const FrameMoments& frame,
                                   const Skeleton& skeleton);
 

@@ -7,15 +7,15 @@
 
 namespace pleat {
 
-// A start that needs no previous frame: the root rigidly from the bones at the hips, then from the
-// root to the leaves each bone's rotation about its fixed pivot, by a weighted Procrustes fit of
-// the bone's own vertices. Closed form.
+// Returns a start that needs no previous frame, in closed form: the root from a rigid fit of the
+// bones at the hips, then from the root to the leaves each bone's rotation about its fixed pivot,
+// by a weighted Procrustes fit of the bone's own vertices (docs/method/fit.md#closed-form-start).
 ChainPose ClosedFormWalk(const RigMoments& moments, const FrameMoments& frame,
                          const Skeleton& skeleton);
 
-// One sweep of the paper's fit (section III-B): from the root to the leaves, each joint turns its
-// whole subtree by the rotation that minimizes the energy of all vertices with the other joints
-// held, in closed form. Never raises the energy.
+// Makes one sweep of the paper's fit (section III-B): from the root to the leaves, each joint turns
+// its whole subtree by the rotation that minimizes the energy of all vertices with the other joints
+// held, in closed form. It never raises the energy. Costs O(J^3) small products.
 void WalkSweep(const PoseEnergy& energy, const Skeleton& skeleton, ChainPose* pose);
 
 struct PoseSolverOptions {
@@ -31,8 +31,9 @@ struct PoseSolverSummary {
   double energy = 0;       // at the end, square meters, stiffness included
 };
 
-// Levenberg-Marquardt on all rotations and the root position together (Marquardt 1963, damping
-// scaled by the diagonal). Starts from and overwrites `pose`; never raises the energy.
+// Minimizes the energy by Levenberg-Marquardt on all rotations and the root position together
+// (Marquardt 1963, damping scaled by the diagonal). Starts from `pose` and overwrites it; never
+// raises the energy. See docs/method/fit.md#all-joints.
 PoseSolverSummary MinimizePose(const PoseEnergy& energy, const PoseSolverOptions& options,
                                ChainPose* pose);
 

@@ -1,5 +1,6 @@
-// A rig that explains an animation better than the first one (docs/method/fit.md#rig-refinement):
-// poses, rest joints, skinning weights and rest mesh in turn, each step with all else held.
+// Makes a rig that explains an animation better than the first one
+// (docs/method/fit.md#rig-refinement): poses, rest joints, skinning weights and rest mesh in turn,
+// each step with all else held.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/rig.h"
 
 namespace pleat {
@@ -18,7 +19,7 @@ struct RigRefinementOptions {
   bool rest = true;                  // move the rest mesh
   std::vector<int> locked_joints{};  // these stay where they are
 
-  // Pull of every joint to its place in the first rig, as a share of the mean curvature of the
+  // A pull of every joint to its place in the first rig, as a share of the mean curvature of the
   // error per joint. Without it joints that the motion hardly shows run away (knees under a skirt
   // by 26-32 cm); from .3 on known joints come out no worse than they were (docs/performance.md).
   double joint_prior = 0.3;
@@ -33,11 +34,11 @@ struct RigRefinementOptions {
 
   int num_rounds = 5;
   int max_frames = 400;          // evenly spaced ones are used of a longer sequence
-  int max_iterations = 20;       // of the pose solver, per frame and step
-  double bend_stiffness = 1e-6;  // of the pose solver, see PoseFitOptions
+  int max_iterations = 20;       // limit of the pose solver, per frame and step
+  double bend_stiffness = 1e-6;  // as in PoseFitOptions
   int num_threads = 0;           // 0 = one per core; the result does not depend on it
 
-  // Joints alone: held harder, since they are all that can follow cloth.
+  // Options for joints alone, which are held harder, since they are all that can follow cloth.
   static RigRefinementOptions JointsOnly() {
     return {.weights = false, .rest = false, .joint_prior = 1};
   }
@@ -51,11 +52,13 @@ struct RigRefinementSummary {
   double rest_moved_m = 0;            // RMS over vertices
 };
 
-// `track`: the poses of all frames, fitted with `rig` (FitPoses). Returns the refined rig; fit the
-// poses again with it. Leaves of the skeleton have no influence on the mesh and stay. A vertex
-// keeps at most kMaxInfluences bones: those of its own, of its neighbors, or next to its own in
-// the skeleton. kInvalidArgument when rig, track and sequence do not belong together or an option
-// is out of range; kCancelled. `summary` may be null.
+// Returns the refined rig; fit the poses again with it. `track` holds the poses of all frames,
+// fitted with `rig` (FitPoses). Leaves of the skeleton have no influence on the mesh and stay. A
+// vertex keeps at most kMaxInfluences bones: bones of its own, of its neighbors, or next to its own
+// in the skeleton. The result does not depend on the number of threads.
+//
+// The error is kInvalidArgument when rig, track and sequence do not belong together or an option is
+// out of range, and kCancelled. `summary` may be null.
 absl::StatusOr<Rig> RefineRig(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
                               const RigRefinementOptions& options, RigRefinementSummary* summary,
                               const Progress& progress = {});

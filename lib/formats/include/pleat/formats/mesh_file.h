@@ -1,21 +1,12 @@
-// What one mesh file holds, and the limits under which files are read.
+// What one mesh file holds.
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
+#include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/topology.h"
 
 namespace pleat {
-
-// Refused above these with kResourceExhausted: the bytes come from outside.
-struct MeshFileLimits {
-  uint64_t max_file_bytes = uint64_t{8} << 30;  // of any one file
-  int64_t max_vertices = 4'000'000;
-  int64_t max_faces = 8'000'000;
-  int64_t max_frames = 100'000;
-  uint64_t max_sequence_bytes = uint64_t{8} << 30;  // T x V x 12: positions of all frames
-};
 
 // One frame as its file lists it: vertex order and count, polygons, texture corners and materials
 // are those of the file. Positions may hold NaN or infinity when the file does: MeshSequence

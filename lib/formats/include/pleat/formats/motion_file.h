@@ -1,37 +1,32 @@
 // Motions as JSON (docs/formats/motion.md).
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/mesh/mesh_limits.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skeleton/skeleton.h"
 
 namespace pleat {
 
 struct Motion {
-  PoseTrack track;                    // all joints of the skeleton, unit quaternions
+  PoseTrack track;                    // all joints of the skeleton
   std::vector<double> bone_scales;    // J, or empty when the file has none
   std::vector<std::string> warnings;  // joints left at rest, ignored fields, rescaled quaternions
-};
-
-struct MotionLimits {
-  uint64_t max_bytes = uint64_t{256} << 20;
-  int64_t max_frames = 100'000;
 };
 
 // Matches the file's joints to those of `skeleton` by name. kInvalidArgument names frame and joint
 // and what is wrong there; an unknown joint comes with the list of known ones.
 absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skeleton,
-                                    const MotionLimits& limits = {});
+                                    const MeshLimits& limits = {});
 absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
-                                  const MotionLimits& limits = {});
+                                  const MeshLimits& limits = {});
 
-// bone_scales: J entries or empty. Every pose of `track` has skeleton.num_joints() rotations.
+// bone_scales: J entries or empty. `track` has skeleton.num_joints() joints.
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales = {});
 absl::Status WriteMotion(const std::string& path, const Skeleton& skeleton, const PoseTrack& track,

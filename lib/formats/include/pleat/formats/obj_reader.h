@@ -13,7 +13,7 @@ namespace pleat {
 // every other statement is skipped, normals included. kInvalidArgument says "file:line" and why.
 // `file` is the name used in messages.
 absl::StatusOr<MeshFile> DecodeObj(std::string_view text, const std::string& file,
-                                   const MeshFileLimits& limits = {});
-absl::StatusOr<MeshFile> ReadObj(const std::string& path, const MeshFileLimits& limits = {});
+                                   const MeshLimits& limits = {});
+absl::StatusOr<MeshFile> ReadObj(const std::string& path, const MeshLimits& limits = {});
 
 }  // namespace pleat

@@ -5,8 +5,6 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "pleat/base/progress.h"
-#include "pleat/mesh/mesh_sequence.h"
 #include "pleat/mesh/topology.h"
 
 namespace pleat {
@@ -18,9 +16,5 @@ std::string EncodeObj(const Topology& topology, const Eigen::Ref<const Eigen::Ma
 absl::Status WriteObj(const std::string& path, const Topology& topology,
                       const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                       const MeshAppearance& appearance = {});
-
-// Writes frame_0000.obj, frame_0001.obj, ... into `folder` (made when missing).
-absl::Status WriteObjSequence(const std::string& folder, const MeshSequence& sequence,
-                              const Progress& progress = {});
 
 }  // namespace pleat

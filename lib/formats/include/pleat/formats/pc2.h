@@ -23,9 +23,8 @@ struct PointCache {
 // kInvalidArgument when the header is wrong, kDataLoss when the length disagrees with it. `file` is
 // the name used in messages.
 absl::StatusOr<PointCache> DecodePointCache(std::string_view bytes, const std::string& file,
-                                            const MeshFileLimits& limits = {});
-absl::StatusOr<PointCache> ReadPointCache(const std::string& path,
-                                          const MeshFileLimits& limits = {});
+                                            const MeshLimits& limits = {});
+absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshLimits& limits = {});
 
 // frames must not be empty and must have the same number of columns.
 std::string EncodePointCache(const PointCache& cache);

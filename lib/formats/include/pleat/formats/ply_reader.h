@@ -14,7 +14,7 @@ namespace pleat {
 // per corner) or from vertex properties s, t / u, v / texture_u, texture_v. All other elements and
 // properties are skipped. kInvalidArgument says file, line or byte, and why.
 absl::StatusOr<MeshFile> DecodePly(std::string_view bytes, const std::string& file,
-                                   const MeshFileLimits& limits = {});
-absl::StatusOr<MeshFile> ReadPly(const std::string& path, const MeshFileLimits& limits = {});
+                                   const MeshLimits& limits = {});
+absl::StatusOr<MeshFile> ReadPly(const std::string& path, const MeshLimits& limits = {});
 
 }  // namespace pleat

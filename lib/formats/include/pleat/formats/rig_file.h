@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/skinning/user_rig.h"
 
@@ -26,20 +27,15 @@ struct RigFile {
   std::vector<int> locked_joints;  // ascending
 };
 
-struct RigFileLimits {
-  uint64_t max_bytes = uint64_t{256} << 20;
-  int64_t max_vertices = 4'000'000;
-};
-
 // kInvalidArgument says what is wrong and where; kResourceExhausted names the limit.
-absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const RigFileLimits& limits = {});
+absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& limits = {});
 // The first skin of a binary glTF 2.0 file: its joints in parent-before-child order, rest positions
 // from the inverse bind matrices, and the first four influences of every vertex of the mesh
 // primitives that use it. kUnimplemented for buffers outside the file and sparse or quantized
 // accessors that a skin does not need.
-absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const RigFileLimits& limits = {});
+absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits = {});
 // By the ending: .glb or .json.
-absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const RigFileLimits& limits = {});
+absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits = {});
 
 // The rig for the clip's own vertices. What EncodeRig wrote comes back as it was. Weights of a GLB
 // go to the clip's vertices by place: each takes those of the nearest vertex of the file.

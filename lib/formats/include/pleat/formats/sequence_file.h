@@ -16,11 +16,10 @@ std::string EncodeSequence(const MeshSequence& sequence);
 
 // kInvalidArgument: not a sequence file, another version, or values that are no valid sequence.
 // kDataLoss: cut off or corrupt. kResourceExhausted: above a limit.
-absl::StatusOr<MeshSequence> DecodeSequence(std::string_view bytes,
-                                            const MeshFileLimits& limits = {});
+absl::StatusOr<MeshSequence> DecodeSequence(std::string_view bytes, const MeshLimits& limits = {});
 
 absl::StatusOr<MeshSequence> ReadSequenceFile(const std::string& path,
-                                              const MeshFileLimits& limits = {});
+                                              const MeshLimits& limits = {});
 absl::Status WriteSequenceFile(const std::string& path, const MeshSequence& sequence);
 
 // Content id of a sequence file: SHA-256 of its bytes, 64 lower-case hexadecimal digits.

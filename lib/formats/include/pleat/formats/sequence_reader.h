@@ -17,7 +17,7 @@ struct ReadSequenceOptions {
   // Unset: what the input says (.pseq), else 30 fps. A point cache's "rate" is samples per frame of
   // its host's timeline, not a frame rate, and is not used.
   std::optional<FrameRate> frame_rate{};
-  MeshFileLimits limits{};
+  MeshLimits limits{};
   int num_threads =
       0;  // for folders and globs; 0 = one per core. The result does not depend on it.
   // Reads .drc files, from several threads; without it they are refused: Draco's decoder needs a

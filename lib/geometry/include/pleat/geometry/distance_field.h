@@ -1,4 +1,4 @@
-// A signed distance field sampled on a regular grid.
+// A signed distance field sampled on a regular grid (docs/method/rig.md#distance-field).
 #pragma once
 
 #include <Eigen/Core>
@@ -20,20 +20,22 @@ struct DistanceFieldOptions {
 
 // Distances are negative inside. They are exact at the nodes inside and within two cells of the
 // surface outside; farther out they are clamped to two cells. Lengths are those of the input.
+// Immutable once computed.
 class DistanceField {
  public:
-  // Inside is where the winding number exceeds one half. kInvalidArgument when the surface has no
-  // extent or the resolution is out of [8, 512]; kCancelled.
+  // Computes the field over the bounds of the surface. Inside is where the winding number exceeds
+  // one half. The error is kInvalidArgument when the surface has no extent or the resolution is not
+  // in [8, 512], and kCancelled. The result does not depend on the number of threads.
   static absl::StatusOr<DistanceField> Compute(const TriangleTree& tree,
                                                const WindingNumber& winding_number,
                                                const DistanceFieldOptions& options = {},
                                                const Progress& progress = {});
 
-  // Trilinear between nodes; two cells outside the grid.
+  // Returns the distance at `point`: trilinear between nodes, two cells outside of the grid.
   double SignedDistance(const Eigen::Vector3d& point) const;
 
-  // The largest signed distance along the segment from `a` to `b`, sampled every half cell: below
-  // -r when the whole segment lies at least r deep.
+  // Returns the largest signed distance along the segment from `a` to `b`, sampled every half cell:
+  // it is below -r when the whole segment lies at least r deep.
   double MaxAlongSegment(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   double spacing() const { return spacing_; }
@@ -43,7 +45,7 @@ class DistanceField {
     return origin_ + spacing_ * Eigen::Vector3d(x, y, z);
   }
   double node_distance(int node) const { return distances_[node]; }
-  // Unit vector from a node inside to the nearest surface point; zero at nodes outside.
+  // Returns the unit vector from a node inside to the nearest surface point; zero at nodes outside.
   const Eigen::Vector3f& node_direction(int node) const { return directions_[node]; }
 
  private:

@@ -1,4 +1,4 @@
-// Samples of the approximate medial surface of a volume.
+// Samples of the approximate medial surface of a volume (docs/method/rig.md#medial-samples).
 #pragma once
 
 #include <Eigen/Core>
@@ -18,8 +18,9 @@ struct MedialSampleOptions {
   double max_cosine = 0;  // the directions to the surface disagree by at least this angle: 90 deg
 };
 
-// Points between two neighboring grid nodes whose directions to the nearest surface disagree
-// (Baran and Popovic 2007, section 3.1), placed where the two distances meet. In grid order.
+// Returns points between two neighboring grid nodes whose directions to the nearest surface
+// disagree (Baran and Popovic 2007, section 3.1), placed where the two distances meet, in grid
+// order.
 std::vector<MedialSample> FindMedialSamples(const DistanceField& field,
                                             const MedialSampleOptions& options = {});
 

@@ -1,6 +1,5 @@
-// From displacements of the control vertices to displacements of all vertices, by radial basis
-// functions centered on the control vertices (docs/method/details.md#upsampling; paper, section
-// III-C).
+// Carries displacements of the control vertices to all vertices, by radial basis functions centered
+// on the control vertices (docs/method/details.md#upsampling; paper, section III-C).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,13 +15,13 @@
 namespace pleat {
 
 struct RbfUpsamplingOptions {
-  // Control vertices per vertex, the nearest along the surface: nothing bleeds from an arm to the
-  // body beside it. The error flattens at 16-24.
+  // The number of control vertices per vertex, the nearest along the surface: nothing bleeds from
+  // an arm to the body beside it. The error flattens at 16-24.
   int num_neighbors = 20;
-  // Length of the kernel in mean spacings of the control vertices. Long kernels approach a
+  // The length of the kernel in mean spacings of the control vertices. Long kernels approach a
   // polyharmonic spline: best on captured clothes among lengths of 2 to 32.
   double kernel_length = 24;
-  // Extra coordinates of every vertex (F x V, or empty), e.g. the skinning weights, in which
+  // Extra coordinates of every vertex (F x V, or empty), such as the skinning weights, in which
   // kernel distances are measured besides the rest position: details change fastest where the
   // weights do. With the weights the error on captured clothes falls by a quarter.
   Eigen::MatrixXd features = {};
@@ -32,48 +31,47 @@ struct RbfUpsamplingOptions {
 };
 
 struct UpsamplingRefinementOptions {
-  // Strength of the pull towards the kernel weights, relative to the mean squared displacement.
+  // The strength of the pull towards the kernel weights, relative to the mean squared displacement.
   double ridge = 3e-3;
   int max_frames = 256;  // evenly spaced ones are used of a longer animation
   int num_threads = 0;   // 0 = one per core; the result does not depend on it
 };
 
-// Linear and the same for x, y and z: one sparse V x C matrix. Immutable.
+// A linear map, the same for x, y and z: one sparse V x C matrix. Immutable.
 class RbfUpsampler {
  public:
   using Matrix = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 
-  // Local interpolation with the Matern kernel (1 + s) exp(-s), s = sqrt(3) d / length, and a
-  // constant, so rows add up to 1; exact at the control vertices. rest: 3 x V, meters;
-  // control_vertices: C distinct vertex indices. A component without control vertices follows the
-  // nearest ones through the air. kInvalidArgument for counts or indices that do not fit;
-  // kCancelled.
+  // Builds the map by local interpolation with the Matern kernel (1 + s) exp(-s), s = sqrt(3) d /
+  // length, and a constant, so that rows add up to 1 and control vertices are met exactly. rest: 3
+  // x V, meters; control_vertices: C distinct vertex indices. A component without control vertices
+  // follows the nearest ones through the air. The error is kInvalidArgument for counts or indices
+  // that do not fit, and kCancelled.
   static absl::StatusOr<RbfUpsampler> Build(const Topology& topology, const Eigen::Matrix3Xd& rest,
                                             const std::vector<int>& control_vertices,
                                             const RbfUpsamplingOptions& options = {},
                                             const Progress& progress = {});
 
-  // From the parts of a stored matrix (compressed rows): row_starts V + 1, columns and values one
-  // entry per stored weight. kInvalidArgument unless starts ascend from 0 to the entry count,
-  // columns of a row ascend within [0, num_controls) and values are finite.
+  // Takes the parts of a stored matrix (compressed rows): row_starts V + 1, columns and values one
+  // entry per stored weight. The error is kInvalidArgument unless starts ascend from 0 to the entry
+  // count, columns of a row ascend within [0, num_controls) and values are finite.
   static absl::StatusOr<RbfUpsampler> FromRows(int num_controls,
                                                const std::vector<int32_t>& row_starts,
                                                const std::vector<int32_t>& columns,
                                                const std::vector<float>& values);
-  // From a whole matrix, with the same checks on its entries.
-  static absl::StatusOr<RbfUpsampler> FromMatrix(Matrix matrix);
 
-  // The same neighbors with weights learned from an animation: per vertex the ridge regression of
-  // its displacements on those of its neighbors, pulled towards the kernel weights. displacements:
-  // T x 3V (x, y, z of vertex 0, of vertex 1, ...), control_vertices as in Build. Stays exact at
-  // the control vertices. On held-out frames of captured clothes the error falls to 40 %.
-  // kInvalidArgument for sizes that do not fit; kCancelled.
+  // Returns a map with the same neighbors but weights learned from an animation: per vertex the
+  // ridge regression of its displacements on those of its neighbors, pulled towards the kernel
+  // weights. displacements: T x 3V (x, y, z of vertex 0, of vertex 1, ...), control_vertices as in
+  // Build. It stays exact at the control vertices. On held-out frames of captured clothes the error
+  // falls to 40 %. The error is kInvalidArgument for sizes that do not fit, and kCancelled.
   absl::StatusOr<RbfUpsampler> Refine(const Eigen::Ref<const Eigen::MatrixXd>& displacements,
                                       const std::vector<int>& control_vertices,
                                       const UpsamplingRefinementOptions& options = {},
                                       const Progress& progress = {}) const;
 
-  // control: 3C, full: 3V (x, y, z of the first, ...). No allocation once `full` has its size.
+  // Applies the map. control: 3C, full: 3V (x, y, z of the first, ...). It does not allocate once
+  // `full` has its size. Sums run in the order of columns, so results are the same everywhere.
   void Apply(const Eigen::Ref<const Eigen::VectorXf>& control, Eigen::VectorXf* full) const;
   void Apply(const Eigen::Ref<const Eigen::VectorXd>& control, Eigen::VectorXd* full) const;
 

@@ -1,4 +1,5 @@
-// Pre-flight of a user's mesh: what a volume method needs, made from whatever the file holds.
+// The pre-flight of a user's mesh: what a volume method needs, made from whatever the file holds
+// (docs/method/rig.md#solid-surface).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +10,18 @@
 
 namespace pleat {
 
-// What is unclean about a mesh, for reports.
+// Counts what was unclean about a mesh, on its welded triangles; MeshReport (mesh_report.h) counts
+// on the mesh as it is.
 struct SurfaceReport {
-  int num_welded_vertices = 0;  // share their position with an earlier vertex
+  int num_welded_vertices = 0;  // vertices at the place of an earlier one
   int num_unreferenced_vertices = 0;
-  int num_degenerate_triangles = 0;  // two equal corners after welding, or no area
-  int num_flipped_triangles = 0;     // turned so that their component is oriented outward
-  int num_boundary_edges = 0;        // one triangle
-  int num_nonmanifold_edges = 0;     // three triangles or more
+  int num_degenerate_triangles = 0;  // triangles without area, after welding
+  int num_flipped_triangles = 0;     // triangles turned so that their patch faces outward
+  int num_boundary_edges = 0;        // edges of one triangle
+  int num_non_manifold_edges = 0;    // edges of three triangles or more
   int num_components = 0;            // connected by edges
+
+  bool closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
 };
 
 // A copy of the mesh, welded and oriented. The user's own mesh and vertex order are untouched.
@@ -29,9 +33,10 @@ struct SolidSurface {
   SurfaceReport report;
 };
 
-// Vertices closer than 1e-6 of the box diagonal count as one. Patches connected through edges of
-// two triangles are oriented consistently and then outward by their signed volume. positions:
-// 3 x V. kInvalidArgument when no triangle with area is left.
+// Makes the copy. Vertices that fall into one cell of a grid of 1e-6 of the box diagonal count as
+// one. Patches connected through edges of two triangles are oriented consistently and then outward
+// by their signed volume. positions: 3 x V. The error is kInvalidArgument when the counts differ or
+// no triangle with area is left.
 absl::StatusOr<SolidSurface> PrepareSolidSurface(
     const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 

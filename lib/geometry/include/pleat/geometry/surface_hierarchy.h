@@ -1,7 +1,9 @@
 // A multiresolution transform of functions on a mesh: second-generation wavelets by lifting
 // (Sweldens 1998; on irregular points Jansen, Nason and Silverman 2009). Vertices are removed level
-// by level as independent sets; each is predicted from its neighbors, which keep its mean.
-// Plain arithmetic in a fixed order: encoder and decoder get the same bits on every machine.
+// by level as independent sets; each is predicted from its neighbors, which keep its mean
+// (docs/method/codec.md#surface-hierarchy). Plain arithmetic in a fixed order: encoder and decoder
+// get the same bits on every machine. So any change of an operation or of its order is a change of
+// the file format.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,26 +15,30 @@
 
 namespace pleat {
 
-// One row per vertex, one column per function.
+// A matrix with one row per vertex and one column per function. Rows are contiguous, since a
+// lifting step adds whole rows.
 using FieldMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Immutable after construction; one hierarchy serves any number of threads.
 class SurfaceHierarchy {
  public:
-  // rest: 3 x V, makes the prediction exact for functions that are linear in the rest positions, as
-  // far as that does not amplify noise; null predicts the mean of the neighbors.
+  // Builds the hierarchy. rest: 3 x V, makes the prediction exact for functions that are linear in
+  // the rest positions, as far as that does not amplify noise; null predicts the mean of the
+  // neighbors.
   SurfaceHierarchy(const Topology& topology, const Eigen::Matrix3Xf* rest);
 
-  // Vertices, coarse to fine: an order in which neighbors(v) come before v.
+  // The vertices from coarse to fine: an order in which neighbors(v) come before v.
   const std::vector<int32_t>& order() const { return order_; }
-  // The coarser vertices that predict v; none for the coarsest vertices.
+  // Returns the coarser vertices that predict v; none for the coarsest vertices.
   std::span<const int32_t> neighbors(int v) const {
     return std::span(neighbors_).subspan(starts_[v], counts_[v]);
   }
   int level(int v) const { return levels_[v]; }  // 0 = finest; the coarsest have the largest
-  // How much an error of coefficient v weighs in the function.
+  // Returns how much an error of coefficient v weighs in the function.
   float weight(int v) const { return weights_of_error_[v]; }
 
-  // Values -> coefficients and back, in place, for all columns (V x N).
+  // Turn values into coefficients and back, in place, for all columns (V x N). Each is the inverse
+  // of the other up to the rounding of float sums.
   void Analyze(FieldMatrix* fields) const;
   void Synthesize(FieldMatrix* fields) const;
 

@@ -1,4 +1,4 @@
-// A bounding volume hierarchy over triangles with closest-point queries.
+// A bounding volume hierarchy over triangles with closest-point queries. Building costs O(F log F).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +15,12 @@ struct SurfacePoint {
   int triangle = -1;  // index in the input; -1 when nothing lies within the search radius
 };
 
-// The point of the triangle (a, b, c) nearest to `point` (Ericson, Real-Time Collision Detection,
-// 2005, section 5.1.5).
+// Returns the point of the triangle (a, b, c) nearest to `point` (Ericson, Real-Time Collision
+// Detection, 2005, section 5.1.5).
 Eigen::Vector3d ClosestPointOnTriangle(const Eigen::Vector3d& point,
                                        const std::array<Eigen::Vector3d, 3>& corners);
 
-// Immutable and safe to query from many threads. Holds copies of the triangles.
+// Immutable and safe to query from many threads. It holds copies of the triangles.
 class TriangleTree {
  public:
   struct Node {
@@ -35,16 +35,16 @@ class TriangleTree {
   TriangleTree(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                const Eigen::Ref<const Eigen::Matrix3Xi>& triangles);
 
-  // The nearest surface point within `max_squared_distance` of `point` (exclusive).
+  // Returns the nearest surface point within `max_squared_distance` of `point` (exclusive). When
+  // there is none, the triangle is -1 and the squared distance is the given one.
   SurfacePoint ClosestPoint(
       const Eigen::Vector3d& point,
       double max_squared_distance = std::numeric_limits<double>::infinity()) const;
 
   int num_triangles() const { return static_cast<int>(corners_.size()); }
   const std::vector<Node>& nodes() const { return nodes_; }  // depth first, root first
-  // Corners of the triangle at position `k` of the tree order, and its index in the input.
+  // The corners of the triangle at position `k` of the tree order.
   const std::array<Eigen::Vector3d, 3>& corners(int k) const { return corners_[k]; }
-  int input_triangle(int k) const { return order_[k]; }
 
  private:
   int32_t Build(std::vector<Eigen::Vector3d>& centers, int32_t first, int32_t count);

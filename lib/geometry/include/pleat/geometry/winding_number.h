@@ -10,8 +10,8 @@ namespace pleat {
 
 // The generalized winding number of a triangle soup (Jacobson, Kavan, Sorkine-Hornung 2013),
 // approximated far from clusters of triangles by one dipole per cluster (Barill, Dickson, Schmidt,
-// Levin, Jacobson 2018, first order). One inside a closed, outward oriented surface, zero outside,
-// smooth across holes.
+// Levin, Jacobson 2018, first order). It is one inside a closed, outward oriented surface, zero
+// outside, and smooth across holes. See docs/method/rig.md#winding-number.
 class WindingNumber {
  public:
   // `tree` must outlive this object. A cluster is approximated when the point is farther from its

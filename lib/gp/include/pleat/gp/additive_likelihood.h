@@ -19,18 +19,22 @@ namespace pleat {
 
 class AdditiveLikelihood : public Objective {
  public:
-  // sets: one N x D_e matrix for each scale, rows with mean squared norm about 1.
-  // prior_precision: of log g, for each row and output.
+  // sets: one N x D_e matrix for each scale, rows with mean squared norm about 1; there must be at
+  // least one. prior_precision: of log g, for each row and output. Keeps three N x N matrices per
+  // set.
   AdditiveLikelihood(const std::vector<Eigen::MatrixXd>& sets, GramData data,
                      double prior_precision, Progress progress);
 
   int num_unknowns() const override { return 3 * num_scales() + 2; }
+  // NaN when the kernel matrix cannot be factored or `progress` was cancelled.
   double Evaluate(const Eigen::VectorXd& x, Eigen::VectorXd* gradient) override;
 
+  // Returns the logs that training starts from: widths at the median distances, and amplitudes and
+  // slopes that sum to 1.
   Eigen::VectorXd Start() const;
-  // The whole noise variance, s^2 + floor; values: exp of the logs.
+  // Returns the whole noise variance, s^2 + floor. values: exp of the logs, in the order above.
   static double Noise(const Eigen::VectorXd& values);
-  // After Evaluate: K^-1 y for other right-hand sides (N x r).
+  // Computes K^-1 y for other right-hand sides (N x r), with the K of the last Evaluate.
   void Solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution);
 
  private:
@@ -43,7 +47,7 @@ class AdditiveLikelihood : public Objective {
   DenseSolver solver_;
   Eigen::Index n_;
   std::vector<Eigen::MatrixXd> distances_, products_, rbf_;  // N x N each, lower
-  Eigen::VectorXd prior_center_;                             // of log g
+  Eigen::VectorXd prior_center_;                             // center of the prior on log g
   double precision_;
   Eigen::MatrixXd kernel_, whitener_, solution_, outer_;
 };

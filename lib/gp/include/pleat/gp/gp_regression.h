@@ -16,20 +16,20 @@ namespace pleat {
 
 struct GpRegressionOptions {
   KernelOptions kernel{.bias = true, .linear = true};
-  // Inputs are centered and divided by one scalar so that rows have mean squared norm 1; false
-  // takes them as they are (latent points).
+  // Says whether inputs are centered and divided by one scalar so that rows have mean squared norm
+  // 1; false takes them as they are (latent points).
   bool normalize_inputs = true;
   // Disjoint sets of columns. Each gets a factor on its squared distances that is learned with the
   // kernel (automatic relevance determination): joints whose motion says nothing about the output
   // make no two frames look different. Columns in no set keep factor 1.
   std::vector<std::vector<int>> input_groups{};
-  // Precision, per row and output, of a Gaussian prior around 0 on the logs of those factors.
+  // The precision, per row and output, of a Gaussian prior around 0 on the logs of those factors.
   double relevance_precision = .003;
-  int max_iterations = 60;  // of L-BFGS on the marginal likelihood
-  // Precision, per row and output, of a Gaussian prior on log g around
-  // log(1 / (prior_width_factor^2 * median squared distance)); 0: none. Frames of one clip are so
-  // alike that the likelihood alone prefers widths that generalize badly. Chosen on blocks held
-  // out inside the training frames of captured clips (docs/performance.md, "Choices").
+  int max_iterations = 60;  // limit of L-BFGS on the marginal likelihood
+  // The precision, per row and output, of a Gaussian prior on log g around log(1 /
+  // (prior_width_factor^2 * median squared distance)); 0: none. Frames of one clip are so alike
+  // that the likelihood alone prefers widths that generalize badly. Chosen on blocks held out
+  // inside the training frames of captured clips (docs/performance.md, "Choices").
   double prior_precision = .003;
   double prior_width_factor = 1;
   // Hyperparameters are learned on at most this many rows, spread evenly: the cost grows with the
@@ -42,11 +42,11 @@ struct GpRegressionOptions {
 
 struct GpRegressionSummary {
   OptimizationSummary optimization;
-  int num_rows = 0;  // that predictions are made from: all, or the inducing ones
+  int num_rows = 0;  // rows that predictions are made from: all, or the inducing ones
   int num_hyperparameter_rows = 0;
 };
 
-// Everything a prediction needs; what a model file holds.
+// Everything that a prediction needs, and what a model file holds.
 struct GpRegressionParameters {
   KernelOptions kernel_options;
   KernelLogs kernel;             // in normalized units
@@ -64,7 +64,8 @@ class GpRegression {
  public:
   using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  // What one thread needs for its queries. Sized by the first query, reused without allocation.
+  // The memory that one thread needs for its queries. It is sized by the first query and reused
+  // without allocation.
   struct Workspace {
     Eigen::VectorXd row;       // D, normalized
     Eigen::VectorXd products;  // N
@@ -76,21 +77,23 @@ class GpRegression {
     Eigen::MatrixXd jacobian;  // r x D, only with an input variance
   };
 
-  // Learns the hyperparameters from inputs (N x D) and outputs (N x r), rows are samples. Errors:
-  // kInvalidArgument for empty or not finite data or sizes that differ; kCancelled.
+  // Learns the hyperparameters from inputs (N x D) and outputs (N x r), whose rows are samples. The
+  // error is kInvalidArgument for empty or not finite data, sizes that differ or groups that
+  // overlap, and kCancelled. See docs/method/learner.md#direct-gp.
   static absl::StatusOr<GpRegression> Train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                             const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                             const GpRegressionOptions& options = {},
                                             GpRegressionSummary* summary = nullptr,
                                             const Progress& progress = {});
 
-  // The same with given hyperparameters (in normalized units).
+  // Conditions on the data with given hyperparameters (in normalized units), without training.
   static absl::StatusOr<GpRegression> Condition(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                                 const KernelLogs& kernel,
                                                 const GpRegressionOptions& options = {});
 
-  // From a file: checks sizes and that every number is finite (kInvalidArgument naming which).
+  // Takes parameters from a file: checks sizes and that every number is finite (kInvalidArgument
+  // naming which).
   static absl::StatusOr<GpRegression> FromParameters(GpRegressionParameters parameters);
 
   const GpRegressionParameters& parameters() const { return parameters_; }
@@ -98,19 +101,16 @@ class GpRegression {
   int num_inputs() const { return static_cast<int>(parameters_.inputs.cols()); }
   int num_outputs() const { return static_cast<int>(parameters_.alpha.cols()); }
 
-  // Mean (r entries) of the outputs at `row` (D entries). `variance`, when not null, receives the
-  // variance of the noise-free function, the same for all outputs, (output unit)^2. Uncertain
-  // inputs: `input_variance` ((input unit)^2, the same for all inputs) is carried through to first
-  // order, averaged over the outputs.
+  // Computes the mean (r entries) of the outputs at `row` (D entries). `variance`, when not null,
+  // receives the variance of the noise-free function, the same for all outputs, (output unit)^2.
+  // For uncertain inputs `input_variance` ((input unit)^2, the same for all inputs) is carried
+  // through to first order, averaged over the outputs.
   void Predict(const Eigen::Ref<const Eigen::VectorXd>& row, double input_variance,
                Workspace* workspace, Eigen::Ref<Eigen::VectorXd> mean, double* variance) const;
 
-  // M rows at once: means (M x r) and, when not null, variances (M).
-  void PredictBatch(const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::MatrixXd* means,
-                    Eigen::VectorXd* variances) const;
-
-  // Variance of the function before any data, at a typical training input, (output unit)^2. The
-  // bias is left out: any data fix it, so that far from all of them the variance is a, not a + b.
+  // Returns the variance of the function before any data, at a typical training input, in (output
+  // unit)^2. The bias is left out: any data fix it, so that far from all of them the variance is a,
+  // not a + b.
   double prior_variance() const { return prior_variance_; }
 
  private:

@@ -1,9 +1,10 @@
-// The covariance function of every Gaussian process here, and its hyperparameters in log space.
+// The covariance function of every Gaussian process here, and its hyperparameters in log space
+// (docs/method/learner.md#kernels).
 //
 //   k(x, x') = a exp(-g/2 |x - x'|^2) + b + c x.x' + (s^2 + floor) [x is x']
 //
-// RBF, bias and white noise are the paper's (section IV-B names the RBF, the public reference
-// codes add the rest); the linear term is ours.
+// RBF, bias and white noise are the paper's (section IV-B names the RBF, the public reference codes
+// add the rest); the linear term is ours.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +14,7 @@
 
 namespace pleat {
 
-// Which terms a kernel has beside the RBF and the noise, and what keeps it well conditioned.
+// Says which terms a kernel has beside the RBF and the noise, and what keeps it well conditioned.
 struct KernelOptions {
   bool bias = true;
   bool linear = false;
@@ -36,12 +37,12 @@ struct KernelLogs {
 
 inline constexpr double kMaxKernelLog = 14;
 
-// exp of clamped logs.
+// The exponentials of the clamped logs.
 struct KernelValues {
   double g, a, b, s2, c;  // b and c are zero when their term is off
 };
 
-// The logs as a vector of unknowns: log g, log a, [log b], log s^2, [log c].
+// The logs as a vector of unknowns in the order log g, log a, [log b], log s^2, [log c].
 int NumKernelUnknowns(const KernelOptions& options);
 void PackKernelLogs(const KernelOptions& options, const KernelLogs& logs,
                     Eigen::Ref<Eigen::VectorXd> unknowns);
@@ -50,7 +51,7 @@ KernelLogs UnpackKernelLogs(const KernelOptions& options,
 
 KernelValues KernelValuesOf(const KernelOptions& options, const KernelLogs& logs);
 
-// kInvalidArgument naming `what` when an active log is not finite.
+// Returns kInvalidArgument naming `what` when an active log is not finite.
 absl::Status CheckKernelLogs(const KernelOptions& options, const KernelLogs& logs,
                              const std::string& what);
 

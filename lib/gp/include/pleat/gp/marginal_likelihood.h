@@ -1,5 +1,5 @@
-// The negative log marginal likelihood of outputs that share one kernel, and priors, over the
-// kernel's logs and those of the relevance of groups of inputs.
+// The negative log marginal likelihood of outputs that share one kernel, with priors, over the
+// kernel's logs and those of the relevance of groups of inputs (docs/method/learner.md#relevance).
 //
 // Source: Rasmussen and Williams (2006), chapter 5; automatic relevance determination: D. MacKay,
 // "Bayesian non-linear modeling for the prediction competition", ASHRAE Transactions 100 (1994).
@@ -15,8 +15,8 @@
 
 namespace pleat {
 
-// What multiplies each of `num_inputs` columns when `logs` are those of the groups' factors on
-// squared distances.
+// Returns what multiplies each of `num_inputs` columns when `logs` are those of the groups' factors
+// on squared distances: exp(log / 2), and 1 for columns in no group.
 Eigen::VectorXd RelevanceFactors(const std::vector<std::vector<int>>& groups,
                                  const Eigen::Ref<const Eigen::VectorXd>& logs,
                                  Eigen::Index num_inputs);
@@ -24,7 +24,7 @@ Eigen::VectorXd RelevanceFactors(const std::vector<std::vector<int>>& groups,
 // The unknowns are those of PackKernelLogs, then one log for each of options.input_groups.
 class MarginalLikelihood : public Objective {
  public:
-  // inputs: N x D, normalized. prior_center: of log g.
+  // inputs: N x D, normalized. prior_center: of log g. `options` must outlive this object.
   MarginalLikelihood(Eigen::MatrixXd inputs, GramData data, const GpRegressionOptions& options,
                      double prior_center, Progress progress);
 

@@ -76,7 +76,10 @@ class JobManager {
   const SaveJob save_;
   std::atomic<bool> shutting_down_ = false;
 
-  mutable std::mutex mutex_;
+  // Taken before mutex_ and held while a new job is saved: one after the other, so the order in the
+  // store is the order in the queue.
+  std::mutex create_mutex_;
+  mutable std::mutex mutex_;  // never held while a job is saved
   std::condition_variable changed_;
   std::map<std::string, std::shared_ptr<JobStateMachine>> jobs_;  // guarded by mutex_
   std::vector<std::string> order_;                                // guarded by mutex_

@@ -20,7 +20,7 @@
 
 #include "absl/status/status.h"
 #include "pleat/base/progress.h"
-#include "pleat/service/character_service.h"
+#include "pleat/service/job_service.h"
 
 namespace pleat {
 

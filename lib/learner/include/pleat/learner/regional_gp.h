@@ -3,8 +3,8 @@
 //   f(x) = sum_regions f_R(x)
 //   k_R(x, x') = b + sum_sets [ a exp(-g/2 |x_set - x'_set|^2) + c x_set.x'_set ]
 //
-// The sets of a region are all features, those of the joints near it, those of the nearest: what
-// the near joints explain carries over to poses whose far joints were never seen together with
+// The sets of a region are all features, those of the joints near it, and those of the nearest:
+// what the near joints explain carries over to poses whose far joints were never seen together with
 // them, and close to the training frames the set of all features explains the rest. Source:
 // docs/method/learner.md#regions; D. Duvenaud, H. Nickisch, C. E. Rasmussen, "Additive Gaussian
 // Processes", NIPS 2011 (sums of kernels over subsets of the inputs).
@@ -21,25 +21,25 @@
 
 namespace pleat {
 
-// What one region is to learn.
+// The task of one region.
 struct GpRegion {
   std::vector<std::vector<int>> feature_sets;  // columns of the features, each set ascending
   Eigen::MatrixXd outputs;                     // N x r: this region's share of the outputs
 };
 
 struct RegionalGpOptions {
-  int max_iterations = 60;  // of L-BFGS on the marginal likelihood, per region
+  int max_iterations = 60;  // limit of L-BFGS on the marginal likelihood, per region
   // As in GpRegressionOptions, for every set of features.
   double prior_precision = .003;
   int max_hyperparameter_rows = 400;  // as in GpRegressionOptions
   int max_rows = 600;
-  // D, what divides every input, so that some count more than others (as a GpRegression on the same
-  // inputs has learned); empty: one number for all. Only their ratios matter.
+  // What divides every input (D numbers), so that some count more than others (as a GpRegression on
+  // the same inputs has learned); empty: one number for all. Only their ratios matter.
   Eigen::VectorXd input_scales{};
   int num_threads = 0;  // 0 = one per core; the result does not depend on it
 };
 
-// Everything a prediction needs; what a model file holds.
+// Everything that a prediction needs, and what a model file holds.
 struct RegionalGpParameters {
   struct Scale {
     std::vector<int> columns;  // ascending
@@ -64,22 +64,24 @@ class RegionalFactors;  // src/regional_factors.h
 // Immutable after training: queries share it without locks.
 class RegionalGp {
  public:
-  // What one thread needs for its queries. Sized by the first query, reused without allocation.
+  // The memory that one thread needs for its queries. It is sized by the first query and reused
+  // without allocation.
   struct Workspace {
     Eigen::VectorXd row;      // D, normalized
-    Eigen::VectorXd scratch;  // of RegionalFactors
+    Eigen::VectorXd scratch;  // memory of RegionalFactors
     Eigen::VectorXf factors;  // R N, all kernels
     Eigen::VectorXf sum;      // r
   };
 
-  // inputs: N x D, rows are samples. kInvalidArgument when sizes differ, a column is out of range
-  // or a number is not finite; kCancelled.
+  // Trains all regions. inputs: N x D, rows are samples. The error is kInvalidArgument when sizes
+  // differ, a column is out of range or a number is not finite, and kCancelled.
   static absl::StatusOr<RegionalGp> Train(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                           const std::vector<GpRegion>& regions,
                                           const RegionalGpOptions& options = {},
                                           const Progress& progress = {});
 
-  // From a file: checks sizes, columns and that every number is finite (kInvalidArgument).
+  // Takes parameters from a file: checks sizes, columns and that every number is finite
+  // (kInvalidArgument).
   static absl::StatusOr<RegionalGp> FromParameters(RegionalGpParameters parameters);
 
   RegionalGpParameters parameters() const;
@@ -87,11 +89,11 @@ class RegionalGp {
   int num_outputs() const { return static_cast<int>(parameters_.output_mean.size()); }
   size_t memory_bytes() const;
 
-  // Mean (r entries) of the outputs at `row` (D entries).
+  // Computes the mean (r entries) of the outputs at `row` (D entries).
   void Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
                Eigen::Ref<Eigen::VectorXd> mean) const;
 
-  // The same in two halves, for several rows at once: the kernels of a row, and the means of
+  // Does the same in two halves, for several rows at once: the kernels of a row, and the means of
   // several such workspaces, which read the alphas once. means[q] receives r entries. The bits are
   // those of single predictions.
   void SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace) const;
@@ -104,8 +106,8 @@ class RegionalGp {
   }
 
   RegionalGpParameters parameters_;  // without the alphas
-  // R N x r, row by row: the alphas of all regions, so that a query reads them once from front to
-  // back.
+  // R N x r, row by row: the alphas of all regions one after the other, so that a query reads them
+  // once from front to back.
   std::vector<float, LargePageAllocator<float>> alphas_;
   std::shared_ptr<const RegionalFactors> factors_;  // the kernels
 };

@@ -7,27 +7,10 @@
 
 #include "absl/status/status.h"
 #include "pleat/base/ring_queue.h"
+#include "pleat/service/pose_service.h"
 #include "pleat/skeleton/pose.h"
 
 namespace pleat {
-
-inline constexpr int kMaxHistory = 8;  // poses per query, the shown one included
-
-struct LiveRules {
-  static constexpr int kMaxInFlight = 64;
-  // latest_wins: replies sent and not acknowledged; else: poses that wait.
-  int max_in_flight = 4;
-  bool latest_wins = false;
-};
-
-struct LivePose {
-  uint64_t number = 0;
-  absl::Status status{};  // not OK: cannot be shown, the rest is not used
-  Pose pose{};
-  std::vector<Pose> history{};  // 1, 2, ... intervals earlier; empty: the poses before
-  bool restart = false;         // forget those
-  bool keyframe = false;
-};
 
 // Poses whose memory is used again when their number changes.
 class PoseList {
@@ -64,7 +47,8 @@ struct LiveTurn {
 // made. Not thread-safe.
 class LiveQueue {
  public:
-  // depth: poses per query, 1 to kMaxHistory. Poses without `num_joints` rotations get a status.
+  // depth: poses per query, 1 to kMaxPosesPerQuery. Poses without `num_joints` rotations get a
+  // status.
   LiveQueue(const LiveRules& rules, int depth, int num_joints);
 
   bool HasRoom() const;

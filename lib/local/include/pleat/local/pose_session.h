@@ -2,49 +2,33 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/local/encoder_pool.h"
+#include "pleat/service/pose_service.h"
 #include "pleat/skeleton/pose_history.h"
-#include "pleat/stream/frame_encoder.h"
 
 namespace pleat {
 
-struct PoseSessionOptions {
-  std::vector<double> bone_scales{};  // J or empty
-  bool skinned_only = false;
-  FrameEncoderOptions encoder{};
-};
-
-struct EncodedFrame {
-  std::string draco{};                          // empty in a stream of parameters
-  std::optional<FrameParameters> parameters{};  // of such a stream
-  double confidence = 0;
-  FrameMark mark{};
-  double evaluate_us = 0, encode_us = 0;  // elapsed time, microseconds
-};
-
 // Keeps the model in use as long as it lives. Not for two threads at once.
-class PoseSession {
+class LocalPoseSession final : public PoseSession {
  public:
-  static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
+  static absl::StatusOr<std::unique_ptr<LocalPoseSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseSessionOptions options);
   // The same with an encoder of `model` and options.encoder that is there already (EncoderPool).
-  static absl::StatusOr<std::unique_ptr<PoseSession>> Open(
+  static absl::StatusOr<std::unique_ptr<LocalPoseSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
       std::unique_ptr<EncoderPool::Lease> encoder);
 
   const CharacterModel& model() const { return evaluator_.model(); }
-  const StreamHeader& header() const {
+  const StreamHeader& header() const override {
     return encoder_ == nullptr ? parameters_header_ : (*encoder_)->header();
   }
 
-  // poses[0] is shown, poses[h] is the pose h training-frame intervals earlier.
-  absl::StatusOr<EncodedFrame> Show(const std::vector<const Pose*>& poses);
+  absl::StatusOr<EncodedFrame> Show(const std::vector<const Pose*>& poses) override;
 
   // The two halves of Show, for those who evaluate several sessions' poses together: the query of
   // `poses`, which must live until it is evaluated by any evaluator of the model; and the frame.
@@ -62,8 +46,8 @@ class PoseSession {
   }
 
  private:
-  PoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
-              std::unique_ptr<EncoderPool::Lease> encoder);
+  LocalPoseSession(PoseEvaluator evaluator, PoseSessionOptions options,
+                   std::unique_ptr<EncoderPool::Lease> encoder);
 
   PoseSessionOptions options_;
   PoseEvaluator evaluator_;
@@ -74,27 +58,27 @@ class PoseSession {
   Eigen::Matrix3Xf control_;  // 3 x V of the control mesh, in a stream of it
 };
 
-// The frames of one clip, one after the other, as fast as the caller takes them.
-class ClipSession {
+// The frames of one clip.
+class LocalClipSession final : public ClipSession {
  public:
   // kInvalidArgument names the first pose that does not fit the skeleton.
-  static absl::StatusOr<std::unique_ptr<ClipSession>> Open(
+  static absl::StatusOr<std::unique_ptr<LocalClipSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options);
   // The same with an encoder of `model` and options.encoder that is there already.
-  static absl::StatusOr<std::unique_ptr<ClipSession>> Open(
+  static absl::StatusOr<std::unique_ptr<LocalClipSession>> Open(
       std::shared_ptr<const CharacterModel> model, PoseTrack track, PoseSessionOptions options,
       std::unique_ptr<EncoderPool::Lease> encoder);
 
-  const StreamHeader& header() const { return session_->header(); }
-  bool done() const { return next_ >= track_.num_frames(); }
-  int next_frame() const { return next_; }
-  // The frame next_frame(); call while not done.
-  absl::StatusOr<EncodedFrame> Next();
+  const StreamHeader& header() const override { return session_->header(); }
+  bool done() const override { return next_ >= track_.num_frames(); }
+  int next_frame() const override { return next_; }
+  absl::StatusOr<EncodedFrame> Next() override;
 
  private:
-  ClipSession(std::unique_ptr<PoseSession> session, PoseTrack track, const CharacterModel& model);
+  LocalClipSession(std::unique_ptr<LocalPoseSession> session, PoseTrack track,
+                   const CharacterModel& model);
 
-  std::unique_ptr<PoseSession> session_;
+  std::unique_ptr<LocalPoseSession> session_;
   const PoseTrack track_;
   PoseHistory history_;  // of track_
   std::vector<const Pose*> poses_;

@@ -1,11 +1,11 @@
-// Principal components of a data matrix with many more columns than rows.
+// Principal components of a data matrix, as a rule with many more columns than rows.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace pleat {
 
-// data ~ 1 mean^T + scores * basis^T, rows are samples.
+// The decomposition data ~ 1 mean^T + scores * basis^T, where rows are samples.
 struct PrincipalComponents {
   Eigen::VectorXd mean;    // D
   Eigen::MatrixXd basis;   // D x r, orthonormal columns, by falling variance
@@ -18,9 +18,10 @@ struct PcaOptions {
   double min_energy = 1;  // stop at the first r that keeps this share
 };
 
-// Principal components of `data` (N x D) through the N x N or D x D Gram matrix, whichever is
-// smaller. Signs are fixed (largest entry of each basis vector positive), so the result does not
-// depend on the solver. Directions below 1e-12 of the largest variance are dropped.
+// Returns the principal components of `data` (N x D) from the N x N or D x D Gram matrix, whichever
+// is smaller. Signs are fixed (the largest entry of each basis vector is positive), so that the
+// result does not depend on the solver. Directions below 1e-12 of the largest variance are dropped.
+// See docs/method/details.md#detail-basis.
 PrincipalComponents ComputePca(const Eigen::Ref<const Eigen::MatrixXd>& data,
                                const PcaOptions& options = {});
 

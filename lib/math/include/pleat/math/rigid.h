@@ -23,9 +23,9 @@ struct RigidTransform {
   }
 };
 
-// The rigid motion that minimizes sum_i weights_i |R source_i + t - target_i|^2 (Kabsch; Procrustes
-// without scale). source, target: 3 x N; weights: N, or empty for ones. kInvalidArgument when sizes
-// differ or no weight is positive.
+// Returns the rigid motion that minimizes sum_i weights_i |R source_i + t - target_i|^2 (Kabsch
+// 1976; Procrustes without scale). source, target: 3 x N; weights: N, or empty for ones. The error
+// is kInvalidArgument when sizes differ or the weights do not sum to a positive number.
 absl::StatusOr<RigidTransform> FitRigidTransform(const Eigen::Ref<const Eigen::Matrix3Xd>& source,
                                                  const Eigen::Ref<const Eigen::Matrix3Xd>& target,
                                                  const Eigen::VectorXd& weights = {});

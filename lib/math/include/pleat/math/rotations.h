@@ -6,32 +6,25 @@
 
 namespace pleat {
 
-// The cross-product matrix [v]x.
+// Returns the cross-product matrix [v]x, with [v]x y = v cross y.
 Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v);
 
-// Exponential map (radians * unit axis) -> rotation (Rodrigues), exact near zero.
-Eigen::Matrix3d RotationFromExponentialMap(const Eigen::Vector3d& w);
+// Returns the rotation of an exponential map (radians * unit axis) by the formula of Rodrigues,
+// exact near zero. The quaternion is of unit length up to rounding.
 Eigen::Quaterniond QuaternionFromExponentialMap(const Eigen::Vector3d& w);
 
-// Rotation -> exponential map of angle in [0, pi].
-Eigen::Vector3d ExponentialMapFromRotation(const Eigen::Matrix3d& rotation);
+// Returns the exponential map of a rotation, with an angle in [0, pi].
 Eigen::Vector3d ExponentialMapFromQuaternion(const Eigen::Quaterniond& rotation);
 
-// Of all exponential maps w + 2 pi k w/|w| of the same rotation, the one nearest to `reference`.
-// Chained along time it removes the wraps at 2 pi.
+// Returns the one nearest to `reference` among all exponential maps w + 2 pi k w/|w| of the same
+// rotation. Chained along time it removes the wraps at 2 pi (docs/method/fit.md#representation).
 Eigen::Vector3d UnwrapExponentialMap(const Eigen::Vector3d& w, const Eigen::Vector3d& reference);
 
-// J_r(w) of exp(w + d) ~ exp(w) exp(J_r(w) d) (3 x 3).
-Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& w);
-
-// Intrinsic X-Y-Z Euler angles, radians: R = Rx(a) Ry(b) Rz(c), b in [-pi/2, pi/2].
+// Intrinsic X-Y-Z Euler angles in radians: R = Rx(a) Ry(b) Rz(c) with b in [-pi/2, pi/2].
 Eigen::Vector3d EulerXyzFromRotation(const Eigen::Matrix3d& rotation);
 Eigen::Matrix3d RotationFromEulerXyz(const Eigen::Vector3d& angles);
 
-// The rotation nearest to `matrix` in the Frobenius norm (SVD, determinant +1).
+// Returns the rotation nearest to `matrix` in the Frobenius norm (by SVD, with determinant +1).
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& matrix);
-
-// The rotation "half way" between two rotations (geodesic midpoint).
-Eigen::Quaterniond MeanRotation(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 
 }  // namespace pleat

@@ -1,4 +1,4 @@
-// Which vertices share an edge.
+// Tells which vertices share an edge.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace pleat {
 
-// Neighbors of every vertex along polygon edges, ascending and without repetition.
+// The neighbors of every vertex along polygon edges, ascending and without repetition. Immutable.
 class VertexAdjacency {
  public:
   explicit VertexAdjacency(const Topology& topology);

@@ -6,10 +6,10 @@
 
 namespace pleat {
 
-// Bounding box of `positions` (3 x V).
+// Returns the bounding box of `positions` (3 x V, V > 0).
 Eigen::AlignedBox3d ComputeBounds(const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 
-// Length of the box diagonal, meters: the unit of every error in percent.
+// Returns the length of the box diagonal, in meters: the unit of every error in percent.
 double BoundsDiagonal(const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 
 }  // namespace pleat

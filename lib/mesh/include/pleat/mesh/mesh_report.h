@@ -1,4 +1,5 @@
-// Pre-flight: what is unclean about a mesh, before it is rigged. Nothing is repaired or reordered.
+// The pre-flight: what is unclean about a mesh, before it is rigged. Nothing is repaired or
+// reordered (docs/method/rig.md#pre-flight).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,20 +20,20 @@ struct MeshReport {
   int num_boundary_edges = 0;         // edges of one face
   int num_non_manifold_edges = 0;     // edges of three or more faces
   int num_inconsistent_edges = 0;     // edges whose two faces run along them the same way
-  int num_unreferenced_vertices = 0;  // of no face
-  int num_duplicate_vertices = 0;     // at exactly the place of an earlier one
+  int num_unreferenced_vertices = 0;  // vertices that no face uses
+  int num_duplicate_vertices = 0;     // vertices at exactly the place of an earlier one
   int num_degenerate_faces = 0;       // a corner twice, or area below 1e-12 diagonal^2
   double signed_volume_m3 = 0;        // > 0: faces outwards; exact for closed meshes only
-  Eigen::AlignedBox3d bounds;         // of all vertices, meters
+  Eigen::AlignedBox3d bounds;         // box of all vertices, meters
 
   bool closed() const { return num_boundary_edges == 0 && num_non_manifold_edges == 0; }
 };
 
-// positions: 3 x V, finite.
+// Inspects a mesh in one frame. positions: 3 x V, finite.
 MeshReport InspectMesh(const Topology& topology,
                        const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
 
-// One sentence for each thing that is unclean; empty for a clean closed mesh of one part.
+// Returns one sentence for each thing that is unclean; nothing for a clean closed mesh of one part.
 std::vector<std::string> DescribeFaults(const MeshReport& report);
 
 }  // namespace pleat

@@ -27,14 +27,15 @@ struct MeshSequenceOptions {
   std::vector<std::string> frame_names{};  // per frame, for messages; empty = "frame N"
 };
 
-// A sequence that exists has at least one frame, V finite positions in each, a positive frame rate
-// and an appearance whose indices fit the topology; nobody downstream checks again. Positions are
-// meters, Y up, float32 (what captures hold); computations widen to double. Cheap to copy: the data
-// are shared and immutable.
+// A mesh animation. A sequence that exists has at least one frame, V finite positions in each, a
+// positive frame rate and an appearance whose indices fit the topology; nobody downstream checks
+// again. Positions are in meters, Y up, float32 (what captures hold); computations widen to double.
+// Cheap to copy and safe to share between threads: the data are shared and immutable.
 class MeshSequence {
  public:
-  // frames: T matrices of 3 x V, V = topology.num_vertices(). kInvalidArgument names the first
-  // faulty frame and vertex, or the entry of the appearance that is out of range.
+  // Checks and takes the parts. frames: T matrices of 3 x V, V = topology.num_vertices(). The error
+  // is kInvalidArgument and names the first faulty frame and vertex, or the entry of the appearance
+  // that is out of range.
   static absl::StatusOr<MeshSequence> Create(Topology topology,
                                              std::vector<Eigen::Matrix3Xf> frames,
                                              MeshSequenceOptions options = {});
@@ -48,11 +49,12 @@ class MeshSequence {
   const Eigen::Matrix3Xf& frame(int t) const { return *data_->frames[t]; }  // 3 x V
   Eigen::Matrix3Xd FrameAsDouble(int t) const { return data_->frames[t]->cast<double>(); }
 
-  // The frames `frame_indices` of this sequence, in that order, shared with it. Indices must be in
-  // range and the list not empty.
+  // Returns the frames `frame_indices` of this sequence, in that order, shared with it. Indices
+  // must be in range and the list not empty.
   MeshSequence Subset(const std::vector<int>& frame_indices) const;
-  // The frames of all `clips` one after the other, shared with them; name, rate and appearance of
-  // the first. The list must not be empty and all clips must have the first one's topology.
+  // Returns the frames of all `clips` one after the other, shared with them; name, rate and
+  // appearance are those of the first. The list must not be empty and all clips must have the first
+  // one's topology.
   static MeshSequence Join(const std::vector<MeshSequence>& clips);
 
  private:

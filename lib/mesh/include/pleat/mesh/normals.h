@@ -1,15 +1,15 @@
-// Normals of vertices.
+// Computes normals of vertices.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "pleat/mesh/topology.h"
-
 namespace pleat {
 
-// Unit normals (3 x V): the area-weighted mean of the faces around each vertex. Zero where a vertex
-// has no face or its faces cancel. positions: 3 x V.
-Eigen::Matrix3Xd ComputeVertexNormals(const Topology& topology,
-                                      const Eigen::Ref<const Eigen::Matrix3Xd>& positions);
+// Returns the sum of the normals of the triangles around each vertex (3 x V), each twice its
+// triangle's area long. A sum is zero where a vertex has no triangle or its triangles cancel;
+// callers normalize in the axes and the precision that they need. positions: 3 x V; triangles: 3 x
+// F, columns of it.
+Eigen::Matrix3Xd SumTriangleNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                    const Eigen::Ref<const Eigen::Matrix3Xi>& triangles);
 
 }  // namespace pleat

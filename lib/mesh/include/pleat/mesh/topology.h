@@ -17,11 +17,12 @@ namespace pleat {
 // three corners and every corner names a vertex in [0, num_vertices).
 class Topology {
  public:
-  // corner_vertices: the faces' corners one after the other; face_sizes: corners per face.
-  // kInvalidArgument names the first bad face (0-based).
+  // Checks and takes the faces. corner_vertices: the faces' corners one after the other;
+  // face_sizes: corners per face. The error is kInvalidArgument and names the first bad face
+  // (0-based).
   static absl::StatusOr<Topology> Create(int num_vertices, std::vector<int32_t> corner_vertices,
                                          std::vector<int32_t> face_sizes);
-  // Triangles, 3 x F.
+  // Makes a topology of triangles, 3 x F, with the same checks.
   static absl::StatusOr<Topology> FromTriangles(int num_vertices,
                                                 const Eigen::Matrix3Xi& triangles);
 
@@ -30,7 +31,7 @@ class Topology {
   int num_corners() const { return static_cast<int>(corner_vertices_.size()); }
   int num_triangles() const { return static_cast<int>(triangles_.cols()); }
 
-  // Vertices of face f in file order.
+  // The vertices of face f in file order.
   std::span<const int32_t> face(int f) const {
     return std::span(corner_vertices_)
         .subspan(face_starts_[f], face_starts_[f + 1] - face_starts_[f]);
@@ -38,7 +39,8 @@ class Topology {
   int face_start(int f) const { return face_starts_[f]; }  // first corner of face f
   const std::vector<int32_t>& corner_vertices() const { return corner_vertices_; }
 
-  // Fan triangulation, 3 x num_triangles, orientation as in the file.
+  // The fan triangulation, 3 x num_triangles, oriented as in the file. Triangles of a face follow
+  // each other, in the order of faces.
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
 
   friend bool operator==(const Topology& a, const Topology& b) {
@@ -53,7 +55,8 @@ class Topology {
   Eigen::Matrix3Xi triangles_;
 };
 
-// What a file says beyond geometry; kept untouched from input to export. Empty where absent.
+// What a file says beyond geometry, kept untouched from input to export. Lists are empty where it
+// says nothing.
 struct MeshAppearance {
   std::vector<Eigen::Vector2f> texcoords;
   std::vector<int32_t> corner_texcoords;  // per corner: index into texcoords, -1 = none
@@ -62,7 +65,8 @@ struct MeshAppearance {
   std::string material_library;         // OBJ mtllib
 };
 
-// kInvalidArgument when an index of `appearance` is out of range or a list has the wrong length.
+// Returns kInvalidArgument when an index of `appearance` is out of range or a list has the wrong
+// length.
 absl::Status CheckAppearance(const MeshAppearance& appearance, const Topology& topology);
 
 }  // namespace pleat

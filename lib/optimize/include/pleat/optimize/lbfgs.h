@@ -23,8 +23,9 @@ struct LbfgsOptions {
   double curvature = .9;              // second Wolfe constant
 };
 
-// Minimizes `objective` from `start` and returns the best point found: about 1.1 evaluations per
-// iteration. Errors as MinimizeScg. `summary` may be null.
+// Minimizes `objective` from `start` and returns the best point found, at about 1.1 evaluations per
+// iteration. Every accepted point is lower than the one before. The errors are those of
+// MinimizeScg. `summary` may be null.
 absl::StatusOr<Eigen::VectorXd> MinimizeLbfgs(Objective& objective, const Eigen::VectorXd& start,
                                               const LbfgsOptions& options = {},
                                               OptimizationSummary* summary = nullptr,

@@ -12,12 +12,12 @@
 
 namespace pleat {
 
-// What the curvature along a direction is estimated from.
+// Says what the curvature along a direction is estimated from.
 enum class ScgCurvature {
   kGradients,  // the difference of two gradients: Moller's way
-  // The second difference of two values and a slope, where a value costs much less than a gradient.
-  // Rounding weighs with 1 / step^2 here, so the step is ten times as long. Differences that drown
-  // in rounding all the same are left to the gradients.
+  // The second difference of two values and a slope, for objectives whose value costs much less
+  // than a gradient. Rounding weighs with 1 / step^2 here, so the step is ten times as long.
+  // Differences that drown in rounding all the same are left to the gradients.
   kValues,
 };
 
@@ -31,9 +31,10 @@ struct ScgOptions {
   double min_lambda = 1e-15, max_lambda = 1e100;
 };
 
-// Minimizes `objective` from `start` and returns the best point found: about 1.9 evaluations per
-// iteration. Errors: kInvalidArgument when the objective or its gradient is not finite at the
-// start or `start` has the wrong size; kCancelled. `summary` may be null.
+// Minimizes `objective` from `start` and returns the best point found, at about 1.9 evaluations per
+// iteration. The error is kInvalidArgument when the objective or its gradient is not finite at the
+// start or `start` has the wrong size, and kCancelled. `summary` may be null. See
+// docs/method/learner.md#scg.
 absl::StatusOr<Eigen::VectorXd> MinimizeScg(Objective& objective, const Eigen::VectorXd& start,
                                             const ScgOptions& options = {},
                                             OptimizationSummary* summary = nullptr,

@@ -1,8 +1,6 @@
 // What every optimizer reports about a run.
 #pragma once
 
-#include <string>
-
 namespace pleat {
 
 enum class StopReason {
@@ -14,14 +12,11 @@ enum class StopReason {
 
 struct OptimizationSummary {
   int iterations = 0;   // attempted steps (SCG) or line searches (L-BFGS)
-  int evaluations = 0;  // of the value, alone or with the gradient
+  int evaluations = 0;  // evaluations of the value, alone or with the gradient
   double initial_objective = 0;
   double final_objective = 0;
   double final_gradient = 0;  // largest absolute entry
   StopReason stop_reason = StopReason::kMaxIterations;
 };
-
-// E.g. "gradient tolerance".
-std::string StopReasonName(StopReason reason);
 
 }  // namespace pleat

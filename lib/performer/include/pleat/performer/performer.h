@@ -1,4 +1,5 @@
-// A performer: a made-up animated character whose skeleton, weights and poses are known.
+// A performer is a made-up animated character whose skeleton, weights and poses are known. Tests
+// and measurements use it where a capture has no truth to compare with.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/rig.h"
 
 namespace pleat {
@@ -29,7 +30,7 @@ struct PerformerOptions {
   double yaw_degrees = 0;   // facing in frame 0: 0 = +z, 90 = +x
 };
 
-// What a method that sees only the sequence has to find again.
+// The truth, which a method that sees only the sequence has to find again.
 struct PerformerTruth {
   Rig rig;          // human template (same joints and names), true weights, frame 0 as rest shape
   PoseTrack track;  // pose 0 is the rest pose
@@ -46,7 +47,8 @@ struct Performer {
 // Makes a person in a skirt: an implicit body polygonized and remeshed to the wanted resolution, a
 // procedural motion, and a skirt whose swing is integrated as cloth (XPBD) that collides with the
 // legs. Frame 0 stands still with the arms away from the body. The result depends on the options
-// alone. kInvalidArgument names an option out of range; kCancelled.
+// alone. The error is kInvalidArgument and names an option out of range, kInternal when no closed
+// surface comes out, and kCancelled.
 absl::StatusOr<Performer> GeneratePerformer(const PerformerOptions& options,
                                             const Progress& progress = {});
 

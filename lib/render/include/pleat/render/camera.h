@@ -20,15 +20,13 @@ struct ViewOptions {
 // Maps world points to pixels (x right, y down) and depth (smaller is nearer).
 class Camera {
  public:
-  // A camera in the direction of `view` that shows all of `points` (3 x N, meters).
+  // Returns a camera in the direction of `view` that shows all of `points` (3 x N, N > 0, meters).
   static Camera Fit(const ViewOptions& view, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
   const ViewOptions& view() const { return view_; }
   Eigen::Vector3d Project(const Eigen::Vector3d& world) const;
-  // World direction -> camera axes (x right, y up, z towards the viewer).
+  // Turns a direction of the world into camera axes (x right, y up, z towards the viewer).
   const Eigen::Matrix3d& camera_from_world() const { return camera_from_world_; }
-  // Unit vector from `world` to the viewer, world axes.
-  Eigen::Vector3d ToViewer(const Eigen::Vector3d& world) const;
 
  private:
   ViewOptions view_;

@@ -14,10 +14,10 @@ enum class ColorMap {
   kTurbo,    // rainbow without false edges (Mikhailov 2019)
 };
 
-// u in 0..1 (clamped).
+// Returns the color of u in 0..1 (clamped; NaN counts as 0).
 Rgb MapColor(ColorMap map, double u);
 
-// What a color means: low .. high in `unit`.
+// Says what a color means: low .. high in `unit`.
 struct ColorScale {
   ColorMap map = ColorMap::kTurbo;
   double low = 0, high = 1;
@@ -27,11 +27,11 @@ struct ColorScale {
   Rgb operator()(double value) const { return MapColor(map, (value - low) / (high - low)); }
 };
 
-// One color per entry of `values`.
+// Returns one color per entry of `values`.
 std::vector<Rgb> ColorValues(const ColorScale& scale,
                              const Eigen::Ref<const Eigen::VectorXd>& values);
 
-// A horizontal bar with round tick values below it and the title above.
+// Draws a horizontal bar with round tick values below it and the title above.
 Image DrawColorLegend(const ColorScale& scale, int width);
 
 }  // namespace pleat

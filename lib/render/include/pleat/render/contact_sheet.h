@@ -1,4 +1,4 @@
-// Rows and columns of small pictures with one camera and one scale.
+// Rows and columns of small pictures that share one camera and one scale.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +23,7 @@ struct SheetTile {
 
 struct ContactSheetOptions {
   int num_columns = 4;
-  ViewOptions view{.width = 256, .height = 320};  // of one tile
+  ViewOptions view{.width = 256, .height = 320};  // view of one tile
   // Every tile is moved so that its own center (x and z) is in the middle, which keeps traveling
   // characters large; the scale stays that of the largest tile.
   bool center_tiles = true;
@@ -33,8 +33,8 @@ struct ContactSheetOptions {
   std::optional<ColorScale> legend;
 };
 
-// Tiles row by row; the last row may be short. kInvalidArgument when there is no tile, a tile's
-// sizes disagree or the sheet would be larger than an image can be.
+// Draws the tiles row by row; the last row may be short. The error is kInvalidArgument when there
+// is no tile, a tile's sizes disagree, or the sheet would be larger than an image can be.
 absl::StatusOr<Image> RenderContactSheet(const std::vector<SheetTile>& tiles,
                                          const ContactSheetOptions& options);
 

@@ -34,7 +34,7 @@ class Image {
   // Everything below clips at the borders.
   void FillRectangle(int left, int top, int width, int height, Rgb color);
   void Paste(const Image& source, int left, int top);
-  // An anti-aliased line from (x0, y0) to (x1, y1), pixel centers at whole numbers.
+  // Draws an anti-aliased line from (x0, y0) to (x1, y1); pixel centers lie at whole numbers.
   void DrawLine(double x0, double y0, double x1, double y1, double thickness, Rgb color);
   void DrawDot(double x, double y, double radius, Rgb color);
 
@@ -45,7 +45,7 @@ class Image {
   std::vector<Rgb> pixels_;
 };
 
-// The bytes of a PNG file.
+// Returns the bytes of a PNG file, or nothing when there is no memory for them.
 std::string EncodePng(const Image& image);
 
 }  // namespace pleat

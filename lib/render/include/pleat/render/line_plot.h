@@ -1,4 +1,4 @@
-// Curves over a common axis, e.g. the error of every frame for several learners.
+// Curves over a common axis, such as the error of every frame for several learners.
 #pragma once
 
 #include <string>
@@ -21,7 +21,8 @@ struct LinePlotOptions {
   bool y_from_zero = true;
 };
 
-// kInvalidArgument when no series holds a finite value or the size is out of range.
+// Draws the plot. The error is kInvalidArgument when no series holds a finite value or the size is
+// out of range.
 absl::StatusOr<Image> RenderLinePlot(const std::vector<PlotSeries>& series,
                                      const LinePlotOptions& options);
 

@@ -1,4 +1,4 @@
-// From a mesh sequence to a rig with 18 joints, without help.
+// From a mesh sequence to a rig with 18 joints, without help (docs/method/rig.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,21 +19,21 @@ namespace pleat {
 
 struct AutoRigOptions {
   int rest_frame = -1;  // -1 = automatic: frame 0 when it is trusted, else the best of a few
-  // Where the character faces, degrees about +y from +z towards +x. Unset: the best of four.
+  // Where the character faces, in degrees about +y from +z towards +x. Unset: the best of four.
   std::optional<double> yaw_degrees;
   int max_frames_tried = 8;
-  // Grid of the frames that are only compared with each other; the chosen one is looked at again on
-  // volume.resolution.
+  // The grid of the frames that are only compared with each other; the chosen one is looked at
+  // again on volume.resolution.
   int probe_resolution = 64;
-  // Also try other axes than +y as up when no frame is trusted as it stands (Z up, lying, upside
-  // down). The rig stays in the axes of the input.
+  // Whether to try other axes than +y as up, too, when no frame is trusted as it stands (Z up,
+  // lying, upside down). The rig stays in the axes of the input.
   bool any_orientation = true;
   // Residuals of the embedding (docs/method/rig.md#the-residual): below `trusted` the first frame
   // is taken at once, arms that reach out provided; above it the rig carries a warning, above
   // `refused` there is none.
   double trusted_residual = .03;
   double refused_residual = .15;
-  // What Embedding::arm_shortfall adds to the residual when frames are compared.
+  // How much Embedding::arm_shortfall adds to the residual when frames are compared.
   double arm_shortfall_weight = .5;
   // Two facings whose residuals are nearer than this are reported as doubtful.
   double facing_margin = .004;
@@ -52,19 +52,19 @@ struct AutoRigSummary {
   double residual = 0;
   FacingEvidence evidence;
   bool is_turned_by_evidence = false;   // front and back are those of the feet and knees
-  std::vector<FacingResidual> facings;  // of the rest frame
+  std::vector<FacingResidual> facings;  // those of the rest frame
   int num_frames_tried = 0;
   int num_spheres = 0;
-  SurfaceReport surface;  // of the rest frame
+  SurfaceReport surface;  // those of the rest frame
   HeatWeightsSummary heat;
   std::vector<std::string> warnings;
 };
 
-// Rig of `sequence` in its best frame: skeleton in template order and names (HumanTemplate), left
-// is the character's left; weights; rest positions = that frame as it is. Deterministic for any
-// number of threads. kFailedPrecondition, with the measured residual and what to do, when the body
-// is not one that a human skeleton fits; kInvalidArgument for a frame or option out of range;
-// kCancelled.
+// Returns the rig of `sequence` in its best frame: a skeleton with the order and names of the
+// template (HumanTemplate), where left is the character's left; weights; and that frame as it is as
+// rest positions. Deterministic for any number of threads. The error is kFailedPrecondition, with
+// the measured residual and what to do, when the body is not one that a human skeleton fits;
+// kInvalidArgument for a frame or option out of range; and kCancelled. `summary` may be null.
 absl::StatusOr<Rig> AutoRig(const MeshSequence& sequence, const AutoRigOptions& options = {},
                             AutoRigSummary* summary = nullptr, const Progress& progress = {});
 

@@ -1,4 +1,5 @@
-// A character's volume in the unit box: the first two steps of the embedding.
+// A character's volume in the unit box: the first two steps of the embedding. What follows measures
+// lengths in this box, so that its constants need no unit.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,12 +18,14 @@ namespace pleat {
 
 struct BodyVolumeOptions {
   int resolution = 128;      // grid cells along the longest side of the body
-  double min_depth = 0.006;  // of the unit box: shallower medial samples are left out
+  double min_depth = 0.006;  // unit box; shallower medial samples are left out
   int num_threads = 1;       // 0 = one per core
 };
 
 // The mesh scaled uniformly so that its longest side is 0.9, centered at 0.5 (Baran and Popovic
-// 2007, section 3), with its distance field and medial samples. unit = scale * world + offset.
+// 2007, section 3), with its distance field and medial samples. unit = scale * world + offset. The
+// tree and the winding number are on the heap because the latter refers to the former, which must
+// stay where it is when the volume is moved.
 struct BodyVolume {
   double scale = 1;  // unit lengths per meter
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
@@ -31,17 +34,11 @@ struct BodyVolume {
   std::unique_ptr<const WindingNumber> winding_number;
   DistanceField field;
   std::vector<MedialSample> medial_samples;
-
-  Eigen::Vector3d UnitFromWorld(const Eigen::Vector3d& point) const {
-    return scale * point + offset;
-  }
-  Eigen::Vector3d WorldFromUnit(const Eigen::Vector3d& point) const {
-    return (point - offset) / scale;
-  }
 };
 
-// positions: 3 x V, any unit. kInvalidArgument when the mesh has no area; kFailedPrecondition when
-// it encloses no volume; kCancelled.
+// Prepares the surface and computes field and samples. positions: 3 x V, any unit. The error is
+// kInvalidArgument when the mesh has no area, kFailedPrecondition when it encloses no volume, and
+// kCancelled.
 absl::StatusOr<BodyVolume> ComputeBodyVolume(const Topology& topology,
                                              const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                              const BodyVolumeOptions& options = {},

@@ -1,4 +1,4 @@
-// Which bones a surface vertex is near to and sees through the body.
+// Finds the bones that a surface vertex is near to and sees through the body.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,20 +11,21 @@
 
 namespace pleat {
 
-// The point of the segment from a to b nearest to `point`.
+// Returns the point of the segment from a to b nearest to `point`.
 Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& a,
                                       const Eigen::Vector3d& b);
 
-// What tells inside from outside. A distance field, where there is one, answers far from the
-// surface without a search of the tree; the result is the same.
+// Tells inside from outside. A distance field, where there is one, answers far from the surface
+// without a search of the tree; the result is the same. What it points to must outlive it.
 struct InsideTest {
   const TriangleTree* tree = nullptr;
   const WindingNumber* winding_number = nullptr;
   const DistanceField* field = nullptr;  // may be null
 };
 
-// True when the way from `inner` to the surface vertex `vertex` stays inside the body. `tolerance`:
-// length of the last stretch, next to the vertex, that is not looked at.
+// Returns true when the way from `inner` to the surface vertex `vertex` stays inside the body. The
+// last stretch of twice the length `tolerance`, next to the vertex, is not looked at: there the way
+// leaves the body anyway.
 bool IsVisibleInside(const InsideTest& inside, const Eigen::Vector3d& inner,
                      const Eigen::Vector3d& vertex, double tolerance);
 
@@ -34,7 +35,8 @@ struct NearestBones {
   double distance = 0;
 };
 
-// joints: 3 x J. With `inside` null every bone is visible.
+// Returns the nearest bones that `vertex` sees. joints: 3 x J. With `inside` null every bone is
+// visible. Bones within a factor 1.0001 of the smallest distance count as a tie.
 NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
                               const Eigen::Vector3d& vertex, const InsideTest* inside = nullptr,
                               double tolerance = 0);

@@ -1,4 +1,4 @@
-// The 18-joint human skeleton placed inside a body.
+// Places the 18-joint human skeleton inside a body.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,12 +14,13 @@
 namespace pleat {
 
 struct EmbeddingOptions {
-  // Turns the mesh so that the character would stand along +y; the identity for most inputs.
+  // The rotation that turns the mesh so that the character would stand along +y; the identity for
+  // most inputs.
   Eigen::Matrix3d upright_from_input = Eigen::Matrix3d::Identity();
-  // Facings to try, degrees about +y from +z towards +x. A wrong one costs milliseconds.
+  // The facings to try, in degrees about +y from +z towards +x. A wrong one costs milliseconds.
   std::vector<double> yaws_degrees = {0, 90, 180, 270};
-  // Once the best of them is known, also try the facing that its own left and right feet and hands
-  // show: characters that stand across the four.
+  // Whether to try, once the best of them is known, also the facing that its own left and right
+  // feet and hands show: characters that stand across the four.
   bool adjust_yaw = true;
   int max_spheres = 1000;
   PenaltyOptions penalties;
@@ -34,7 +35,7 @@ struct EmbeddingOptions {
   RefinementOptions refinement;
 };
 
-// What one facing costs. The search of a facing stops once it is certain that another one is
+// The cost of one facing. The search of a facing stops once it is certain that another one is
 // better: its residual is then at least this.
 struct FacingResidual {
   double yaw_degrees = 0;
@@ -47,7 +48,7 @@ struct Embedding {
   Eigen::Matrix3Xd initial_joints;  // the same before the continuous refinement
   double residual = 0;              // search + uncovered surface; .03-.10 is doubtful, .15 no human
   double search_residual = 0;       // penalties alone
-  double uncovered_share = 0;       // of the body's surface, 0..1
+  double uncovered_share = 0;       // share of the body's surface, 0..1
   // How much the shorter arm falls short of half a leg, as a share of the leg: an arm that is
   // folded against the body or reaches into the clothes seems to end at the elbow. 0 = none does.
   double arm_shortfall = 0;
@@ -56,13 +57,14 @@ struct Embedding {
   int num_spheres = 0;
 };
 
-// The rotation that stands a placed skeleton upright: its own axis from the feet to the head along
-// +y, its own left along +x. joints: 3 x 18, template order.
+// Returns the rotation that stands a placed skeleton upright: its own axis from the feet to the
+// head along +y, its own left along +x. joints: 3 x 18, template order.
 Eigen::Matrix3d UprightFromJoints(const Eigen::Matrix3Xd& joints);
 
-// The whole embedding of Baran and Popovic 2007, "Automatic rigging and animation of 3D
-// characters": sphere packing, graph, search over the facings, refinement. kNotFound when the
-// skeleton fits in no facing, kInvalidArgument when no facing is given, kCancelled.
+// Runs the whole embedding of Baran and Popovic 2007, "Automatic rigging and animation of 3D
+// characters": sphere packing, graph, search over the facings, refinement. The error is kNotFound
+// when the skeleton fits in no facing, kInvalidArgument when no facing is given, and kCancelled.
+// See docs/method/rig.md#embedding-search.
 absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume,
                                         const EmbeddingOptions& options = {},
                                         const Progress& progress = {});

@@ -1,4 +1,4 @@
-// Step 7 of the embedding, second half: the cheapest placement, by best-first search.
+// Step 7 of the embedding, second half: finds the cheapest placement, by best-first search.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace pleat {
 
 struct SearchOptions {
-  // Placements that must cost more than a bound are not kept; the bound starts here and doubles
+  // Placements that must cost more than a bound are not kept. The bound starts here and doubles
   // until a placement is found, so that a wrong facing is refused in milliseconds.
   double first_bound = .02;
   double max_bound = .32;
@@ -27,15 +27,16 @@ struct SearchResult {
 // Places the joints of model.tree() in their order. The remainder of a partial placement is bounded
 // from below by the cheapest pair penalties of the open subtrees given their placed parents, which
 // the context penalties can only raise: the search is exact (Baran and Popovic 2007, section 3.3,
-// with a tighter remainder).
+// with a tighter remainder; docs/method/rig.md#best-first-search).
 class EmbeddingSearch {
  public:
   // The model must outlive this object.
   explicit EmbeddingSearch(const PenaltyModel& model, const SearchOptions& options = {});
   ~EmbeddingSearch();
 
-  // The cheapest placement of those that cost at most `bound`. kNotFound when there is none,
-  // kResourceExhausted when max_states was reached, kCancelled.
+  // Returns the cheapest placement of those that cost at most `bound`. The error is kNotFound when
+  // there is none, kResourceExhausted when max_states was reached, and kCancelled. Safe to call
+  // from several threads.
   absl::StatusOr<SearchResult> Run(double bound, const Progress& progress = {}) const;
 
  private:
@@ -46,8 +47,8 @@ class EmbeddingSearch {
   std::unique_ptr<const PairTable> table_;
 };
 
-// The cheapest placement of all, with deepened bounds. kNotFound when every placement costs more
-// than max_bound; otherwise as above.
+// Returns the cheapest placement of all, with deepened bounds. The error is kNotFound when every
+// placement costs more than max_bound; otherwise as above.
 absl::StatusOr<SearchResult> SearchEmbedding(const PenaltyModel& model,
                                              const SearchOptions& options = {},
                                              const Progress& progress = {});

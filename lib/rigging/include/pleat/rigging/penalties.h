@@ -8,9 +8,9 @@
 
 namespace pleat {
 
-// Weights of the nine penalties (docs/method/rig.md#the-nine-penalties; the kinds are those of
-// Baran and Popovic 2007, section 3.3, the formulas are our own). A weighted penalty over 1
-// forbids.
+// The weights of the nine penalties (docs/method/rig.md#the-nine-penalties; the kinds are those of
+// Baran and Popovic 2007, section 3.3, the formulas are our own). Penalties that sum to more than 1
+// forbid a placement.
 struct PenaltyWeights {
   double length = .027;           // bone chain shorter than the template's
   double direction = .023;        // against parent and siblings
@@ -41,30 +41,31 @@ struct PlacementContext {
   };
   int joint = 0;
   int parent_sphere = -1;
-  double mirror_length = 0;  // of the mirrored chain, 0 = not placed
+  double mirror_length = 0;  // length of the mirrored chain, 0 = not placed
   std::vector<Other> others;
   std::vector<char> is_used;  // per sphere: on the path of a chain placed before
 };
 
-// Costs of placing the joints of `tree` on the spheres of `graph`, one joint after the other. All
-// costs are >= 0; infinite = forbidden. The graph and the tree must outlive this object.
+// The costs of placing the joints of `tree` on the spheres of `graph`, one joint after the other.
+// All costs are >= 0, which the search's bound relies on; infinite = forbidden. The graph and the
+// tree must outlive this object.
 class PenaltyModel {
  public:
-  // floor_height, body_size: lowest vertex and longest side of the body, unit box.
+  // floor_height and body_size: the lowest vertex and the longest side of the body, unit box.
   PenaltyModel(const SphereGraph& graph, const SearchTree& tree, double floor_height,
                double body_size, const PenaltyOptions& options = {});
 
   const SphereGraph& graph() const { return graph_; }
   const SearchTree& tree() const { return tree_; }
-  // Spheres that may hold joint j.
+  // The spheres that may hold joint j.
   const std::vector<int>& candidates(int j) const { return candidates_[j]; }
 
-  // What joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`.
+  // Returns what joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`.
   double PairPenalty(int j, int sphere, int parent_sphere) const;
-  // What joint j is compared with when joints 0..j-1 lie on spheres[0..j-1].
+  // Returns what joint j is compared with when joints 0..j-1 lie on spheres[0..j-1].
   PlacementContext MakeContext(int j, const std::vector<int>& spheres) const;
-  // What the joint of `context` on `sphere` costs against the joints placed before it, its parent's
-  // share in PairPenalty left out. Its parent must reach `sphere`.
+  // Returns what the joint of `context` on `sphere` costs against the joints placed before it; what
+  // it costs against its parent is in PairPenalty. Its parent must reach `sphere`.
   double ContextPenalty(const PlacementContext& context, int sphere) const;
 
  private:
@@ -79,7 +80,8 @@ class PenaltyModel {
   std::vector<std::vector<int>> candidates_;
 };
 
-// Points at the given fractions of the length of the polyline `path` of sphere centers.
+// Returns the points at the given fractions, ascending, of the length of the polyline `path` of
+// sphere centers.
 Eigen::Matrix3Xd PointsAlongPath(const SphereGraph& graph, const std::vector<int>& path,
                                  const std::vector<double>& fractions);
 

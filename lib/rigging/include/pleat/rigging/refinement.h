@@ -1,4 +1,4 @@
-// Step 9 of the embedding: joints moved continuously from the path of spheres to the middle of the
+// Step 9 of the embedding: moves joints continuously from the path of spheres to the middle of the
 // limbs.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace pleat {
 
-// Weights of docs/method/rig.md#refinement (unit box lengths), and what measuring added to it.
+// The weights of docs/method/rig.md#refinement (unit box lengths), and what measuring added to it.
 struct RefinementOptions {
-  // Squared distance of the bone to the medial surface, across the bone and mean over it. Along
+  // The squared distance of the bone to the medial surface, across the bone and mean over it. Along
   // the bone only leaves are held: a knee may slide to where the leg's proportions want it.
   double centering = 15000;
   // Where the medial surface lies deeper than this (about a limb's radius) its pull falls with the
@@ -19,11 +19,11 @@ struct RefinementOptions {
   double limb_radius = .03;
   // Thigh to lower leg, and legs to the trunk between hips and shoulders: of all lengths these vary
   // least among people (Drillis and Contini 1966), and under clothes the surface does not show
-  // them. Relative deviations in units of the template's leg.
+  // them. Relative deviations, in units of the template's leg.
   double proportions = 100;
   double length = .25;  // relative deviation from the template's length
-  // The same for the bones across the trunk, from hips and chest to the limbs: the surface says
-  // nothing about their length, under a skirt least of all.
+  // The same weight for the bones across the trunk, from hips and chest to the limbs: the surface
+  // says nothing about their length, under a skirt least of all.
   double trunk_length = 30;
   double angle = 5;     // 1 - cosine to the template's direction; 2 leaves hips in skirts worse
   double symmetry = 1;  // relative difference of mirrored lengths
@@ -31,10 +31,10 @@ struct RefinementOptions {
   int max_iterations = 60;
 };
 
-// Minimizes the weighted sum over the bones of the human template by Levenberg-Marquardt, the
+// Minimizes the weighted sum over the bones of the human template by Levenberg-Marquardt, with the
 // nearest medial samples kept fixed within a step (Baran and Popovic 2007, section 3.4). joints:
-// start, 3 x 18 in template order, unit box. template_joints: 3 x 18, turned by the yaw and of the
-// body's size. Returns the refined joints.
+// the start, 3 x 18 in template order, unit box. template_joints: 3 x 18, turned by the yaw and of
+// the body's size. Returns the refined joints, whose energy is never above that of the start.
 Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
                                  const Eigen::Matrix3Xd& template_joints,
                                  const std::vector<MedialSample>& medial_samples,

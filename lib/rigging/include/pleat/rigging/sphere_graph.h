@@ -1,4 +1,5 @@
-// Step 5 of the embedding: the graph of packed spheres and its shortest paths.
+// Step 5 of the embedding: the graph of packed spheres and its shortest paths
+// (docs/method/rig.md#sphere-graph).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +11,16 @@
 
 namespace pleat {
 
-// Spheres as nodes, edges where one can walk inside the body from center to center.
+// A graph with spheres as nodes and edges where one can walk inside the body from center to center.
+// Immutable.
 class SphereGraph {
  public:
-  // Overlapping spheres are joined; others when the ball over the segment between their centers
-  // holds no third center (Gabriel) and the segment stays at least half the smaller radius deep
-  // (Baran and Popovic 2007, section 3.1).
+  // Joins overlapping spheres, and others when the ball over the segment between their centers
+  // holds no third center (Gabriel) and the segment stays at least half of the smaller radius deep
+  // (Baran and Popovic 2007, section 3.1). All shortest paths are computed here: O(N E log N) time,
+  // O(N^2) memory.
   SphereGraph(std::vector<Sphere> spheres, const DistanceField& field);
-  // The given edges (pairs of indices) instead.
+  // Takes the given edges (pairs of indices) instead.
   SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pair<int, int>>& edges);
 
   int size() const { return static_cast<int>(spheres_.size()); }
@@ -25,11 +28,11 @@ class SphereGraph {
   const std::vector<Sphere>& spheres() const { return spheres_; }
   const std::vector<int>& neighbors(int i) const { return neighbors_[i]; }
 
-  // Length of the shortest path, infinite when there is none.
+  // Returns the length of the shortest path, infinite when there is none.
   double PathLength(int from, int to) const { return distances_(to, from); }
-  // The node before `to` on the shortest path, -1 at its start or when there is none.
+  // Returns the node before `to` on the shortest path, -1 at its start or when there is none.
   int Predecessor(int from, int to) const { return predecessors_(to, from); }
-  // Nodes of the shortest path, both ends included; empty when there is none.
+  // Returns the nodes of the shortest path, both ends included; empty when there is none.
   std::vector<int> Path(int from, int to) const;
 
  private:

@@ -12,9 +12,9 @@ struct Sphere {
   double radius;
 };
 
-// Greedy packing of the inscribed spheres of `samples`, largest first; a sphere is taken when its
-// center lies outside all taken before (Baran and Popovic 2007, section 3.1). Sorted by falling
-// radius.
+// Packs the inscribed spheres of `samples` greedily, largest first; a sphere is taken when its
+// center lies outside of all taken before (Baran and Popovic 2007, section 3.1). Returns them by
+// falling radius.
 std::vector<Sphere> PackSpheres(std::vector<MedialSample> samples, int max_spheres = 1000);
 
 }  // namespace pleat

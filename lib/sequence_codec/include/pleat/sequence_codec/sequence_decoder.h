@@ -10,18 +10,11 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
+#include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/mesh/topology.h"
 
 namespace pleat {
-
-struct SequenceDecoderLimits {
-  uint32_t max_vertices = 4'000'000;
-  uint32_t max_faces = 8'000'000;
-  uint32_t max_frames = 100'000;
-  // Of the fields of one segment, what a decoder holds at a time.
-  uint64_t max_field_bytes = uint64_t{2} << 30;
-};
 
 // What the file was asked to keep.
 struct CompressionPromise {
@@ -35,8 +28,7 @@ class SequenceDecoder {
   // Reads what all frames share and the places of the rest; every section's checksum is verified.
   // `bytes` is kept. kInvalidArgument: no compressed sequence, or another version. kDataLoss: cut
   // off or damaged. kResourceExhausted: over a limit.
-  static absl::StatusOr<SequenceDecoder> Open(std::string bytes,
-                                              const SequenceDecoderLimits& limits = {});
+  static absl::StatusOr<SequenceDecoder> Open(std::string bytes, const MeshLimits& limits = {});
   ~SequenceDecoder();
   SequenceDecoder(SequenceDecoder&&) noexcept;
   SequenceDecoder& operator=(SequenceDecoder&&) noexcept;

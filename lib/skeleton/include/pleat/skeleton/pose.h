@@ -1,10 +1,11 @@
-// Poses, pose tracks and forward kinematics (docs/method/fit.md#bone-model).
+// Poses and forward kinematics (docs/method/fit.md#bone-model).
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "pleat/math/rigid.h"
 #include "pleat/skeleton/skeleton.h"
 
@@ -20,15 +21,11 @@ struct Pose {
   static Pose Rest(const Skeleton& skeleton);
 };
 
-// Poses over time. A clip is a run of consecutive frames of one recording; history and dynamics
-// never reach across a clip boundary.
-struct PoseTrack {
-  double fps = 30;
-  std::vector<Pose> poses;          // T
-  std::vector<int> clip_starts{0};  // first frame of every clip, ascending, first is 0
-
-  int num_frames() const { return static_cast<int>(poses.size()); }
-};
+// OK when the root position is finite and the rotations are unit quaternions (to 1 %, which their
+// use normalizes away); kInvalidArgument names the joint.
+absl::Status CheckPose(const Pose& pose);
+// OK when the pose has one rotation for each joint; kInvalidArgument names both counts.
+absl::Status CheckJointCount(const Pose& pose, int num_joints);
 
 // World motion of every bone: x_world = bone_transforms[b] * x_rest. Entry 0 is the root's own
 // frame (rotation R_0 about the rest root position, moved to root_position).

@@ -3,20 +3,29 @@
 
 #include <Eigen/Core>
 
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 
 enum class RotationRepresentation { kExponentialMap, kEuler, kQuaternion };
 
+// How the predecessors of a pose stand in its row; the same information either way.
+enum class HistoryForm {
+  kDifferences,  // to the pose after them: a distance between rows weighs speed by itself
+  kPoses,        // as they are (paper)
+};
+
 struct PoseFeatureOptions {
   // The paper's choice; Euler angles and quaternions were worse there, kept for the comparison.
   RotationRepresentation representation = RotationRepresentation::kExponentialMap;
   int history = 2;  // frames per row: the pose and its predecessors (paper: 2)
-  // Predecessors as differences to the pose after them: a distance between rows then weighs speed
-  // by itself. false = the poses as they are (paper). The same information either way.
-  bool differences = true;
+  HistoryForm history_form = HistoryForm::kDifferences;
 };
+
+// Coordinates of one rotation: 3, or 4 of a quaternion.
+constexpr int NumCoordinates(RotationRepresentation representation) {
+  return representation == RotationRepresentation::kQuaternion ? 4 : 3;
+}
 
 // Turns poses into feature rows without the root (independent of place and facing). Rotations
 // are kept on the branch (2 pi wraps, quaternion sign) nearest to `reference`, which training sets

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
 

@@ -1,5 +1,6 @@
-// Skinning of whole frames in float32, details included, 16 vertices at a time: what a query runs.
-// rig.h has the same in double precision, vertex by vertex, for training.
+// Skinning of whole frames in float32, details included, 16 vertices at a time: what a query runs
+// (docs/method/prediction.md#skinning-with-details). rig.h has the same in double precision, vertex
+// by vertex, for training.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +28,8 @@ struct BoneMotions {
   std::vector<float> signs;
 };
 
-// The vertices of a rig in the order in which a query reads them. Immutable.
+// The vertices of a rig in the order in which a query reads them. Immutable; threads may skin
+// different blocks of one frame at the same time.
 class FrameSkinning {
  public:
   FrameSkinning() = default;
@@ -36,22 +38,25 @@ class FrameSkinning {
   int num_blocks() const { return static_cast<int>(blocks_.size()); }
   size_t memory_bytes() const;
 
-  // axes: J rotations. No allocation after the first call.
+  // Fills `motions` for one frame. axes: J rotations. It does not allocate after the first call.
   void SetMotions(const BoneTransforms& transforms, const std::vector<Eigen::Matrix3d>& axes,
                   BoneMotions* motions) const;
 
-  // Vertices of the blocks first_block to first_block + num_blocks - 1 (block i: vertices 16 i to
-  // 16 i + 15, fewer in the last):
+  // Skins the vertices of the blocks first_block to first_block + num_blocks - 1 (block i: vertices
+  // 16 i to 16 i + 15, fewer in the last):
+  //
   //   position_v = sum_b w_vb (linear_b rest_v + translation_b) + R(q_v) detail_v
-  // with q_v the normalized mean of the quaternions of its bones, signs aligned with the strongest.
-  // details: for each block x of its 16 vertices, y, z; or null for none. positions: 3 x V.
+  //
+  // where q_v is the normalized mean of the quaternions of its bones, with signs aligned with the
+  // strongest. details: x of the 16 vertices of a block, then y, then z, block by block, beginning
+  // with first_block; or null for none. positions: 3 x V.
   void SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks, const float* details,
                   Eigen::Matrix3Xf* positions) const;
-  // The same on a given processor's kernel.
+  // Does the same with a given kernel, so that tests can compare all that a processor can run.
   void SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions, int first_block,
                       int num_blocks, const float* details, Eigen::Matrix3Xf* positions) const;
 
-  // What 16 vertices need. In the last block the last vertex fills the lanes left over.
+  // The data of 16 vertices. In the last block the last vertex fills the lanes left over.
   struct alignas(64) Block {
     float rest[3 * kSkinningLanes];  // x of all, y, z; meters
     float weights[kMaxInfluences * kSkinningLanes];
@@ -61,7 +66,7 @@ class FrameSkinning {
  private:
   int num_vertices_ = 0;
   std::vector<int> parents_;  // J
-  // Bones that move a vertex together with its strongest bone, each pair once.
+  // A bone that moves a vertex together with its strongest bone; each pair is listed once.
   struct BonePair {
     int strongest, other;
   };

@@ -1,4 +1,5 @@
-// A rig: skeleton, skinning weights and the mesh in the rest pose; and linear blend skinning.
+// A rig, which is a skeleton, skinning weights and the mesh in the rest pose; and linear blend
+// skinning.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,13 +18,13 @@ struct Rig {
 };
 
 // Linear blend skinning: column v of `positions` = sum_b w_vb (linear_b rest_v + translation_b).
-// rest, positions: 3 x V. No allocation when `positions` has the right size.
+// rest, positions: 3 x V. It does not allocate when `positions` has the right size.
 void SkinVertices(const SkinWeights& weights, const Eigen::Ref<const Eigen::Matrix3Xd>& rest,
                   const BoneTransforms& transforms, Eigen::Matrix3Xd* positions);
 
-// The rotation of every vertex's own blend (unit quaternion: the weighted mean of its bones'
-// rotations, signs aligned with the strongest bone), the axes of "local" details
-// (docs/method/details.md#axes). Vertices `vertices` only, in that order.
+// Computes the rotation of every vertex's own blend (a unit quaternion: the weighted mean of its
+// bones' rotations, with signs aligned with the strongest bone), the axes of "local" details
+// (docs/method/details.md#axes). Only for the vertices `vertices`, in that order.
 void BlendRotations(const SkinWeights& weights, const std::vector<int>& vertices,
                     const BoneTransforms& transforms, std::vector<Eigen::Quaterniond>* rotations);
 

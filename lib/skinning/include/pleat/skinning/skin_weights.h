@@ -19,16 +19,20 @@ struct VertexInfluences {
   std::array<float, kMaxInfluences> weights{};  // >= 0, sum 1, falling; unused entries are 0
 };
 
-// The four largest of `bone_weights` (bone -> weight >= 0, at least one positive), normalized.
+// Returns the four largest of `bone_weights` (bone -> weight >= 0, at least one positive),
+// normalized.
 VertexInfluences StrongestInfluences(const std::map<int, double>& bone_weights);
 
-// Valid by construction: finite, non-negative, normalized, bones in [1, num_joints).
+// Skinning weights of a mesh, valid by construction: finite, non-negative, normalized, with bones
+// in [1, num_joints).
 class SkinWeights {
  public:
   // Keeps the four largest weights of every row of `dense` (V x num_joints, column b = bone b,
-  // column 0 ignored) and normalizes them. kInvalidArgument names the first vertex without weight.
+  // column 0 ignored) and normalizes them. The error is kInvalidArgument and names the first vertex
+  // without weight.
   static absl::StatusOr<SkinWeights> FromDense(const Eigen::Ref<const Eigen::MatrixXd>& dense);
-  // Checks and takes `influences` as they are (sums within 1e-4 of 1).
+  // Checks `influences` and takes them as they are (sums within 1e-4 of 1). The error is
+  // kInvalidArgument and names the first bad vertex.
   static absl::StatusOr<SkinWeights> Create(int num_joints,
                                             std::vector<VertexInfluences> influences);
 

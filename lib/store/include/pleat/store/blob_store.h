@@ -4,25 +4,50 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/store/staged_file.h"
+#include "pleat/store/sync_hook.h"
 
 namespace pleat {
 
-// Thread-safe: files appear by rename and never change.
+// Invariants:
+//  - The file FOLDER/ab/ab12... holds the bytes whose SHA-256 is ab12..., all of them, from the
+//    moment it can be seen. It is never opened for writing, so readers need no lock.
+//  - A file appears by rename(2) alone, and its content was synced before. The order is
+//        1. write FOLDER/ab/ab12....tmp-XXXXXX     Stage: seconds, without any lock
+//        2. fsync of that file                     Stage
+//        3. rename to FOLDER/ab/ab12...            Publish: microseconds
+//        4. fsync of FOLDER/ab, then of FOLDER     Publish: the name, and the new folder's name
+//    A crash before 3 leaves a .tmp- file, which the next Open removes. A crash between 3 and 4 may
+//    lose the name or keep it; either way no reader was promised the file, and its content is whole
+//    when the name is there. After 4 the file survives a power cut.
+//  - Two writers of the same content race harmlessly: each has a temporary file of its own, and the
+//    second rename replaces a file by an equal one.
+//  - Whether a file should exist is not decided here: the catalogue's row says so (Store). A file
+//    without a row is garbage that the next start of the store removes.
+//  - The names of files are content ids and nothing else (IsContentId), so an id from outside can
+//    never reach another path.
+//
+// Thread-safe.
 class BlobStore {
  public:
   // Uses (and makes) `folder`. Writes that would leave less than `reserve_bytes` on the disk are
   // refused with kResourceExhausted: on a full disk not even deleting from the catalogue works.
-  static absl::StatusOr<BlobStore> Open(std::string folder, uint64_t reserve_bytes);
+  static absl::StatusOr<BlobStore> Open(std::string folder, uint64_t reserve_bytes,
+                                        SyncHook before_sync = {});
 
-  // Stores `bytes` durably and returns their id. Storing the same content again is a no-op.
+  // Writes and syncs `bytes` under a temporary name, unless the content is stored already. This is
+  // the slow half of storing a file: call it without holding a lock.
+  absl::StatusOr<StagedFile> Stage(std::string_view bytes);
+  // Gives the file its name, durably. kAborted when it was already stored but has been deleted
+  // since; stage it again.
+  absl::Status Publish(StagedFile file);
+  // Stage and Publish; returns the id. Storing the same content again is a no-op.
   absl::StatusOr<std::string> Put(std::string_view bytes);
-  // Takes over the complete file `path` (same disk), whose content the caller has checked to be
-  // `id`.
-  absl::Status Adopt(const std::string& path, const std::string& id);
 
   // The content, verified: kNotFound, or kDataLoss when the disk gave other bytes.
   absl::StatusOr<std::string> Get(const std::string& id) const;
@@ -38,15 +63,16 @@ class BlobStore {
   absl::Status CheckSpace(uint64_t bytes) const;
 
  private:
-  BlobStore(std::string folder, uint64_t reserve_bytes)
-      : folder_(std::move(folder)), reserve_bytes_(reserve_bytes) {}
+  BlobStore(std::string folder, uint64_t reserve_bytes, SyncHook before_sync)
+      : folder_(std::move(folder)),
+        reserve_bytes_(reserve_bytes),
+        before_sync_(std::move(before_sync)) {}
+  std::string FolderOf(const std::string& id) const;
   std::string PathOf(const std::string& id) const;
 
   std::string folder_;
   uint64_t reserve_bytes_;
+  SyncHook before_sync_;
 };
-
-// True for 64 lower-case hexadecimal digits: nothing else may become a file name.
-bool IsContentId(std::string_view id);
 
 }  // namespace pleat

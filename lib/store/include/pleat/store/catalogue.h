@@ -1,17 +1,17 @@
-// What exists, as rows in SQLite.
+// What exists, as rows of a SQLite database.
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-
-struct sqlite3;
+#include "pleat/store/sync_hook.h"
 
 namespace pleat {
+
+class SyncHookVfs;
 
 enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig };
 
@@ -21,12 +21,27 @@ struct CatalogueEntry {
   int attempts = 0;    // jobs: how often one was started
 };
 
-// Thread-safe: one connection behind one mutex (two SQLite writers would starve each other). Every
-// change is on the disk when the call returns (write-ahead log, synchronous=FULL).
+// Invariants:
+//  - The file is a SQLite database in write-ahead-log mode with one table, `entries`; its version
+//    is PRAGMA user_version. `record` is opaque here: records.h says what it holds.
+//  - An entry is (kind, id). Its position, the order in which entries were added, never changes.
+//  - A call that changes something returns after its commit has been synced (synchronous=FULL):
+//    what was reported survives a power cut. A crash before that loses the whole change, never a
+//    part.
+//  - Nobody sees a change before it is durable: SQLite publishes a commit to readers after the
+//    sync.
+//
+// Threads: two connections, each behind its own mutex. All changes go through `writer_`, one at a
+// time, because SQLite has one writer anyway and two connections that write would starve each
+// other; its mutex is held during the sync. All reads go through `reader_`, which sees the last
+// commit and in write-ahead-log mode waits for no writer. So a read never waits for a sync, and a
+// thread that reads after its own write returned sees that write. Neither mutex is held while the
+// other is taken. Thread-safe.
 class Catalogue {
  public:
   // kFailedPrecondition when a newer version wrote the file, kDataLoss when it is damaged.
-  static absl::StatusOr<std::unique_ptr<Catalogue>> Open(const std::string& path);
+  static absl::StatusOr<std::unique_ptr<Catalogue>> Open(const std::string& path,
+                                                         SyncHook before_sync = {});
   ~Catalogue();
   Catalogue(const Catalogue&) = delete;
   Catalogue& operator=(const Catalogue&) = delete;
@@ -38,13 +53,14 @@ class Catalogue {
   absl::Status Delete(EntryKind kind, const std::string& id);                 // or kNotFound
 
  private:
+  class Connection;
   class Statement;
-  explicit Catalogue(sqlite3* database) : database_(database) {}
-  absl::Status Execute(const char* sql);
+  Catalogue();
   absl::Status Prepare(const std::string& path);
 
-  std::mutex mutex_;
-  sqlite3* database_;  // guarded by mutex_
+  std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections
+  std::unique_ptr<Connection> writer_;
+  std::unique_ptr<Connection> reader_;
 };
 
 }  // namespace pleat

@@ -7,10 +7,12 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "pleat/store/blob_store.h"
+#include "pleat/store/staged_file.h"
+#include "pleat/store/sync_hook.h"
 
 namespace pleat {
 
@@ -32,8 +34,9 @@ class Upload {
   // The complete content, verified. kFailedPrecondition when bytes are missing; kDataLoss when
   // they do not have the declared SHA-256: then the upload starts again at 0.
   absl::StatusOr<std::string> ReadComplete();
-  // Moves the complete upload into `blobs`; call after ReadComplete.
-  absl::Status MoveTo(BlobStore* blobs);
+  // The complete upload, synced, for BlobStore::Publish; call after ReadComplete. Syncing takes
+  // long for a large upload: call it without holding a lock.
+  absl::StatusOr<StagedFile> Stage();
   // Forgets what has arrived.
   void Discard();
 
@@ -48,12 +51,22 @@ class Upload {
   int fd_ = -1;
 };
 
+// Invariants:
+//  - FOLDER/ab12....part holds a prefix of the content whose SHA-256 is ab12..., as far as its
+//    sender tells the truth; ReadComplete finds out.
+//  - Its length is the offset at which the upload goes on. Nothing else is remembered, so a restart
+//    loses nothing but what the operating system had not written when the power failed: then the
+//    sender is told a smaller offset.
+//  - An upload has at most one writer (active_), and only this writer truncates, moves or removes
+//    the file.
+//
 // Thread-safe.
 class UploadArea {
  public:
   // Uses (and makes) `folder`; removes uploads that nobody has touched for `max_age_hours`.
   static absl::StatusOr<std::unique_ptr<UploadArea>> Open(std::string folder,
-                                                          int max_age_hours = 7 * 24);
+                                                          int max_age_hours = 7 * 24,
+                                                          SyncHook before_sync = {});
 
   // Bytes of the upload `id` that have arrived, 0 when there is none.
   uint64_t ReceivedBytes(const std::string& id) const;
@@ -66,11 +79,13 @@ class UploadArea {
 
  private:
   friend class Upload;
-  explicit UploadArea(std::string folder) : folder_(std::move(folder)) {}
+  UploadArea(std::string folder, SyncHook before_sync)
+      : folder_(std::move(folder)), before_sync_(std::move(before_sync)) {}
   std::string PathOf(const std::string& id) const { return folder_ + "/" + id + ".part"; }
   void Release(const std::string& id);
 
   const std::string folder_;
+  const SyncHook before_sync_;
   std::mutex mutex_;
   std::set<std::string> active_;  // guarded by mutex_
 };

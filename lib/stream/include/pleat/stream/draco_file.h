@@ -7,13 +7,9 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/mesh/mesh_limits.h"
 
 namespace pleat {
-
-struct DracoFileLimits {
-  uint32_t max_vertices = 4'000'000;
-  uint32_t max_triangles = 8'000'000;
-};
 
 struct DracoGeometry {
   // 3 x N, meters: the position values of a mesh in the order of the file (corners that differ in a
@@ -30,6 +26,6 @@ struct DracoGeometry {
 // with a memory limit (client/draco_child). kDataLoss: malformed. kResourceExhausted: over a limit,
 // or no memory.
 absl::StatusOr<DracoGeometry> DecodeDracoFile(std::string_view bytes,
-                                              const DracoFileLimits& limits = {});
+                                              const MeshLimits& limits = {});
 
 }  // namespace pleat

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/topology.h"
 #include "pleat/stream/stream_header.h"
 
@@ -14,13 +15,8 @@ namespace pleat {
 
 class DeltaPredictor;
 
-struct FrameDecoderLimits {
-  int max_vertices = 4'000'000;
-  int max_triangles = 8'000'000;
-};
-
 // kInvalidArgument names what a decoder cannot use: counts, box, vertex order.
-absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLimits& limits = {});
+absl::Status CheckStreamHeader(const StreamHeader& header, const MeshLimits& limits = {});
 
 // Draco is memory-safe on hostile bytes but not resource-safe (an 86-byte file reached 22 GB), and
 // accepts face indices that do not exist. So every header count is compared with what the stream
@@ -28,8 +24,7 @@ absl::Status CheckStreamHeader(const StreamHeader& header, const FrameDecoderLim
 class FrameDecoder {
  public:
   // Decodes and checks the topology. kInvalidArgument or kDataLoss names what is wrong.
-  static absl::StatusOr<FrameDecoder> Create(StreamHeader header,
-                                             const FrameDecoderLimits& limits = {});
+  static absl::StatusOr<FrameDecoder> Create(StreamHeader header, const MeshLimits& limits = {});
 
   const StreamHeader& header() const { return header_; }
   // Triangles over the character's vertices, in the order of the topology mesh.

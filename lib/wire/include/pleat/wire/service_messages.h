@@ -3,7 +3,10 @@
 #pragma once
 
 #include "absl/status/statusor.h"
-#include "pleat/service/character_service.h"
+#include "pleat/service/compressed_sequence_service.h"
+#include "pleat/service/job_service.h"
+#include "pleat/service/model_service.h"
+#include "pleat/service/sequence_service.h"
 #include "pleat/v1/compressed_sequence_service.pb.h"
 #include "pleat/v1/job_service.pb.h"
 #include "pleat/v1/model_service.pb.h"

@@ -10,7 +10,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/mesh/error_metrics.h"
 #include "pleat/mesh/mesh_sequence.h"
-#include "pleat/skeleton/pose.h"
+#include "pleat/skeleton/pose_track.h"
 #include "pleat/skeleton/skeleton.h"
 #include "pleat/v1/common.pb.h"
 
@@ -18,10 +18,7 @@ namespace pleat {
 
 inline constexpr int kMaxWireJoints = 1024;
 inline constexpr int kMaxWireNameBytes = 256;
-inline constexpr int kIdLength = 64;  // hexadecimal digits of a content id
 
-// OK when `id` is 64 lower-case hexadecimal digits: nothing else may reach a file name.
-absl::Status CheckContentId(const std::string& id, absl::string_view what);
 // OK when `name` is at most kMaxWireNameBytes bytes.
 absl::Status CheckName(const std::string& name, absl::string_view what);
 

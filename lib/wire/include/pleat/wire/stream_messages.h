@@ -6,7 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/character/pose_evaluator.h"
-#include "pleat/service/character_service.h"
+#include "pleat/service/pose_service.h"
 #include "pleat/stream/frame_encoder.h"
 #include "pleat/stream/stream_header.h"
 #include "pleat/v1/pose_service.pb.h"

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "pleat/local/local_character_service.h"
+#include "pleat/base/executor.h"
+#include "pleat/service/character_service.h"
 
 namespace grpc {
 class Channel;
@@ -17,8 +18,9 @@ struct GrpcServerOptions {
   std::string listen = "127.0.0.1:0";  // HOST:PORT, unix:PATH; port 0 = any free one
   // PEM texts; both or none. With client_ca, clients must show a certificate that it signed.
   std::string tls_certificate{}, tls_key{}, tls_client_ca{};
-  int num_pose_threads = 0;     // 0 = one per core
-  int max_batch = 8;            // live poses of one model that are evaluated together
+  // Where poses are computed, shared with the service's own work on poses so that all take turns;
+  // null: threads of the server, one per core. Must outlive the server.
+  Executor* pose_executor = nullptr;
   int num_storage_threads = 4;  // disk, catalogue, checking uploads
   // Of one message; 20,000 poses of 18 joints are 14 MB. All that are under way share 1 GiB.
   int max_receive_bytes = 16 << 20;
@@ -30,7 +32,7 @@ class GrpcServer {
  public:
   // Serves `service`, which must outlive the server. kUnavailable when the address cannot be bound,
   // kInvalidArgument for certificates that do not fit.
-  static absl::StatusOr<std::unique_ptr<GrpcServer>> Start(LocalCharacterService* service,
+  static absl::StatusOr<std::unique_ptr<GrpcServer>> Start(CharacterService* service,
                                                            const GrpcServerOptions& options);
   virtual ~GrpcServer() = default;  // Shutdown(0)
 

@@ -1,41 +1,49 @@
 // Downloads of stored files in chunks, whatever the files are.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/reactors/pull_stream.h"
-#include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
 
 inline constexpr uint64_t kDownloadChunkBytes = 512 << 10;
 
-// Response: has size_bytes, offset_bytes and data. size_of: the size of the file `id`, or
-// kNotFound.
+// What differs between downloads.
+struct DownloadSource {
+  const char* rpc;
+  // The size of the file `id`, or kNotFound.
+  std::function<absl::StatusOr<uint64_t>(const std::string& id)> size_of;
+  // `count` bytes of it from `offset`, fewer at its end.
+  std::function<absl::StatusOr<std::string>(const std::string& id, uint64_t offset, uint64_t count)>
+      read;
+};
+
+// Response: has size_bytes, offset_bytes and data.
 template <typename Response>
-grpc::ServerWriteReactor<Response>* StartDownload(
-    HandlerContext* context, const char* rpc, EntryKind kind, const std::string& id,
-    uint64_t offset_bytes, std::function<absl::StatusOr<uint64_t>(const std::string& id)> size_of) {
+grpc::ServerWriteReactor<Response>* StartDownload(HandlerContext* context, const std::string& id,
+                                                  uint64_t offset_bytes, DownloadSource source) {
   struct Download {
-    LocalCharacterService* service;
-    EntryKind kind;
+    DownloadSource source;
     std::string id;
     uint64_t offset_bytes;
-    std::function<absl::StatusOr<uint64_t>(const std::string& id)> size_of;
     uint64_t size_bytes = 0;
 
     absl::StatusOr<bool> Next(Response* response) {
       if (size_bytes == 0) {
         PLEAT_RETURN_IF_ERROR(CheckContentId(id, "id"));
-        PLEAT_ASSIGN_OR_RETURN(size_bytes, size_of(id));
+        PLEAT_ASSIGN_OR_RETURN(size_bytes, source.size_of(id));
       } else if (offset_bytes == size_bytes) {
         return false;
       }
       PLEAT_ASSIGN_OR_RETURN(*response->mutable_data(),
-                             service->ReadStoredBytes(kind, id, offset_bytes, kDownloadChunkBytes));
+                             source.read(id, offset_bytes, kDownloadChunkBytes));
       response->set_size_bytes(size_bytes);
       response->set_offset_bytes(offset_bytes);
       offset_bytes += response->data().size();
@@ -45,8 +53,8 @@ grpc::ServerWriteReactor<Response>* StartDownload(
       return true;
     }
   };
-  const auto download = std::make_shared<Download>(
-      Download{context->service, kind, id, offset_bytes, std::move(size_of)});
+  const char* rpc = source.rpc;
+  const auto download = std::make_shared<Download>(Download{std::move(source), id, offset_bytes});
   return new PullStream<Response>(
       context, context->storage_executor, rpc,
       [download](Response* response) { return download->Next(response); });

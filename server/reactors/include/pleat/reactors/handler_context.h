@@ -4,16 +4,24 @@
 #include <atomic>
 
 #include "pleat/base/executor.h"
-#include "pleat/local/local_character_service.h"
-#include "pleat/local/pose_batcher.h"
 #include "pleat/reactors/live_registry.h"
+#include "pleat/service/compressed_sequence_service.h"
+#include "pleat/service/job_service.h"
+#include "pleat/service/model_service.h"
+#include "pleat/service/pose_service.h"
+#include "pleat/service/sequence_service.h"
 
 namespace pleat {
 
 struct HandlerContext {
-  LocalCharacterService* service = nullptr;
+  // Each handler uses one of them; a test of a handler sets that one.
+  SequenceService* sequences = nullptr;
+  JobService* jobs = nullptr;
+  ModelService* models = nullptr;
+  PoseService* poses = nullptr;
+  CompressedSequenceService* compressed_sequences = nullptr;
+
   Executor* pose_executor = nullptr;     // milliseconds of computation
-  PoseBatcher* batcher = nullptr;        // of live sessions, on pose_executor
   Executor* storage_executor = nullptr;  // disk, catalogue, checking uploads
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;

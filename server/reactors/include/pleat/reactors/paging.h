@@ -7,10 +7,9 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "pleat/service/limits.h"
 
 namespace pleat {
-
-inline constexpr int kMaxPageSize = 500;
 
 // Items [begin, end) of the page that `page_size` and `page_token` ask for. kInvalidArgument for a
 // negative size or a token that names no item (any more).

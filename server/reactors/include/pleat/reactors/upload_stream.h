@@ -3,36 +3,41 @@
 
 #include <grpcpp/support/server_callback.h>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/handler_context.h"
 #include "pleat/reactors/run_unary.h"
+#include "pleat/service/content_upload.h"
+#include "pleat/service/limits.h"
 #include "pleat/v1/sequence_service.pb.h"
-#include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
 
-// What differs between uploads. Both fill the response.
-template <typename Response>
+// What differs between uploads. Info: what the service says about the stored file.
+template <typename Info, typename Response>
 struct UploadTarget {
   const char* rpc;
-  // OK when the content is already stored: the call then ends early. kNotFound: it is not.
-  std::function<absl::Status(const std::string& id, Response*)> find;
-  // Checks and stores the complete upload.
-  std::function<absl::Status(Upload*, Response*)> finish;
+  // What the service has under `id`; kNotFound: nothing. The call then ends early.
+  std::function<absl::StatusOr<Info>(const std::string& id)> find;
+  std::function<absl::StatusOr<std::unique_ptr<ContentUpload<Info>>>(
+      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes)>
+      begin;
+  std::function<void(const Info&, Response*)> reply;
 };
 
 // Exactly one thing is under way until the call is finished: a read or a task on the executor.
-template <typename Response>
+template <typename Info, typename Response>
 class UploadStream final : public grpc::ServerReadReactor<v1::UploadSequenceRequest> {
  public:
-  UploadStream(HandlerContext* context, Response* response, UploadTarget<Response> target)
+  UploadStream(HandlerContext* context, Response* response, UploadTarget<Info, Response> target)
       : slot_(context), context_(context), response_(response), target_(std::move(target)) {
     StartRead(&request_);
   }
@@ -55,16 +60,14 @@ class UploadStream final : public grpc::ServerReadReactor<v1::UploadSequenceRequ
   void OnDone() override { delete this; }
 
  private:
-  static constexpr size_t kMaxChunkBytes = 2 << 20;
-
   absl::Status TakePart(bool* finished) {
     if (upload_ == nullptr) return TakeHeader(finished);
     const std::string& data = request_.data();
     if (request_.part_case() != v1::UploadSequenceRequest::kData || data.empty() ||
-        data.size() > kMaxChunkBytes) {
+        data.size() > kMaxUploadChunkBytes) {
       return absl::InvalidArgumentError(
-          absl::StrCat("after the header, every message of an upload carries 1 to ", kMaxChunkBytes,
-                       " bytes of data"));
+          absl::StrCat("after the header, every message of an upload carries 1 to ",
+                       kMaxUploadChunkBytes, " bytes of data"));
     }
     return upload_->Append(data);
   }
@@ -76,12 +79,13 @@ class UploadStream final : public grpc::ServerReadReactor<v1::UploadSequenceRequ
     }
     const v1::UploadSequenceRequest::Header& header = request_.header();
     PLEAT_RETURN_IF_ERROR(CheckContentId(header.id(), "header.id"));
-    if (target_.find(header.id(), response_).ok()) {
+    if (const absl::StatusOr<Info> known = target_.find(header.id()); known.ok()) {
       *finished = true;
+      target_.reply(*known, response_);
       return absl::OkStatus();
     }
-    PLEAT_ASSIGN_OR_RETURN(upload_, context_->service->BeginUpload(header.id(), header.size_bytes(),
-                                                                   header.offset_bytes()));
+    PLEAT_ASSIGN_OR_RETURN(upload_,
+                           target_.begin(header.id(), header.size_bytes(), header.offset_bytes()));
     return absl::OkStatus();
   }
 
@@ -89,15 +93,17 @@ class UploadStream final : public grpc::ServerReadReactor<v1::UploadSequenceRequ
     if (upload_ == nullptr) {
       return absl::InvalidArgumentError("the upload ended before its header");
     }
-    return target_.finish(upload_.get(), response_);
+    PLEAT_ASSIGN_OR_RETURN(const Info info, upload_->Finish());
+    target_.reply(info, response_);
+    return absl::OkStatus();
   }
 
   StreamSlot slot_;
   HandlerContext* context_;
   Response* response_;
-  const UploadTarget<Response> target_;
+  const UploadTarget<Info, Response> target_;
   v1::UploadSequenceRequest request_;
-  std::unique_ptr<Upload> upload_;
+  std::unique_ptr<ContentUpload<Info>> upload_;
 };
 
 }  // namespace pleat

@@ -1,0 +1,84 @@
+#include <memory>
+#include <utility>
+
+#include "job_subscription.h"
+#include "pages.h"
+#include "pleat/base/status.h"
+#include "pleat/wire/service_messages.h"
+#include "pleat/wire/training_messages.h"
+#include "remote_services.h"
+
+namespace pleat {
+namespace {
+
+class RemoteJobs final : public JobService {
+ public:
+  explicit RemoteJobs(RemoteState* state) : state_(state) {}
+
+  absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override {
+    v1::CreateTrainingJobRequest message;
+    v1::CreateTrainingJobResponse response;
+    for (const std::string& id : request.sequence_ids) message.add_sequence_ids(id);
+    *message.mutable_options() = ToProto(request.options);
+    message.set_model_name(request.model_name);
+    message.set_rig(request.rig);
+    PLEAT_RETURN_IF_ERROR(Call(&v1::JobService::Stub::CreateTrainingJob, message, &response));
+    return FromProto(response.job());
+  }
+
+  absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
+                                            const CompressOptions& options) override {
+    v1::CreateCompressionJobRequest request;
+    v1::CreateCompressionJobResponse response;
+    request.set_sequence_id(sequence_id);
+    *request.mutable_options() = ToProto(options);
+    PLEAT_RETURN_IF_ERROR(Call(&v1::JobService::Stub::CreateCompressionJob, request, &response));
+    return FromProto(response.job());
+  }
+
+  absl::StatusOr<JobInfo> Get(const std::string& id) override {
+    v1::GetJobRequest request;
+    v1::GetJobResponse response;
+    request.set_id(id);
+    PLEAT_RETURN_IF_ERROR(Call(&v1::JobService::Stub::GetJob, request, &response));
+    return FromProto(response.job());
+  }
+
+  absl::StatusOr<std::vector<JobInfo>> List() override {
+    return ReadPages<JobInfo, v1::ListJobsRequest, v1::ListJobsResponse>(
+        [this](const auto& request, auto* response) {
+          return Call(&v1::JobService::Stub::ListJobs, request, response);
+        },
+        [](const auto& response) -> const auto& { return response.jobs(); });
+  }
+
+  absl::Status Cancel(const std::string& id) override {
+    v1::CancelJobRequest request;
+    v1::CancelJobResponse response;
+    request.set_id(id);
+    return Call(&v1::JobService::Stub::CancelJob, request, &response);
+  }
+
+  absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
+      const std::string& id, std::function<void()> listener) override {
+    return OpenRemoteSubscription(state_, id, std::move(listener));
+  }
+
+ private:
+  template <typename Request, typename Response>
+  absl::Status Call(grpc::Status (v1::JobService::Stub::*method)(grpc::ClientContext*,
+                                                                 const Request&, Response*),
+                    const Request& request, Response* response) const {
+    return state_->Call(state_->jobs.get(), method, request, response);
+  }
+
+  RemoteState* const state_;
+};
+
+}  // namespace
+
+std::unique_ptr<JobService> MakeRemoteJobs(RemoteState* state) {
+  return std::make_unique<RemoteJobs>(state);
+}
+
+}  // namespace pleat

@@ -1,0 +1,72 @@
+#include <memory>
+#include <utility>
+
+#include "pages.h"
+#include "pleat/base/status.h"
+#include "pleat/wire/service_messages.h"
+#include "remote_services.h"
+#include "transfer.h"
+
+namespace pleat {
+namespace {
+
+class RemoteModels final : public ModelService {
+ public:
+  explicit RemoteModels(RemoteState* state) : state_(state) {}
+
+  absl::StatusOr<ModelInfo> Get(const std::string& id) override {
+    v1::GetModelRequest request;
+    v1::GetModelResponse response;
+    request.set_id(id);
+    PLEAT_RETURN_IF_ERROR(Call(&v1::ModelService::Stub::GetModel, request, &response));
+    return FromProto(response.model());
+  }
+
+  absl::StatusOr<std::vector<ModelInfo>> List() override {
+    return ReadPages<ModelInfo, v1::ListModelsRequest, v1::ListModelsResponse>(
+        [this](const auto& request, auto* response) {
+          return Call(&v1::ModelService::Stub::ListModels, request, response);
+        },
+        [](const auto& response) -> const auto& { return response.models(); });
+  }
+
+  absl::Status Delete(const std::string& id) override {
+    v1::DeleteModelRequest request;
+    v1::DeleteModelResponse response;
+    request.set_id(id);
+    return Call(&v1::ModelService::Stub::DeleteModel, request, &response);
+  }
+
+  absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override {
+    return DownloadFile(*state_, id, progress, Start());
+  }
+
+  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
+                                        uint64_t count) override {
+    return ReadFileBytes(id, offset, count, Start());
+  }
+
+ private:
+  template <typename Request, typename Response>
+  absl::Status Call(grpc::Status (v1::ModelService::Stub::*method)(grpc::ClientContext*,
+                                                                   const Request&, Response*),
+                    const Request& request, Response* response) const {
+    return state_->Call(state_->models.get(), method, request, response);
+  }
+  StartDownload<v1::DownloadModelRequest, v1::DownloadModelResponse> Start() const {
+    return [stub = state_->models.get()](grpc::ClientContext* context,
+                                         const v1::DownloadModelRequest& request) {
+      return stub->DownloadModel(context, request);
+    };
+  }
+
+  RemoteState* const state_;
+};
+
+}  // namespace
+
+std::unique_ptr<ModelService> MakeRemoteModels(RemoteState* state) {
+  return std::make_unique<RemoteModels>(state);
+}
+
+}  // namespace pleat

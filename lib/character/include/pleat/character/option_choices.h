@@ -1,0 +1,99 @@
+// The one table of what training options are called: the names of their choices and what help says
+// about each. Text, model file, wire, flags and docs/options.md take the names from here.
+#pragma once
+
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "pleat/fitting/details.h"
+#include "pleat/fitting/pose_fit.h"
+#include "pleat/skeleton/pose_features.h"
+
+namespace pleat {
+
+// A learner as it is asked for. Not the enum `Learner` of a trained model, which does not know
+// "auto" and holds both forms of the shared GPLVM as one.
+enum class LearnerChoice { kAuto, kRegional, kGp, kSgplvm, kBackConstrained, kRidge };
+
+// What of the rig is refined on the training frames.
+enum class RigRefinement { kNone, kJoints, kFull };
+
+// The details of control vertices: as they are, or against the mean of their neighbors.
+enum class DetailCoordinates { kOffsets, kDifferential };
+
+// How the details of control vertices spread to all.
+enum class Upsampling { kRefined, kRbf };
+
+template <typename Choice>
+struct NamedChoice {
+  Choice value;
+  const char* name;  // in text, model file, wire and flags: never changes
+  const char* help;  // a phrase
+};
+
+// Every value of an option's enum, in the order in which they are listed.
+template <typename Choice>
+std::span<const NamedChoice<Choice>> ChoicesOf();
+
+template <>
+std::span<const NamedChoice<LearnerChoice>> ChoicesOf();
+template <>
+std::span<const NamedChoice<PoseFitMethod>> ChoicesOf();
+template <>
+std::span<const NamedChoice<RigRefinement>> ChoicesOf();
+template <>
+std::span<const NamedChoice<DetailBase>> ChoicesOf();
+template <>
+std::span<const NamedChoice<DetailAxes>> ChoicesOf();
+template <>
+std::span<const NamedChoice<DetailCoordinates>> ChoicesOf();
+template <>
+std::span<const NamedChoice<RotationRepresentation>> ChoicesOf();
+template <>
+std::span<const NamedChoice<HistoryForm>> ChoicesOf();
+template <>
+std::span<const NamedChoice<Upsampling>> ChoicesOf();
+
+// Null for a number that is no value of the enum.
+template <typename Choice>
+const char* ChoiceNameOrNull(Choice value) {
+  for (const NamedChoice<Choice>& choice : ChoicesOf<Choice>()) {
+    if (choice.value == value) return choice.name;
+  }
+  return nullptr;
+}
+
+// Of a value of the enum.
+template <typename Choice>
+std::string ChoiceName(Choice value) {
+  const char* name = ChoiceNameOrNull(value);
+  return name ? name : "unknown";
+}
+
+// kInvalidArgument names the option and lists the valid names.
+template <typename Choice>
+absl::StatusOr<Choice> ParseChoice(absl::string_view option, absl::string_view name) {
+  std::string names;
+  for (const NamedChoice<Choice>& choice : ChoicesOf<Choice>()) {
+    if (choice.name == name) return choice.value;
+    absl::StrAppend(&names, names.empty() ? "" : ", ", choice.name);
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("option ", option, ": '", name, "' is unknown; choose one of ", names));
+}
+
+struct OptionText {
+  const char* name;   // of the member of TrainOptions
+  const char* alias;  // a second, shorter flag, or null
+  const char* help;   // a phrase; of an option with choices, what is chosen
+};
+// In the order of VisitTrainOptions.
+std::span<const OptionText> OptionTexts();
+// `name`: of an option; asserted.
+const OptionText& TextOfOption(absl::string_view name);
+
+}  // namespace pleat

@@ -1,0 +1,49 @@
+// Compressed sequences in the store of this process.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pleat/local/memory_budget.h"
+#include "pleat/local/stored_files.h"
+#include "pleat/sequence_codec/sequence_decoder.h"
+#include "pleat/service/compressed_sequence_service.h"
+
+namespace pleat {
+
+// Thread-safe. `files` must outlive it, and it the sessions that it opens.
+class LocalCompressedSequences final : public CompressedSequenceService {
+ public:
+  // decode_bytes: memory of all decoders together.
+  LocalCompressedSequences(StoredFiles* files, uint64_t decode_bytes)
+      : files_(files),
+        decode_bytes_(decode_bytes),
+        decode_memory_(decode_bytes, "--decode-bytes") {}
+
+  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
+                                                const Progress& progress) override;
+  absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) override;
+  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() override;
+  absl::Status Delete(const std::string& id) override;
+  absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
+  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
+                                        uint64_t count) override;
+  absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
+      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) override;
+  absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,
+                                                            FrameRange range) override;
+
+  uint64_t decoder_bytes() const { return decode_memory_.used_bytes(); }
+
+ private:
+  absl::StatusOr<SequenceDecoder> OpenDecoder(std::string bytes) const;
+  absl::StatusOr<CompressedSequenceInfo> FinishUpload(pleat::Upload* upload);
+
+  StoredFiles* const files_;
+  const uint64_t decode_bytes_;
+  MemoryBudget decode_memory_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,46 @@
+// Jobs in this process: checked, queued, written down, run by workers.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pleat/jobs/job_manager.h"
+#include "pleat/local/job_runner.h"
+#include "pleat/local/local_sequences.h"
+#include "pleat/local/stored_files.h"
+#include "pleat/service/job_service.h"
+
+namespace pleat {
+
+// Thread-safe. `files` and `sequences` must outlive it.
+class LocalJobs final : public JobService {
+ public:
+  // num_workers: jobs that run at the same time.
+  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, int num_workers);
+
+  absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
+  absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
+                                            const CompressOptions& options) override;
+  absl::StatusOr<JobInfo> Get(const std::string& id) override;
+  absl::StatusOr<std::vector<JobInfo>> List() override;
+  absl::Status Cancel(const std::string& id) override;
+  absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
+      const std::string& id, std::function<void()> listener) override;
+
+  // Takes over the jobs of the process before and starts the workers. Call once.
+  absl::Status Start();
+  // Stops the workers; running jobs are queued for the next process. Watchers end.
+  void Shutdown() { manager_.Shutdown(); }
+
+ private:
+  absl::Status Restore();
+
+  StoredFiles* const files_;
+  LocalSequences* const sequences_;
+  const JobRunner runner_;
+  JobManager manager_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,36 @@
+// Trained characters in the store of this process, and in its memory while they are used.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pleat/cache/byte_cache.h"
+#include "pleat/local/stored_files.h"
+#include "pleat/service/model_service.h"
+
+namespace pleat {
+
+// Thread-safe. `files` must outlive it.
+class LocalModels final : public ModelService {
+ public:
+  LocalModels(StoredFiles* files, uint64_t cache_bytes) : files_(files), cache_(cache_bytes) {}
+
+  absl::StatusOr<ModelInfo> Get(const std::string& id) override;
+  absl::StatusOr<std::vector<ModelInfo>> List() override;
+  absl::Status Delete(const std::string& id) override;
+  absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
+  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
+                                        uint64_t count) override;
+
+  // The model, pinned in the cache as long as the handle lives.
+  absl::StatusOr<std::shared_ptr<const CharacterModel>> Acquire(const std::string& id);
+  ByteCacheStats cache_stats() const { return cache_.stats(); }
+
+ private:
+  StoredFiles* const files_;
+  ByteCache<CharacterModel> cache_;
+};
+
+}  // namespace pleat

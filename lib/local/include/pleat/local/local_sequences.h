@@ -1,0 +1,38 @@
+// Mesh sequences in the store of this process.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pleat/local/stored_files.h"
+#include "pleat/service/sequence_service.h"
+
+namespace pleat {
+
+// Thread-safe. `files` must outlive it.
+class LocalSequences final : public SequenceService {
+ public:
+  explicit LocalSequences(StoredFiles* files) : files_(files) {}
+
+  absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
+                                      const Progress& progress) override;
+  absl::StatusOr<SequenceInfo> Get(const std::string& id) override;
+  absl::StatusOr<std::vector<SequenceInfo>> List() override;
+  absl::Status Delete(const std::string& id) override;
+  absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) override;
+  absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
+                                                              uint64_t size_bytes,
+                                                              uint64_t offset_bytes) override;
+
+  // The sequence itself, for jobs.
+  absl::StatusOr<MeshSequence> Load(const std::string& id);
+
+ private:
+  absl::Status Check(const MeshSequence& sequence) const;
+  absl::StatusOr<SequenceInfo> FinishUpload(pleat::Upload* upload);
+
+  StoredFiles* const files_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,73 @@
+// Stored files with their catalogue rows, as all services of this process keep them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/service/content_upload.h"
+#include "pleat/service/limits.h"
+#include "pleat/store/store.h"
+
+namespace pleat {
+
+// Thread-safe.
+class StoredFiles {
+ public:
+  StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits)
+      : store_(std::move(store)), limits_(limits) {}
+
+  Catalogue& catalogue() { return store_->catalogue(); }
+  BlobStore& blobs() { return store_->blobs(); }
+  UploadArea& uploads() { return store_->uploads(); }
+  const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
+  const ServiceLimits& limits() const { return limits_; }
+
+  // A file and its row appear and go together (see Store).
+  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, std::string_view bytes) {
+    return store_->Add(kind, entry, bytes);
+  }
+  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, Upload* upload) {
+    return store_->Add(kind, entry, upload);
+  }
+  absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
+  // `count` bytes (fewer at the end) of the file of an entry.
+  absl::StatusOr<std::string> ReadBytes(EntryKind kind, const std::string& id, uint64_t offset,
+                                        uint64_t count);
+  // All `size_bytes` of it.
+  absl::StatusOr<std::string> Download(EntryKind kind, const std::string& id, uint64_t size_bytes,
+                                       const Progress& progress);
+  // The right to write an upload; checks the declared size against the limits and the disk.
+  absl::StatusOr<std::unique_ptr<Upload>> BeginUpload(const std::string& id, uint64_t size_bytes,
+                                                      uint64_t offset_bytes);
+
+ private:
+  const std::unique_ptr<Store> store_;
+  const ServiceLimits limits_;
+};
+
+// An upload of the store that ends as `finish` says.
+template <typename Info>
+class StoredUpload final : public ContentUpload<Info> {
+ public:
+  using FinishUpload = std::function<absl::StatusOr<Info>(Upload*)>;
+  StoredUpload(std::unique_ptr<Upload> upload, FinishUpload finish)
+      : upload_(std::move(upload)), finish_(std::move(finish)) {}
+
+  absl::Status Append(std::string_view bytes) override { return upload_->Append(bytes); }
+  uint64_t received_bytes() const override { return upload_->received_bytes(); }
+  absl::StatusOr<Info> Finish() override { return finish_(upload_.get()); }
+
+ private:
+  const std::unique_ptr<Upload> upload_;
+  const FinishUpload finish_;
+};
+
+}  // namespace pleat

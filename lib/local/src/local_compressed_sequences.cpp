@@ -1,0 +1,131 @@
+#include "pleat/local/local_compressed_sequences.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/sha256.h"
+#include "pleat/base/status.h"
+#include "pleat/service/compression.h"
+#include "stored_infos.h"
+
+namespace pleat {
+namespace {
+
+CompressedSequenceInfo MakeInfo(const SequenceDecoder& decoder, const std::string& id,
+                                uint64_t size_bytes) {
+  return {.id = id,
+          .name = decoder.name(),
+          .num_frames = decoder.num_frames(),
+          .num_vertices = decoder.num_vertices(),
+          .num_faces = decoder.topology().num_faces(),
+          .frame_rate = decoder.frame_rate(),
+          .size_bytes = size_bytes,
+          .record = std::nullopt};
+}
+
+// A session with the memory that it takes.
+class ReservedSession final : public DecodeSession {
+ public:
+  ReservedSession(std::unique_ptr<DecodeSession> session, Reservation memory)
+      : memory_(std::move(memory)), session_(std::move(session)) {}
+  absl::StatusOr<MeshSequence> Shape() override { return session_->Shape(); }
+  absl::StatusOr<const Eigen::Matrix3Xf*> Next() override { return session_->Next(); }
+
+ private:
+  const Reservation memory_;  // given back after the session has freed it
+  const std::unique_ptr<DecodeSession> session_;
+};
+
+}  // namespace
+
+absl::StatusOr<SequenceDecoder> LocalCompressedSequences::OpenDecoder(std::string bytes) const {
+  const ServiceLimits& limits = files_->limits();
+  return SequenceDecoder::Open(std::move(bytes),
+                               {.max_vertices = static_cast<uint32_t>(limits.max_vertices),
+                                .max_faces = static_cast<uint32_t>(2 * limits.max_vertices),
+                                .max_frames = static_cast<uint32_t>(limits.max_frames),
+                                .max_field_bytes = decode_bytes_});
+}
+
+absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Upload(const std::string& file,
+                                                                        const Progress& progress) {
+  const std::string id = ToHex(ComputeSha256(file));
+  PLEAT_RETURN_IF_ERROR(progress.Report(0));
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CompressedSequenceUpload> upload,
+                         BeginUpload(id, file.size(), 0));
+  PLEAT_RETURN_IF_ERROR(upload->Append(file));
+  PLEAT_ASSIGN_OR_RETURN(CompressedSequenceInfo info, upload->Finish());
+  PLEAT_RETURN_IF_ERROR(progress.Report(1));
+  return info;
+}
+
+absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> LocalCompressedSequences::BeginUpload(
+    const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
+                         files_->BeginUpload(id, size_bytes, offset_bytes));
+  return std::make_unique<StoredUpload<CompressedSequenceInfo>>(
+      std::move(upload), [this](pleat::Upload* complete) { return FinishUpload(complete); });
+}
+
+absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
+    pleat::Upload* upload) {
+  // The same file made by a job has a record that an upload must not replace.
+  absl::StatusOr<CompressedSequenceInfo> known = Get(upload->id());
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes, upload->ReadComplete());
+  if (known.ok()) {
+    upload->Discard();
+    return known;
+  }
+  PLEAT_ASSIGN_OR_RETURN(const Reservation memory,
+                         decode_memory_.Reserve(bytes.size(), "checking the upload"));
+  const uint64_t size_bytes = bytes.size();
+  const absl::StatusOr<SequenceDecoder> decoder = OpenDecoder(std::move(bytes));
+  if (!decoder.ok()) {
+    upload->Discard();  // these bytes will never be a compressed sequence
+    return decoder.status();
+  }
+  CompressedSequenceInfo info = MakeInfo(*decoder, upload->id(), size_bytes);
+  PLEAT_RETURN_IF_ERROR(
+      files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload));
+  return info;
+}
+
+absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Get(const std::string& id) {
+  return GetStored<CompressedSequenceInfo>(files_->catalogue(), id);
+}
+
+absl::StatusOr<std::vector<CompressedSequenceInfo>> LocalCompressedSequences::List() {
+  return ListStored<CompressedSequenceInfo>(files_->catalogue());
+}
+
+absl::Status LocalCompressedSequences::Delete(const std::string& id) {
+  return files_->Delete(EntryKind::kCompressedSequence, id);
+}
+
+absl::StatusOr<std::string> LocalCompressedSequences::Download(const std::string& id,
+                                                               const Progress& progress) {
+  PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info, Get(id));
+  return files_->Download(EntryKind::kCompressedSequence, id, info.size_bytes, progress);
+}
+
+absl::StatusOr<std::string> LocalCompressedSequences::ReadBytes(const std::string& id,
+                                                                uint64_t offset, uint64_t count) {
+  return files_->ReadBytes(EntryKind::kCompressedSequence, id, offset, count);
+}
+
+absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDecode(
+    const std::string& id, FrameRange range) {
+  PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info, Get(id));
+  const std::string what = absl::StrCat("decoding '", id, "'");
+  // First the file, then all that its decoder will take.
+  PLEAT_ASSIGN_OR_RETURN(Reservation memory, decode_memory_.Reserve(info.size_bytes, what));
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes, files_->blobs().Get(id));
+  PLEAT_ASSIGN_OR_RETURN(SequenceDecoder decoder, OpenDecoder(std::move(bytes)));
+  memory = Reservation();
+  PLEAT_ASSIGN_OR_RETURN(memory, decode_memory_.Reserve(decoder.memory_bytes(), what));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<DecodeSession> session,
+                         MakeDecodeSession(std::move(decoder), range));
+  return std::make_unique<ReservedSession>(std::move(session), std::move(memory));
+}
+
+}  // namespace pleat

@@ -1,0 +1,46 @@
+#include "pleat/local/local_models.h"
+
+#include <utility>
+
+#include "pleat/base/status.h"
+#include "pleat/formats/model_file.h"
+#include "stored_infos.h"
+
+namespace pleat {
+
+absl::StatusOr<ModelInfo> LocalModels::Get(const std::string& id) {
+  return GetStored<ModelInfo>(files_->catalogue(), id);
+}
+
+absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() {
+  return ListStored<ModelInfo>(files_->catalogue());
+}
+
+absl::Status LocalModels::Delete(const std::string& id) {
+  PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));
+  cache_.Erase(id);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::string> LocalModels::Download(const std::string& id, const Progress& progress) {
+  PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, Get(id));
+  return files_->Download(EntryKind::kModel, id, info.size_bytes, progress);
+}
+
+absl::StatusOr<std::string> LocalModels::ReadBytes(const std::string& id, uint64_t offset,
+                                                   uint64_t count) {
+  return files_->ReadBytes(EntryKind::kModel, id, offset, count);
+}
+
+absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const std::string& id) {
+  using Loaded = ByteCache<CharacterModel>::Loaded;
+  return cache_.Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
+    PLEAT_RETURN_IF_ERROR(files_->catalogue().Get(EntryKind::kModel, key).status());
+    PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->blobs().Get(key));
+    PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
+    const uint64_t charge = model->memory_bytes();
+    return Loaded{std::move(model), charge};
+  });
+}
+
+}  // namespace pleat

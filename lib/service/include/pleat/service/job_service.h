@@ -1,0 +1,93 @@
+// Jobs: long computations that a service queues, runs and reports on.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/character/train_character.h"
+#include "pleat/sequence_codec/compress_sequence.h"
+
+namespace pleat {
+
+// queued -> running -> succeeded | failed | cancelled; queued -> cancelled. A job that was running
+// when the server stopped is queued again at the next start.
+enum class JobState { kQueued, kRunning, kSucceeded, kFailed, kCancelled };
+bool IsFinal(JobState state);
+const char* JobStateName(JobState state);  // "queued", "running", ...
+
+// What a job does: train a model, or compress one sequence.
+using JobOptions = std::variant<TrainOptions, CompressOptions>;
+
+struct TrainingRequest {
+  std::vector<std::string> sequence_ids{};
+  TrainOptions options{};
+  std::string model_name{};  // empty: the first sequence's
+  // The user's own rig as the text of a rig file (docs/formats/rig.md); empty: found automatically.
+  std::string rig{};
+};
+
+struct JobInfo {
+  std::string id;
+  JobState state = JobState::kQueued;
+  std::vector<std::string> sequence_ids;
+  JobOptions options;
+  std::string name;                 // of the result
+  std::string rig_id;               // hex SHA-256 of TrainingRequest::rig, or empty
+  std::string stage;                // of the running computation: "rig", "fit", "encode", ...
+  double fraction = 0;              // 0..1
+  std::optional<double> objective;  // of the running optimizer
+  std::optional<double> eta_seconds;
+  std::vector<std::string> warnings;
+  absl::Status error;     // why it failed or was cancelled
+  std::string result_id;  // when it succeeded: the id of the model or the compressed sequence
+};
+
+// A job at one moment.
+struct JobUpdate {
+  JobInfo info;
+  uint64_t revision = 0;  // grows with every change
+};
+
+// One job as one observer follows it. Thread-safe.
+class JobSubscription {
+ public:
+  // Returns when no call of the listener is running; do not call it from there.
+  virtual ~JobSubscription() = default;
+  virtual JobUpdate current() const = 0;
+  // Not OK when no further change will be seen although the job is not final: kUnavailable when
+  // the service shuts down or cannot be reached any more.
+  virtual absl::Status status() const = 0;
+};
+
+// Thread-safe. kNotFound for an id that the service does not have.
+class JobService {
+ public:
+  virtual ~JobService() = default;
+
+  virtual absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) = 0;
+  virtual absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
+                                                    const CompressOptions& options) = 0;
+  virtual absl::StatusOr<JobInfo> Get(const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<JobInfo>> List() = 0;  // oldest first
+  // kFailedPrecondition when the job is final. A running job stops within a second.
+  virtual absl::Status Cancel(const std::string& id) = 0;
+  // Calls `listener` after every change of the job or of the subscription's status, from any
+  // thread. The listener must be quick and must not call the subscription: the news may be read
+  // as soon as it has returned.
+  virtual absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
+      const std::string& id, std::function<void()> listener) = 0;
+};
+
+// Calls `observe` with the job now, after every change and about four times a second in between,
+// until the job is final or `observe` returns false. Steps between two calls may be missed.
+absl::Status WatchJob(JobService& jobs, const std::string& id,
+                      const std::function<bool(const JobInfo&)>& observe);
+
+}  // namespace pleat

@@ -1,0 +1,43 @@
+// Trained characters that a service keeps.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/character/character_model.h"
+
+namespace pleat {
+
+struct ModelInfo {
+  std::string id;  // hex SHA-256 of the model file's bytes
+  std::string name;
+  Skeleton skeleton;
+  FrameRate frame_rate;
+  int num_vertices = 0, num_faces = 0, num_control_vertices = 0, num_components = 0;
+  uint64_t size_bytes = 0;    // model file
+  uint64_t memory_bytes = 0;  // in the cache
+  TrainOptions options;
+  TrainingRecord record;
+};
+
+// Thread-safe. kNotFound for an id that the service does not have.
+class ModelService {
+ public:
+  virtual ~ModelService() = default;
+
+  virtual absl::StatusOr<ModelInfo> Get(const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<ModelInfo>> List() = 0;
+  // Whoever uses the model at the moment keeps it until the end.
+  virtual absl::Status Delete(const std::string& id) = 0;
+  // The whole model file.
+  virtual absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) = 0;
+  // `count` bytes of the model file from `offset`, fewer at its end.
+  virtual absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
+                                                uint64_t count) = 0;
+};
+
+}  // namespace pleat

@@ -1,0 +1,49 @@
+// Mesh sequences that a service keeps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/mesh/mesh_sequence.h"
+#include "pleat/service/content_upload.h"
+
+namespace pleat {
+
+struct SequenceInfo {
+  std::string id;  // hex SHA-256 of the sequence file's bytes (docs/formats/sequence_file.md)
+  std::string name;
+  int num_frames = 0, num_vertices = 0, num_faces = 0;
+  FrameRate frame_rate;
+  uint64_t size_bytes = 0;
+};
+
+using SequenceUpload = ContentUpload<SequenceInfo>;
+
+// Thread-safe. kNotFound for an id that the service does not have.
+class SequenceService {
+ public:
+  virtual ~SequenceService() = default;
+
+  // Uploading the same content twice gives the same id and stores it once.
+  virtual absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
+                                              const Progress& progress) = 0;
+  virtual absl::StatusOr<SequenceInfo> Get(const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<SequenceInfo>> List() = 0;
+  virtual absl::Status Delete(const std::string& id) = 0;
+
+  // What has arrived of the file `id`, sequence or compressed sequence: where to go on.
+  virtual absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) = 0;
+  // Goes on with the sequence file `id`, `size_bytes` in all, at `offset_bytes`; 0 starts again.
+  // kAborted when another writer holds it, kOutOfRange when `offset_bytes` is not what has arrived,
+  // kResourceExhausted when it is above a limit or the disk is full.
+  virtual absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
+                                                                      uint64_t size_bytes,
+                                                                      uint64_t offset_bytes) = 0;
+};
+
+}  // namespace pleat

@@ -1,0 +1,81 @@
+// Compression options and what was measured.
+#include "pleat/base/content_id.h"
+#include "pleat/base/status.h"
+#include "record_messages.h"
+
+namespace pleat {
+
+store::v1::CompressOptions ToRecord(const CompressOptions& options) {
+  store::v1::CompressOptions message;
+  switch (options.goal) {
+    case CompressionGoal::kMaxError:
+      message.set_max_error_mm(options.max_error_mm);
+      break;
+    case CompressionGoal::kKg:
+      message.set_kg_percent(options.kg_percent);
+      break;
+    case CompressionGoal::kGrid:
+      message.set_lossless_at_bits(options.grid_bits);
+      break;
+  }
+  message.set_any_face_order(!options.keep_face_order);
+  return message;
+}
+
+absl::StatusOr<CompressOptions> FromRecord(const store::v1::CompressOptions& message) {
+  CompressOptions options;
+  switch (message.goal_case()) {
+    case store::v1::CompressOptions::kMaxErrorMm:
+      options.goal = CompressionGoal::kMaxError;
+      options.max_error_mm = message.max_error_mm();
+      break;
+    case store::v1::CompressOptions::kKgPercent:
+      options.goal = CompressionGoal::kKg;
+      options.kg_percent = message.kg_percent();
+      break;
+    case store::v1::CompressOptions::kLosslessAtBits:
+      options.goal = CompressionGoal::kGrid;
+      options.grid_bits = message.lossless_at_bits();
+      break;
+    case store::v1::CompressOptions::GOAL_NOT_SET:
+      return absl::InvalidArgumentError("the compression options have no goal");
+  }
+  options.keep_face_order = !message.any_face_order();
+  PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
+  return options;
+}
+
+store::v1::CompressionRecord ToRecord(const CompressionRecord& record) {
+  store::v1::CompressionRecord message;
+  message.set_sequence_id(record.sequence_id);
+  *message.mutable_options() = ToRecord(record.options);
+  const CompressSummary& summary = record.summary;
+  message.set_size_bytes(summary.num_bytes);
+  message.set_topology_bytes(summary.num_topology_bytes);
+  message.set_bpvf(summary.bpvf);
+  message.set_bpvf_without_topology(summary.bpvf_without_topology);
+  message.set_kg_percent(summary.kg_percent);
+  message.set_max_error_mm(summary.max_error_mm);
+  message.set_encode_seconds(record.encode_seconds);
+  message.set_decode_seconds(record.decode_seconds);
+  return message;
+}
+
+absl::StatusOr<CompressionRecord> FromRecord(const store::v1::CompressionRecord& message) {
+  PLEAT_RETURN_IF_ERROR(CheckContentId(message.sequence_id(), "record.sequence_id"));
+  CompressionRecord record;
+  record.sequence_id = message.sequence_id();
+  PLEAT_ASSIGN_OR_RETURN(record.options, FromRecord(message.options()));
+  CompressSummary& summary = record.summary;
+  summary.num_bytes = message.size_bytes();
+  summary.num_topology_bytes = message.topology_bytes();
+  summary.bpvf = message.bpvf();
+  summary.bpvf_without_topology = message.bpvf_without_topology();
+  summary.kg_percent = message.kg_percent();
+  summary.max_error_mm = message.max_error_mm();
+  record.encode_seconds = message.encode_seconds();
+  record.decode_seconds = message.decode_seconds();
+  return record;
+}
+
+}  // namespace pleat

@@ -1,0 +1,104 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "client/tube_files.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TrainVerbTest : public testing::Test {
+ protected:
+  // In this process, without a store.
+  Outcome TrainHere(std::vector<std::string> flags) const {
+    flags.insert(flags.begin(), {"train", files_.sequence_path(), "--local", "--rig",
+                                 files_.rig_path(), "--learner", "ridge", "--refine", "none"});
+    return RunPleat(flags);
+  }
+
+  const TubeFiles files_;
+  const std::string model_ = files_.File("out.pleat");
+};
+
+TEST_F(TrainVerbTest, WritesAModelAndAReportThatAgree) {
+  const Outcome outcome =
+      TrainHere({"-o", model_, "--report", files_.File("report.json"), "--json"});
+  ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(report["schema"], "pleat.train/1");
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(files_.File("report.json")).value()), report);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, ReadModelFile(model_));
+  EXPECT_EQ(model->record().learner, "ridge");
+  EXPECT_EQ(model->num_vertices(), TubeFiles::kNumVertices);
+  EXPECT_EQ(model->skeleton().joint(2).name, "head");
+  EXPECT_EQ(report["rig"]["joints"].size(), 3u);
+}
+
+TEST_F(TrainVerbTest, HereAndThroughAStoreTheModelHasTheSameBytes) {
+  ASSERT_EQ(TrainHere({"-o", model_, "-q"}).code, ExitCode::kOk);
+  const std::string stored = files_.File("stored.pleat");
+  ASSERT_EQ(files_.TrainInStore({"-o", stored, "-q"}).code, ExitCode::kOk);
+  EXPECT_EQ(ReadFile(model_).value(), ReadFile(stored).value());
+}
+
+TEST_F(TrainVerbTest, ThreadsDoNotChangeTheBytes) {
+  ASSERT_EQ(TrainHere({"-o", model_, "-q", "--threads", "1"}).code, ExitCode::kOk);
+  const std::string other = files_.File("other.pleat");
+  ASSERT_EQ(TrainHere({"-o", other, "-q", "--threads", "3"}).code, ExitCode::kOk);
+  EXPECT_EQ(ReadFile(model_).value(), ReadFile(other).value());
+}
+
+TEST_F(TrainVerbTest, TextTabulatesErrorsAndSaysWhereToLook) {
+  const Outcome outcome = TrainHere({"-o", model_});
+  ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
+  for (const char* part : {"learner ridge", "skinned only", "hybrid",
+                           "worst frames, skinned only:", "worst bones:", "out.pleat, "}) {
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+  }
+}
+
+TEST_F(TrainVerbTest, CommandLinesThatLackSomethingAreUsageErrors) {
+  const std::string input = files_.sequence_path();
+  for (const auto& [arguments, reason] :
+       {std::pair(std::vector<std::string>{"train", input, "--local"},
+                  "--local without --data-dir needs -o FILE"),
+        std::pair(std::vector<std::string>{"train", input, "--lock", "head", "-o", model_},
+                  "--lock needs --rig"),
+        std::pair(std::vector<std::string>{"train", input, "--local", "--detach", "-o", model_},
+                  "--detach needs a server"),
+        std::pair(
+            std::vector<std::string>{"train", input, "--local", "-o", model_, "--learner", "magic"},
+            "learner")}) {
+    const Outcome outcome = RunPleat(arguments);
+    EXPECT_EQ(outcome.code, ExitCode::kUsage) << reason;
+    EXPECT_THAT(outcome.err, HasSubstr(reason));
+  }
+}
+
+TEST_F(TrainVerbTest, RigsThatDoNotFitAreRefusedByName) {
+  EXPECT_THAT(TrainHere({"-o", model_, "--lock", "tail"}).err, HasSubstr("tail"));
+  const MeshSequence other = MakeSwayingTube(3, "other", 5, 4);
+  ASSERT_THAT(WriteSequenceFile(files_.File("other.pseq"), other), IsOk());
+  const Outcome outcome = RunPleat(
+      {"train", files_.File("other.pseq"), "--local", "--rig", files_.rig_path(), "-o", model_});
+  EXPECT_EQ(outcome.code, ExitCode::kBadInput);
+  EXPECT_THAT(outcome.err, HasSubstr("vertices"));
+  EXPECT_EQ(RunPleat({"train", files_.sequence_path(), "--local", "--rig", files_.File("none.json"),
+                      "-o", model_})
+                .code,
+            ExitCode::kNotFound);
+}
+
+TEST_F(TrainVerbTest, ClipsOfAnotherConnectivityAreRefused) {
+  const MeshSequence other = MakeSwayingTube(3, "other", 5, 4);
+  ASSERT_THAT(WriteSequenceFile(files_.File("other.pseq"), other), IsOk());
+  const Outcome outcome = TrainHere({files_.File("other.pseq"), "-o", model_});
+  EXPECT_EQ(outcome.code, ExitCode::kBadInput);
+  EXPECT_FALSE(std::filesystem::exists(model_));
+}
+
+}  // namespace
+}  // namespace pleat

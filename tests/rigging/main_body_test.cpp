@@ -1,0 +1,55 @@
+#include "main_body.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "support/capsule_figure.h"
+
+namespace pleat {
+namespace {
+
+BodyVolume VolumeOf(const TriangleMesh& mesh) {
+  return ComputeBodyVolume(MakeTopology(mesh), mesh.positions, {.resolution = 64}).value();
+}
+
+TEST(MainBodyTest, WhatFloatsBesideTheCharacterIsLeftOut) {
+  const TriangleMesh figure = MakeCapsuleFigure({.cell_m = .03}).mesh;
+  const TriangleMesh box = MakeBox({.9, .1, -.05}, {1.0, .2, .05});  // a prop
+  const BodyVolume volume = VolumeOf(JoinMeshes(figure, box));
+  const MainBody body = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
+  ASSERT_EQ(body.is_body.size(), 2u);
+  EXPECT_EQ(body.is_body[0] + body.is_body[1], 1);
+  // The box is right of everything else.
+  const double box_left = volume.UnitFromWorld({.9, 0, 0}).x();
+  EXPECT_LT(body.bounds.max().x(), box_left);
+  for (const Sphere& sphere : body.graph.spheres()) EXPECT_LT(sphere.center.x(), box_left);
+}
+
+TEST(MainBodyTest, EverySphereCanBeReachedFromEveryOther) {
+  const BodyVolume volume = VolumeOf(MakeCapsuleFigure({.cell_m = .03}).mesh);
+  const MainBody body = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
+  ASSERT_GT(body.graph.size(), 20);
+  for (int i = 0; i < body.graph.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(body.graph.PathLength(0, i))) << i;
+  }
+}
+
+TEST(MainBodyTest, TurningStandsEverythingUpright) {
+  const BodyVolume volume = VolumeOf(MakeCapsuleFigure({.cell_m = .03}).mesh);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const MainBody straight = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
+  const MainBody turned = FindMainBody(volume, 400, turn);
+  EXPECT_LT((turned.positions - turn * straight.positions).cwiseAbs().maxCoeff(), 1e-12);
+  ASSERT_EQ(turned.graph.size(), straight.graph.size());
+  for (int i = 0; i < straight.graph.size(); ++i) {
+    EXPECT_LT((turned.graph.sphere(i).center - turn * straight.graph.sphere(i).center).norm(),
+              1e-12);
+    EXPECT_EQ(turned.graph.sphere(i).radius, straight.graph.sphere(i).radius);
+  }
+  EXPECT_NEAR(turned.bounds.sizes().z(), straight.bounds.sizes().y(), 1e-12);
+}
+
+}  // namespace
+}  // namespace pleat
