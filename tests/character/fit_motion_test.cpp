@@ -33,7 +33,7 @@ TEST_F(FitMotionTest, TheMotionThatMovedAMeshIsFoundAgain) {
   const MeshSequence sequence = SkinnedSequence(MakeMotion(model_->skeleton(), 12));
   PLEAT_ASSERT_OK_AND_ASSIGN(const PoseTrack fitted, FitMotion(*model_, sequence));
   ASSERT_EQ(fitted.num_frames(), 12);
-  EXPECT_EQ(fitted.fps, 25);
+  EXPECT_EQ(fitted.fps(), 25);
   const MeshSequence again = SkinnedSequence(fitted);
   for (int t = 0; t < 12; ++t) {
     const float error = (again.frame(t) - sequence.frame(t)).colwise().norm().mean();
@@ -46,9 +46,9 @@ TEST_F(FitMotionTest, ThreadsDoNotChangeThePoses) {
   const PoseTrack one = FitMotion(*model_, sequence, {.num_threads = 1}).value();
   const PoseTrack three = FitMotion(*model_, sequence, {.num_threads = 3}).value();
   for (int t = 0; t < 6; ++t) {
-    EXPECT_EQ(one.poses[t].root_position, three.poses[t].root_position);
-    for (size_t j = 0; j < one.poses[t].rotations.size(); ++j) {
-      EXPECT_EQ(one.poses[t].rotations[j].coeffs(), three.poses[t].rotations[j].coeffs());
+    EXPECT_EQ(one.pose(t).root_position, three.pose(t).root_position);
+    for (size_t j = 0; j < one.pose(t).rotations.size(); ++j) {
+      EXPECT_EQ(one.pose(t).rotations[j].coeffs(), three.pose(t).rotations[j].coeffs());
     }
   }
 }

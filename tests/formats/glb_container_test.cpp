@@ -93,19 +93,19 @@ TEST_F(GlbContainerTest, ListsAndEntriesThatAreMissingAreEmptyAndNull) {
 
 TEST_F(GlbContainerTest, AccessorsThatLeaveTheFileAreRefused) {
   ASSERT_THAT(Read(root_), IsOk());
-  for (const auto& [path, value] : std::vector<std::pair<std::string, json>>{
-           {"/accessors/0/count", 3},
-           {"/accessors/0/count", 0},
-           {"/accessors/0/count", -1},
-           {"/accessors/0/count", 4'000'000'000'000'000},
-           {"/accessors/0/byteOffset", 1},
-           {"/accessors/0/byteOffset", -4},
-           {"/accessors/0/componentType", 7},
-           {"/bufferViews/0/byteOffset", 9},
-           {"/bufferViews/0/byteLength", 1'000'000},
-           {"/bufferViews/0/byteLength", "24"},
-           {"/bufferViews/0/byteStride", 0},
-           {"/bufferViews/0/byteStride", 13}}) {
+  for (const auto& [path, value] :
+       std::vector<std::pair<std::string, json>>{{"/accessors/0/count", 3},
+                                                 {"/accessors/0/count", 0},
+                                                 {"/accessors/0/count", -1},
+                                                 {"/accessors/0/count", 4'000'000'000'000'000},
+                                                 {"/accessors/0/byteOffset", 1},
+                                                 {"/accessors/0/byteOffset", -4},
+                                                 {"/accessors/0/componentType", 7},
+                                                 {"/bufferViews/0/byteOffset", 9},
+                                                 {"/bufferViews/0/byteLength", 1'000'000},
+                                                 {"/bufferViews/0/byteLength", "24"},
+                                                 {"/bufferViews/0/byteStride", 0},
+                                                 {"/bufferViews/0/byteStride", 13}}) {
     json changed = root_;
     changed[json::json_pointer(path)] = value;
     EXPECT_THAT(Read(changed), HasStatus(absl::StatusCode::kInvalidArgument,
@@ -120,7 +120,8 @@ TEST_F(GlbContainerTest, WhatIsNotSupportedIsSaid) {
   EXPECT_THAT(Read(sparse), HasStatus(absl::StatusCode::kUnimplemented, HasSubstr("sparse")));
   json other = root_;
   other["buffers"][0]["uri"] = "file.bin";
-  EXPECT_THAT(Read(other), HasStatus(absl::StatusCode::kUnimplemented, HasSubstr("no other files")));
+  EXPECT_THAT(Read(other),
+              HasStatus(absl::StatusCode::kUnimplemented, HasSubstr("no other files")));
   json type = root_;
   type["accessors"][0]["type"] = "VEC2";
   EXPECT_THAT(Read(type), HasStatus(absl::StatusCode::kInvalidArgument,

@@ -49,9 +49,9 @@ TEST(PlyHeaderTest, BothNamesOfEveryTypeAreTheSameType) {
         std::tuple("int", "int32", 4), std::tuple("uint", "uint32", 4),
         std::tuple("float", "float32", 4), std::tuple("double", "float64", 8)}) {
     const auto type_of = [](const std::string& type) {
-      return ParsePlyHeader("ply\nformat ascii 1.0\nelement v 1\nproperty " + type +
-                                " x\nend_header\n",
-                            "a.ply")
+      return ParsePlyHeader(
+                 "ply\nformat ascii 1.0\nelement v 1\nproperty " + type + " x\nend_header\n",
+                 "a.ply")
           .value()
           .elements[0]
           .properties[0]

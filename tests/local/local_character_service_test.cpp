@@ -33,10 +33,10 @@ class LocalCharacterServiceTest : public testing::Test {
   JobInfo RunToEnd(const std::string& job_id) {
     JobInfo last;
     EXPECT_THAT(WatchJob(service_->jobs(), job_id,
-                                   [&](const JobInfo& info) {
-                                     last = info;
-                                     return true;
-                                   }),
+                         [&](const JobInfo& info) {
+                           last = info;
+                           return true;
+                         }),
                 IsOk());
     return last;
   }
@@ -179,14 +179,16 @@ TEST_F(LocalCharacterServiceTest, UploadsGoOnWhereTheyStopped) {
   const std::string bytes = EncodeSequence(MakeSwayingTube(5));
   const std::string id = SequenceId(bytes);
   {
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->sequences().BeginUpload(id, bytes.size(), 0));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload,
+                               service_->sequences().BeginUpload(id, bytes.size(), 0));
     ASSERT_THAT(upload->Append(bytes.substr(0, 100)), IsOk());
   }
   Open();
   EXPECT_EQ(service_->sequences().QueryUpload(id)->received_bytes, 100u);
   EXPECT_FALSE(service_->sequences().QueryUpload(id)->complete);
   {
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->sequences().BeginUpload(id, bytes.size(), 100));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload,
+                               service_->sequences().BeginUpload(id, bytes.size(), 100));
     ASSERT_THAT(upload->Append(bytes.substr(100)), IsOk());
     EXPECT_EQ(upload->Finish()->id, id);
   }
@@ -201,10 +203,10 @@ TEST_F(LocalCharacterServiceTest, BytesThatAreNoSequenceAreRefusedAndForgotten) 
   for (const std::string& bytes :
        {std::string("this is no sequence file"), std::string("DRACO\x02\x02\x01\x01\0\0", 11)}) {
     const std::string id = SequenceId(bytes);
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, service_->sequences().BeginUpload(id, bytes.size(), 0));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload,
+                               service_->sequences().BeginUpload(id, bytes.size(), 0));
     ASSERT_THAT(upload->Append(bytes), IsOk());
-    EXPECT_THAT(upload->Finish(),
-                HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
+    EXPECT_THAT(upload->Finish(), HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
     EXPECT_EQ(service_->sequences().QueryUpload(id)->received_bytes, 0u);
   }
   EXPECT_TRUE(service_->sequences().List()->empty());
@@ -224,8 +226,7 @@ TEST_F(LocalCharacterServiceTest, LimitsAreNamed) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload,
                              service_->sequences().BeginUpload(SequenceId(bytes), bytes.size(), 0));
   ASSERT_THAT(upload->Append(bytes), IsOk());
-  EXPECT_THAT(upload->Finish(),
-              HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
+  EXPECT_THAT(upload->Finish(), HasStatus(absl::StatusCode::kResourceExhausted, testing::_));
   const std::string id = service_->sequences().Upload(MakeSwayingTube(2), {})->id;
   EXPECT_THAT(service_->jobs().CreateTraining({.sequence_ids = {id, id, id}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("1 to 2")));

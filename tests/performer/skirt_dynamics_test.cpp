@@ -18,10 +18,9 @@ constexpr int kNumParticles = SkirtDynamics::kNumStrands * SkirtDynamics::kNumRi
 class SkirtDynamicsTest : public testing::Test {
  protected:
   PoseTrack Still(int num_frames) const {
-    return PoseTrack::FromValid(
-        {.fps = 30,
-         .poses = std::vector<Pose>(static_cast<size_t>(num_frames),
-                                    Pose::Rest(shape_.skeleton()))});
+    return PoseTrack::FromValid({.fps = 30,
+                                 .poses = std::vector<Pose>(static_cast<size_t>(num_frames),
+                                                            Pose::Rest(shape_.skeleton()))});
   }
 
   const CharacterShape shape_{1};

@@ -70,14 +70,20 @@ TEST(CameraTest, TheViewerSeesDownTheCamerasAxis) {
   const Eigen::Vector3d middle = (points.rowwise().minCoeff() + points.rowwise().maxCoeff()) / 2;
   for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
     const Camera camera = Camera::Fit(View(projection, 0, 0), points);
-    EXPECT_LT((Eigen::Vector3d(camera.camera_from_world().row(2).transpose()) - Eigen::Vector3d::UnitZ()).norm(), 1e-9);
+    EXPECT_LT(
+        (Eigen::Vector3d(camera.camera_from_world().row(2).transpose()) - Eigen::Vector3d::UnitZ())
+            .norm(),
+        1e-9);
     EXPECT_NEAR(Eigen::Vector3d(camera.camera_from_world().row(2).transpose()).norm(), 1, 1e-12);
     const Eigen::Matrix3d r = camera.camera_from_world();
     EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
     EXPECT_NEAR(r.determinant(), 1, 1e-12);
   }
   const Camera above = Camera::Fit(View(Projection::kOrthographic, 0, 90), points);
-  EXPECT_LT((Eigen::Vector3d(above.camera_from_world().row(2).transpose()) - Eigen::Vector3d::UnitY()).norm(), 1e-9);
+  EXPECT_LT(
+      (Eigen::Vector3d(above.camera_from_world().row(2).transpose()) - Eigen::Vector3d::UnitY())
+          .norm(),
+      1e-9);
 }
 
 TEST(CameraTest, OnePointIsShownInTheMiddle) {

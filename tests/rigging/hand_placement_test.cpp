@@ -65,8 +65,8 @@ TEST_F(HandPlacementTest, OnlyArmsMove) {
   const Eigen::Matrix3Xd before = joints;
   PlaceHands(volume_.surface, body_, body_size_, &joints);
   for (int j = 0; j < kNumHumanJoints; ++j) {
-    const bool is_arm = j == kLeftLowerArm || j == kLeftHand || j == kRightLowerArm ||
-                        j == kRightHand;
+    const bool is_arm =
+        j == kLeftLowerArm || j == kLeftHand || j == kRightLowerArm || j == kRightHand;
     if (!is_arm) {
       EXPECT_EQ(joints.col(j), before.col(j)) << j;
     }

@@ -34,17 +34,17 @@ class CompressionContractTest : public testing::TestWithParam<Reach> {
     std::vector<Eigen::Matrix3Xf> frames;
     const absl::Status status =
         DecodeFrames(service_.compressed_sequences(), id, range,
-                              {.on_shape =
-                                   [&](const MeshSequence& first) {
-                                     if (shape != nullptr) shape->emplace(first);
-                                     return absl::OkStatus();
-                                   },
-                               .on_frame =
-                                   [&](int t, const Eigen::Matrix3Xf& positions) {
-                                     EXPECT_EQ(t, range.begin + static_cast<int>(frames.size()));
-                                     frames.push_back(positions);
-                                     return absl::OkStatus();
-                                   }});
+                     {.on_shape =
+                          [&](const MeshSequence& first) {
+                            if (shape != nullptr) shape->emplace(first);
+                            return absl::OkStatus();
+                          },
+                      .on_frame =
+                          [&](int t, const Eigen::Matrix3Xf& positions) {
+                            EXPECT_EQ(t, range.begin + static_cast<int>(frames.size()));
+                            frames.push_back(positions);
+                            return absl::OkStatus();
+                          }});
     if (!status.ok()) return status;
     return frames;
   }
@@ -184,7 +184,8 @@ TEST_P(CompressionContractTest, HostileFilesAreRefusedAndForgotten) {
        {std::string("x"), draco, damaged, good + "x", good.substr(0, good.size() - 5),
         EncodeSequence(MakeSwayingTube(3))}) {
     EXPECT_FALSE(service_.compressed_sequences().Upload(bytes, {}).ok());
-    EXPECT_EQ(running_.local().sequences().QueryUpload(ToHex(ComputeSha256(bytes)))->received_bytes, 0u);
+    EXPECT_EQ(running_.local().sequences().QueryUpload(ToHex(ComputeSha256(bytes)))->received_bytes,
+              0u);
   }
   EXPECT_TRUE(service_.compressed_sequences().List()->empty());
   EXPECT_EQ(running_.local().compressed_sequences().decoder_bytes(), 0u);
@@ -196,11 +197,12 @@ TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("sequence")));
   EXPECT_THAT(service_.jobs().CreateCompression(id, {.max_error_mm = 0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("max_error_mm")));
+  EXPECT_THAT(service_.jobs().CreateCompression(
+                  id, {.goal = CompressionGoal::kKg, .kg_percent = 0.0 / 0.0}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("kg_percent")));
   EXPECT_THAT(
-      service_.jobs().CreateCompression(id, {.goal = CompressionGoal::kKg, .kg_percent = 0.0 / 0.0}),
-      HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("kg_percent")));
-  EXPECT_THAT(service_.jobs().CreateCompression(id, {.goal = CompressionGoal::kGrid, .grid_bits = 99}),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("grid_bits")));
+      service_.jobs().CreateCompression(id, {.goal = CompressionGoal::kGrid, .grid_bits = 99}),
+      HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("grid_bits")));
   EXPECT_THAT(service_.compressed_sequences().Get(unknown_),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(service_.compressed_sequences().Download(unknown_, {}),
@@ -218,7 +220,8 @@ TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
 }
 
 TEST_P(CompressionContractTest, CancellationActsWithinASecond) {
-  const std::string id = service_.sequences().Upload(MakeSwayingTube(200, "large", 100, 60), {})->id;
+  const std::string id =
+      service_.sequences().Upload(MakeSwayingTube(200, "large", 100, 60), {})->id;
   const std::string job = service_.jobs().CreateCompression(id, {.max_error_mm = .1})->id;
   while (service_.jobs().Get(job)->stage != "encode") {
     ASSERT_FALSE(IsFinal(service_.jobs().Get(job)->state));
@@ -235,12 +238,13 @@ TEST_P(CompressionContractTest, TheSinkMayStopDecoding) {
   const std::string id = Compress(MakeSwayingTube(100), {});
   int num_frames = 0;
   EXPECT_THAT(DecodeFrames(service_.compressed_sequences(), id, {},
-                  {.on_shape = [](const MeshSequence&) { return absl::OkStatus(); },
-                   .on_frame =
-                       [&](int t, const Eigen::Matrix3Xf&) {
-                         ++num_frames;
-                         return t == 3 ? absl::AbortedError("seen enough") : absl::OkStatus();
-                       }}),
+                           {.on_shape = [](const MeshSequence&) { return absl::OkStatus(); },
+                            .on_frame =
+                                [&](int t, const Eigen::Matrix3Xf&) {
+                                  ++num_frames;
+                                  return t == 3 ? absl::AbortedError("seen enough")
+                                                : absl::OkStatus();
+                                }}),
               HasStatus(absl::StatusCode::kAborted, HasSubstr("seen enough")));
   EXPECT_EQ(num_frames, 4);
 }

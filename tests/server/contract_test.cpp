@@ -45,8 +45,10 @@ TEST_P(ContractTest, SequencesAreStoredOnceUnderTheirContent) {
   EXPECT_EQ(list[0].id, info.id);
   EXPECT_EQ(service_.sequences().Get(info.id)->num_frames, 5);
   EXPECT_THAT(service_.sequences().Delete(info.id), IsOk());
-  EXPECT_THAT(service_.sequences().Get(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.sequences().Delete(info.id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.sequences().Get(info.id),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.sequences().Delete(info.id),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
 }
 
 TEST_P(ContractTest, ASequenceOfManyChunksArrivesWhole) {
@@ -109,11 +111,11 @@ TEST_P(ContractTest, AWatchShowsStagesAndEndsWhenTheCallerHasSeenEnough) {
   std::set<std::string> stages;
   int num_calls = 0;
   EXPECT_THAT(WatchJob(service_.jobs(), job,
-                                [&](const JobInfo& info) {
-                                  stages.insert(info.stage);
-                                  ++num_calls;
-                                  return info.fraction < .5;
-                                }),
+                       [&](const JobInfo& info) {
+                         stages.insert(info.stage);
+                         ++num_calls;
+                         return info.fraction < .5;
+                       }),
               IsOk());
   EXPECT_TRUE(stages.contains("learn"));
   EXPECT_GE(num_calls, 3);
@@ -171,9 +173,11 @@ TEST_P(ContractTest, ABadRigIsRefusedBeforeAJobExists) {
 }
 
 TEST_P(ContractTest, BadRequestsAreRefusedAlike) {
-  EXPECT_THAT(service_.sequences().Get(unknown_), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.sequences().Get(unknown_),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(service_.jobs().Get("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
-  EXPECT_THAT(service_.jobs().Cancel("job-none"), HasStatus(absl::StatusCode::kNotFound, testing::_));
+  EXPECT_THAT(service_.jobs().Cancel("job-none"),
+              HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(WatchJob(service_.jobs(), "job-none", [](const JobInfo&) { return true; }),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_THAT(service_.jobs().CreateTraining({.sequence_ids = {unknown_}}),
@@ -212,10 +216,10 @@ TEST_P(ContractTest, AClipGivesEveryFrameInOrder) {
         .skinned_only = skinned_only};
     std::vector<EvaluatedFrame> truth;
     ASSERT_THAT(running_.local().poses().EvaluateClip(query,
-                                              [&](int, const EvaluatedFrame& frame) {
-                                                truth.push_back(frame);
-                                                return absl::OkStatus();
-                                              }),
+                                                      [&](int, const EvaluatedFrame& frame) {
+                                                        truth.push_back(frame);
+                                                        return absl::OkStatus();
+                                                      }),
                 IsOk());
     int next = 0;
     ASSERT_THAT(service_.poses().EvaluateClip(
@@ -239,11 +243,11 @@ TEST_P(ContractTest, TheConsumerMayStopAClip) {
       .model_id = model_id, .track = MakeMotion(model->skeleton(), 100), .bone_scales = {}};
   int num_frames = 0;
   EXPECT_THAT(service_.poses().EvaluateClip(query,
-                                    [&](int t, const EvaluatedFrame&) {
-                                      ++num_frames;
-                                      return t == 3 ? absl::AbortedError("seen enough")
-                                                    : absl::OkStatus();
-                                    }),
+                                            [&](int t, const EvaluatedFrame&) {
+                                              ++num_frames;
+                                              return t == 3 ? absl::AbortedError("seen enough")
+                                                            : absl::OkStatus();
+                                            }),
               HasStatus(absl::StatusCode::kAborted, HasSubstr("seen enough")));
   EXPECT_EQ(num_frames, 4);
 }

@@ -112,8 +112,8 @@ class HostileRequestsTest : public testing::Test {
             running_.service().sequences().List()->at(0).id,
             running_.service().jobs().List()->at(0).id,
             running_.service()
-                .compressed_sequences().Upload(
-                    CompressSequence(MakeSwayingTube(20), {}, nullptr).value(), {})
+                .compressed_sequences()
+                .Upload(CompressSequence(MakeSwayingTube(20), {}, nullptr).value(), {})
                 ->id,
             "",
             std::string(64, '0'),

@@ -33,8 +33,8 @@ class LiveSessionTest : public testing::Test {
     return running_.local().models().Acquire(id_).value();
   }
   absl::StatusOr<std::unique_ptr<LiveSession>> Open(const LiveSessionOptions& options = {}) {
-    return running_.remote().poses().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
-                                             options);
+    return running_.remote().poses().OpenLiveSession(
+        {.model_id = id_, .track = {}, .bone_scales = {}}, options);
   }
   // What pose t of `track` looks like, its history being the poses before it.
   Eigen::Matrix3Xf Truth(const PoseTrack& track, int t, double* confidence = nullptr) const {
@@ -74,7 +74,8 @@ class LiveSessionTest : public testing::Test {
   std::unique_ptr<LiveSession> OpenStalled(const std::string& model_id) {
     auto session =
         running_.remote()
-            .poses().OpenLiveSession({.model_id = model_id, .track = {}, .bone_scales = {}},
+            .poses()
+            .OpenLiveSession({.model_id = model_id, .track = {}, .bone_scales = {}},
                              {.stream = {.position_bits = 20, .speed = 10}, .max_in_flight = 64})
             .value();
     for (int i = 0; i < 64; ++i) {
@@ -90,8 +91,7 @@ class LiveSessionTest : public testing::Test {
     return request;
   }
 
-  RunningService running_{
-      Reach::kSocket, {}, {.max_receive_bytes = 4 << 20}};
+  RunningService running_{Reach::kSocket, {}, {.max_receive_bytes = 4 << 20}};
   const std::string id_;
   const std::shared_ptr<const CharacterModel> model_;
   const std::unique_ptr<v1::PoseService::Stub> stub_ = v1::PoseService::NewStub(

@@ -102,7 +102,8 @@ TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
     sequence_id = client->sequences().Upload(MakeSwayingTube(40), {})->id;
     // A tube is no human: the job fails with a reason, whichever side of the restart it runs on.
-    job_id = client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
+    job_id =
+        client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
     daemon.Signal(SIGTERM);
     EXPECT_EQ(daemon.Wait(), 0) << daemon.output();
     EXPECT_THAT(daemon.output(), HasSubstr("pleatd has ended"));
@@ -113,10 +114,10 @@ TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
   EXPECT_EQ(client->sequences().Get(sequence_id)->name, "tube");
   JobInfo job;
   EXPECT_THAT(WatchJob(client->jobs(), job_id,
-                               [&](const JobInfo& info) {
-                                 job = info;
-                                 return true;
-                               }),
+                       [&](const JobInfo& info) {
+                         job = info;
+                         return true;
+                       }),
               IsOk());
   EXPECT_EQ(job.state, JobState::kFailed);
   EXPECT_FALSE(job.error.message().empty());
@@ -130,7 +131,8 @@ TEST(PleatdTest, AKillLosesNothing) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
                                RemoteCharacterService::Connect(daemon.WaitForAddress()));
     sequence_id = client->sequences().Upload(MakeSwayingTube(40), {})->id;
-    job_id = client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
+    job_id =
+        client->jobs().CreateTraining({.sequence_ids = {sequence_id}, .model_name = "tube"})->id;
     daemon.Signal(SIGKILL);
     EXPECT_EQ(daemon.Wait(), -SIGKILL);
   }

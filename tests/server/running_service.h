@@ -24,14 +24,12 @@ inline std::string ReachName(Reach reach) {
 
 class RunningService {
  public:
-  explicit RunningService(Reach reach, ServiceLimits limits = {},
-                          GrpcServerOptions grpc = {})
+  explicit RunningService(Reach reach, ServiceLimits limits = {}, GrpcServerOptions grpc = {})
       : grpc_(std::move(grpc)) {
-    local_ = LocalCharacterService::Open(
-                 {.data_dir = folder_.path(),
-                  .num_pose_threads = 2,
-                  .limits = limits,
-                  .train = trainer_.function()})
+    local_ = LocalCharacterService::Open({.data_dir = folder_.path(),
+                                          .num_pose_threads = 2,
+                                          .limits = limits,
+                                          .train = trainer_.function()})
                  .value();
     if (reach == Reach::kLocal) return;
     spdlog::set_level(spdlog::level::err);  // refused requests are what these tests are about

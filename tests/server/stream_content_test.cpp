@@ -20,17 +20,18 @@ class StreamContentTest : public testing::Test {
   std::vector<EvaluatedFrame> Truth(const ClipQuery& query) {
     std::vector<EvaluatedFrame> frames;
     EXPECT_THAT(running_.local().poses().EvaluateClip(query,
-                                              [&](int, const EvaluatedFrame& frame) {
-                                                frames.push_back(frame);
-                                                return absl::OkStatus();
-                                              }),
+                                                      [&](int, const EvaluatedFrame& frame) {
+                                                        frames.push_back(frame);
+                                                        return absl::OkStatus();
+                                                      }),
                 IsOk());
     return frames;
   }
 
   RunningService running_{Reach::kSocket};
   const std::string id_ = running_.TrainModel(MakeSwayingTube(5, "tube", 40, 30));
-  const std::shared_ptr<const CharacterModel> model_ = running_.local().models().Acquire(id_).value();
+  const std::shared_ptr<const CharacterModel> model_ =
+      running_.local().models().Acquire(id_).value();
   const PoseTrack track_ = MakeMotion(model_->skeleton(), 12);
 };
 
@@ -46,26 +47,25 @@ TEST_F(StreamContentTest, ParametersAreEvaluatedHereToTheServersMesh) {
     std::vector<Eigen::Matrix3Xf> shown;
     PoseEvaluator evaluator(model_);
     ASSERT_THAT(StreamClip(client->poses(), query, {.content = StreamContent::kParameters},
-                                   {.on_header =
-                                        [&](const StreamHeader& header) {
-                                          EXPECT_EQ(header.content, StreamContent::kParameters);
-                                          EXPECT_EQ(header.num_vertices, 1200);
-                                          EXPECT_FALSE(FrameDecoder::Create(header).ok());
-                                          return absl::OkStatus();
-                                        },
-                                    .on_parameters =
-                                        [&](int t, const FrameParameters& parameters) {
-                                          EXPECT_LT(ToProto(parameters).ByteSizeLong(),
-                                                    120u);  // 3 joints, 2 components
-                                          EXPECT_EQ(parameters.coefficients.size(),
-                                                    skinned_only ? 0 : 2);
-                                          EXPECT_EQ(parameters.confidence, truth[t].confidence);
-                                          EvaluatedFrame frame;
-                                          const absl::Status status =
-                                              evaluator.Show(parameters, query.bone_scales, &frame);
-                                          shown.push_back(frame.positions);
-                                          return status;
-                                        }}),
+                           {.on_header =
+                                [&](const StreamHeader& header) {
+                                  EXPECT_EQ(header.content, StreamContent::kParameters);
+                                  EXPECT_EQ(header.num_vertices, 1200);
+                                  EXPECT_FALSE(FrameDecoder::Create(header).ok());
+                                  return absl::OkStatus();
+                                },
+                            .on_parameters =
+                                [&](int t, const FrameParameters& parameters) {
+                                  EXPECT_LT(ToProto(parameters).ByteSizeLong(),
+                                            120u);  // 3 joints, 2 components
+                                  EXPECT_EQ(parameters.coefficients.size(), skinned_only ? 0 : 2);
+                                  EXPECT_EQ(parameters.confidence, truth[t].confidence);
+                                  EvaluatedFrame frame;
+                                  const absl::Status status =
+                                      evaluator.Show(parameters, query.bone_scales, &frame);
+                                  shown.push_back(frame.positions);
+                                  return status;
+                                }}),
                 IsOk());
     ASSERT_EQ(shown.size(), 12u);
     int next = 0;
@@ -81,9 +81,10 @@ TEST_F(StreamContentTest, ParametersAreEvaluatedHereToTheServersMesh) {
                 IsOk());
     EXPECT_EQ(next, 12);
   }
-  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluatedFrame one,
-                             client->poses().EvaluatePose({.model_id = id_, .track = {}, .bone_scales = {}},
-                                                  {track_.pose(3), track_.pose(2)}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const EvaluatedFrame one,
+      client->poses().EvaluatePose({.model_id = id_, .track = {}, .bone_scales = {}},
+                                   {track_.pose(3), track_.pose(2)}));
   EvaluatedFrame truth;
   ASSERT_THAT(PoseEvaluator(model_).Evaluate({&track_.pose(3), &track_.pose(2)}, {}, &truth),
               IsOk());
@@ -132,30 +133,31 @@ TEST_F(StreamContentTest, TheControlMeshIsATwentiethOfTheCharacter) {
     const FrameEncoderOptions stream{.encoding = encoding, .content = StreamContent::kControlMesh};
     std::optional<FrameDecoder> decoder;
     ASSERT_THAT(StreamClip(running_.remote().poses(), query, stream,
-                    {.on_header =
-                         [&](const StreamHeader& header) {
-                           decoder.emplace(FrameDecoder::Create(header).value());
-                           EXPECT_EQ(header.num_vertices, 60);
-                           EXPECT_EQ(header.control_vertices.size(), 60u);
-                           EXPECT_GT(decoder->topology().num_triangles(), 70);
-                           return absl::OkStatus();
-                         },
-                     .on_frame =
-                         [&](int t, std::string_view draco, const FrameMark& mark, double) {
-                           Eigen::Matrix3Xf positions;
-                           const absl::Status status = decoder->Decode(draco, mark, &positions);
-                           if (!status.ok()) return status;
-                           const Eigen::Matrix3Xf expected =
-                               truth[t].positions(Eigen::all, decoder->header().control_vertices);
-                           EXPECT_LE((positions - expected).cwiseAbs().maxCoeff(),
-                                     .505 * decoder->header().box.step_m());
-                           return absl::OkStatus();
-                         }}),
+                           {.on_header =
+                                [&](const StreamHeader& header) {
+                                  decoder.emplace(FrameDecoder::Create(header).value());
+                                  EXPECT_EQ(header.num_vertices, 60);
+                                  EXPECT_EQ(header.control_vertices.size(), 60u);
+                                  EXPECT_GT(decoder->topology().num_triangles(), 70);
+                                  return absl::OkStatus();
+                                },
+                            .on_frame =
+                                [&](int t, std::string_view draco, const FrameMark& mark, double) {
+                                  Eigen::Matrix3Xf positions;
+                                  const absl::Status status =
+                                      decoder->Decode(draco, mark, &positions);
+                                  if (!status.ok()) return status;
+                                  const Eigen::Matrix3Xf expected = truth[t].positions(
+                                      Eigen::all, decoder->header().control_vertices);
+                                  EXPECT_LE((positions - expected).cwiseAbs().maxCoeff(),
+                                            .505 * decoder->header().box.step_m());
+                                  return absl::OkStatus();
+                                }}),
                 IsOk());
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const auto session,
         running_.remote().poses().OpenLiveSession({.model_id = id_, .track = {}, .bone_scales = {}},
-                                          {.stream = stream}));
+                                                  {.stream = stream}));
     ASSERT_THAT(session->Send(1, track_.pose(0)), IsOk());
     LiveFrame frame;
     ASSERT_THAT(session->Receive(&frame), IsOk());
@@ -182,9 +184,10 @@ TEST_F(StreamContentTest, ForeignParametersAreRefused) {
   EXPECT_FALSE(evaluator.Show(bad, {}, &frame).ok());
   EXPECT_FALSE(evaluator.Predict({}, false, &bad).ok());
   // Without somebody who takes them, parameters are no stream.
-  EXPECT_THAT(StreamClip(running_.remote().poses(), {.model_id = id_, .track = track_, .bone_scales = {}},
-                                           {.content = StreamContent::kParameters}, {}),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("on_parameters")));
+  EXPECT_THAT(
+      StreamClip(running_.remote().poses(), {.model_id = id_, .track = track_, .bone_scales = {}},
+                 {.content = StreamContent::kParameters}, {}),
+      HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("on_parameters")));
 }
 
 }  // namespace

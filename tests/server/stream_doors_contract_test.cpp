@@ -112,16 +112,16 @@ TEST_P(StreamDoorsContractTest, SinglePosesAreFramesOfOneSession) {
   PLEAT_ASSERT_OK_AND_ASSIGN(FrameDecoder decoder, FrameDecoder::Create(session->header()));
   for (int t = 1; t < 3; ++t) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const EncodedFrame frame,
-                               session->Show({&track.poses[t], &track.poses[t - 1]}));
+                               session->Show({&track.pose(t), &track.pose(t - 1)}));
     EvaluatedFrame truth;
-    ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.poses[t], &track.poses[t - 1]}, {}, &truth),
+    ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.pose(t), &track.pose(t - 1)}, {}, &truth),
                 IsOk());
     Eigen::Matrix3Xf positions;
     ASSERT_THAT(decoder.Decode(frame.draco, frame.mark, &positions), IsOk());
     EXPECT_LE((positions - truth.positions).cwiseAbs().maxCoeff(), 2e-5);
     EXPECT_EQ(frame.confidence, truth.confidence);
   }
-  Pose short_pose = track.poses[0];
+  Pose short_pose = track.pose(0);
   short_pose.rotations.pop_back();
   EXPECT_THAT(session->Show({&short_pose}), HasStatus(absl::StatusCode::kInvalidArgument, _));
   EXPECT_THAT(service_.poses().OpenSession(unknown_, {}),
@@ -131,7 +131,7 @@ TEST_P(StreamDoorsContractTest, SinglePosesAreFramesOfOneSession) {
 TEST_P(StreamDoorsContractTest, AClipIsASessionThatEnds) {
   const std::string id = running_.TrainModel();
   const auto model = running_.local().models().Acquire(id).value();
-  PoseTrack track = MakeMotion(model->skeleton(), 4);
+  const PoseTrack track = MakeMotion(model->skeleton(), 4);
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto clip, service_.poses().OpenClip(id, track, {}));
   EXPECT_EQ(clip->header().num_vertices, model->num_vertices());
   for (int t = 0; t < 4; ++t) {
@@ -140,9 +140,10 @@ TEST_P(StreamDoorsContractTest, AClipIsASessionThatEnds) {
     EXPECT_FALSE(clip->Next()->draco.empty());
   }
   EXPECT_TRUE(clip->done());
-  track.poses[1].rotations.pop_back();
-  EXPECT_THAT(service_.poses().OpenClip(id, track, {}),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 1")));
+  PoseTrack::Parts parts = track.parts();
+  for (Pose& pose : parts.poses) pose.rotations.pop_back();
+  EXPECT_THAT(service_.poses().OpenClip(id, PoseTrack::FromValid(std::move(parts)), {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("frame 0")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Reach, StreamDoorsContractTest,

@@ -36,9 +36,7 @@ class StreamingTest : public testing::Test {
   }
 
   RunningService running_{
-      Reach::kSocket,
-      {},
-      {.max_receive_bytes = 4 << 20, .max_open_streams = 8}};
+      Reach::kSocket, {}, {.max_receive_bytes = 4 << 20, .max_open_streams = 8}};
 };
 
 TEST_F(StreamingTest, OnePoseGivesOneFrame) {
@@ -48,7 +46,7 @@ TEST_F(StreamingTest, OnePoseGivesOneFrame) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const EvaluatedFrame frame,
       running_.remote().poses().EvaluatePose({.model_id = id, .track = {}, .bone_scales = {}},
-                                     {track.pose(2), track.pose(1)}));
+                                             {track.pose(2), track.pose(1)}));
   EvaluatedFrame truth;
   ASSERT_THAT(PoseEvaluator(model).Evaluate({&track.pose(2), &track.pose(1)}, {}, &truth), IsOk());
   EXPECT_LE((frame.positions - truth.positions).cwiseAbs().maxCoeff(), 2e-5);
@@ -109,8 +107,8 @@ TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
   v1::UploadSequenceRequest data;
   data.set_data(bytes.substr(0, 1'000'000));
   ASSERT_TRUE(writer->Write(data));
-  ASSERT_TRUE(
-      Eventually([&] { return running_.local().sequences().QueryUpload(id)->received_bytes == 1'000'000; }));
+  ASSERT_TRUE(Eventually(
+      [&] { return running_.local().sequences().QueryUpload(id)->received_bytes == 1'000'000; }));
   {
     grpc::ClientContext second_context;
     v1::UploadSequenceResponse second_response;
@@ -121,7 +119,8 @@ TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
   }
   context.TryCancel();  // the connection breaks
   writer->Finish();
-  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info, running_.service().sequences().Upload(large, {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info,
+                             running_.service().sequences().Upload(large, {}));
   EXPECT_EQ(info.id, id);
 }
 
@@ -130,14 +129,19 @@ TEST_F(StreamingTest, TooManyStreamsAreRefused) {
   std::vector<std::unique_ptr<LiveSession>> sessions;
   for (int i = 0; i < 8; ++i) {
     sessions.push_back(running_.remote()
-                           .poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
+                           .poses()
+                           .OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
                            .value());
   }
-  EXPECT_THAT(running_.remote().poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}),
-              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-open-streams")));
+  EXPECT_THAT(
+      running_.remote().poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}),
+      HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-open-streams")));
   sessions.pop_back();
   EXPECT_TRUE(Eventually([&] {
-    return running_.remote().poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}).ok();
+    return running_.remote()
+        .poses()
+        .OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
+        .ok();
   }));
 }
 
@@ -177,13 +181,14 @@ TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   std::thread clip([&] {
     const ClipQuery query{
         .model_id = id, .track = MakeMotion(model->skeleton(), 400), .bone_scales = {}};
-    EXPECT_THAT(running_.service().poses().EvaluateClip(query,
+    EXPECT_THAT(
+        running_.service().poses().EvaluateClip(query,
                                                 [&](int, const EvaluatedFrame&) {
                                                   std::this_thread::sleep_for(milliseconds(1));
                                                   ++num_frames;
                                                   return absl::OkStatus();
                                                 }),
-                IsOk());
+        IsOk());
   });
   EXPECT_TRUE(Eventually([&] { return watching && num_frames > 10; }));
   std::thread stopper([&] {

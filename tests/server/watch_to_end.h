@@ -14,11 +14,11 @@ namespace pleat {
 inline JobInfo WatchToEnd(JobService& jobs, const std::string& id) {
   JobInfo last;
   EXPECT_THAT(WatchJob(jobs, id,
-                               [&](const JobInfo& info) {
-                                 EXPECT_GE(info.fraction, last.fraction);
-                                 last = info;
-                                 return true;
-                               }),
+                       [&](const JobInfo& info) {
+                         EXPECT_GE(info.fraction, last.fraction);
+                         last = info;
+                         return true;
+                       }),
               IsOk());
   return last;
 }

@@ -79,9 +79,8 @@ using ConsumeFrame = std::function<absl::Status(int t, const EvaluatedFrame& fra
 absl::Status EvaluateHere(std::shared_ptr<const CharacterModel> model, const ClipQuery& query,
                           const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
-  return query.skinned_only
-             ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
-             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
+  return query.skinned_only ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
+                            : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }
 
 void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, int num_vertices,

@@ -22,9 +22,8 @@ absl::Status LocalPoses::EvaluateClip(
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
                          models_->Acquire(query.model_id));
   PoseEvaluator evaluator(std::move(model));
-  return query.skinned_only
-             ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
-             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
+  return query.skinned_only ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
+                            : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }
 
 absl::StatusOr<std::unique_ptr<PoseSession>> LocalPoses::OpenSession(const std::string& model_id,

@@ -64,7 +64,7 @@ TEST_F(ModelInputTest, MotionsComeFromMotionFilesAndFromSequences) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Motion fitted,
                              LoadMotion(files_.sequence_path(), "", files_.model(), session_));
   EXPECT_EQ(fitted.track.num_frames(), TubeFiles::kNumFrames);
-  EXPECT_DOUBLE_EQ(fitted.track.fps, 25);
+  EXPECT_DOUBLE_EQ(fitted.track.fps(), 25);
 }
 
 TEST_F(ModelInputTest, AnotherConnectivityIsRefused) {
