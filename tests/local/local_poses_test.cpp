@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 // Keeps the replies of a stream.
 class Replies final : public LiveListener {
  public:
-  void OnReply(LiveReply reply) override {
+  void OnReply(LiveReply&& reply) override {
     std::lock_guard lock(mutex_);
     replies_.push_back(std::move(reply));
     changed_.notify_all();

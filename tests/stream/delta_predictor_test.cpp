@@ -23,6 +23,19 @@ Eigen::Matrix3Xi RandomIntegers(int count, int spread, uint64_t seed) {
   return integers;
 }
 
+Eigen::Matrix3Xi Snapped(const Eigen::Matrix3Xf& positions, const QuantizationBox& box) {
+  Eigen::Matrix3Xi integers;
+  SnapToGrid(positions, box, &integers);
+  return integers;
+}
+
+Eigen::Matrix3Xi ResidualsOf(const DeltaPredictor& predictor, const Eigen::Matrix3Xi& last,
+                             const Eigen::Matrix3Xi& now) {
+  Eigen::Matrix3Xi movement, residuals;
+  predictor.Residuals(last, now, &movement, &residuals);
+  return residuals;
+}
+
 TEST(SnapToGridTest, EveryCoordinateGoesToTheNearestGridPoint) {
   Random random(1);
   for (const int bits : {8, 12, 20}) {
@@ -30,7 +43,7 @@ TEST(SnapToGridTest, EveryCoordinateGoesToTheNearestGridPoint) {
     Eigen::Matrix3Xf positions(3, 500);
     // Far outside of the box too: it does not clip.
     for (float& x : positions.reshaped()) x = static_cast<float>(random.Uniform(-20, 20));
-    const Eigen::Matrix3Xi integers = SnapToGrid(positions, box);
+    const Eigen::Matrix3Xi integers = Snapped(positions, box);
     for (int v = 0; v < positions.cols(); ++v) {
       for (int c = 0; c < 3; ++c) {
         const double exact = (double{positions(c, v)} - box.origin_m[c]) / box.step_m();
@@ -46,7 +59,7 @@ TEST(SnapToGridTest, GridPointsComeBackAsTheyAre) {
   Eigen::Matrix3Xf positions;
   PlaceOnGrid(integers, box, &positions);
   ASSERT_EQ(positions.cols(), integers.cols());
-  EXPECT_EQ(SnapToGrid(positions, box), integers);
+  EXPECT_EQ(Snapped(positions, box), integers);
 }
 
 // FNV-1a of 32-bit words, as docs/formats/frame_stream.md has it, written a second time.
@@ -84,12 +97,12 @@ class DeltaPredictorTest : public testing::Test {
 };
 
 TEST_F(DeltaPredictorTest, RestoreInvertsResidualsForSmoothMotionAndForNoise) {
-  const Eigen::Matrix3Xi rest = SnapToGrid(torus_.positions, box_);
+  const Eigen::Matrix3Xi rest = Snapped(torus_.positions, box_);
   for (const Eigen::Matrix3Xi& now :
-       {SnapToGrid(Bend(torus_.positions, 5), box_), rest,
+       {Snapped(Bend(torus_.positions, 5), box_), rest,
         Eigen::Matrix3Xi(rest + RandomIntegers(num_vertices_, 9000, 4))}) {
-    Eigen::Matrix3Xi residuals, restored;
-    predictor_.Residuals(rest, now, &residuals);
+    Eigen::Matrix3Xi restored;
+    const Eigen::Matrix3Xi residuals = ResidualsOf(predictor_, rest, now);
     ASSERT_TRUE(predictor_.Restore(rest, residuals, &restored));
     EXPECT_EQ(restored, now);
   }
@@ -97,8 +110,7 @@ TEST_F(DeltaPredictorTest, RestoreInvertsResidualsForSmoothMotionAndForNoise) {
 
 TEST_F(DeltaPredictorTest, NoMotionLeavesNothing) {
   const Eigen::Matrix3Xi still = RandomIntegers(num_vertices_, 4000, 5);
-  Eigen::Matrix3Xi residuals;
-  predictor_.Residuals(still, still, &residuals);
+  const Eigen::Matrix3Xi residuals = ResidualsOf(predictor_, still, still);
   EXPECT_TRUE(residuals.isZero());
 }
 
@@ -106,17 +118,15 @@ TEST_F(DeltaPredictorTest, NoMotionLeavesNothing) {
 TEST_F(DeltaPredictorTest, ATranslationCostsOneVertex) {
   const Eigen::Matrix3Xi last = RandomIntegers(num_vertices_, 4000, 6);
   const Eigen::Vector3i shift(17, -230, 4001);
-  Eigen::Matrix3Xi residuals;
-  predictor_.Residuals(last, last.colwise() + shift, &residuals);
+  const Eigen::Matrix3Xi residuals = ResidualsOf(predictor_, last, last.colwise() + shift);
   EXPECT_EQ(residuals.col(0), shift);
   EXPECT_TRUE(residuals.rightCols(num_vertices_ - 1).isZero());
 }
 
 TEST_F(DeltaPredictorTest, SmoothMotionLeavesLessThanItMoves) {
-  const Eigen::Matrix3Xi last = SnapToGrid(torus_.positions, box_);
-  const Eigen::Matrix3Xi now = SnapToGrid(Bend(torus_.positions, 4), box_);
-  Eigen::Matrix3Xi residuals;
-  predictor_.Residuals(last, now, &residuals);
+  const Eigen::Matrix3Xi last = Snapped(torus_.positions, box_);
+  const Eigen::Matrix3Xi now = Snapped(Bend(torus_.positions, 4), box_);
+  const Eigen::Matrix3Xi residuals = ResidualsOf(predictor_, last, now);
   EXPECT_LT(4 * residuals.cwiseAbs().cast<int64_t>().sum(),
             (now - last).cwiseAbs().cast<int64_t>().sum());
 }
@@ -125,15 +135,12 @@ TEST_F(DeltaPredictorTest, AgreesWithAnotherOneOfTheSameHeader) {
   const DeltaPredictor other(torus_.topology, torus_.positions, box_);
   const Eigen::Matrix3Xi last = RandomIntegers(num_vertices_, 4000, 7);
   const Eigen::Matrix3Xi now = last + RandomIntegers(num_vertices_, 300, 8);
-  Eigen::Matrix3Xi residuals, others;
-  predictor_.Residuals(last, now, &residuals);
-  other.Residuals(last, now, &others);
-  EXPECT_EQ(residuals, others);
+  EXPECT_EQ(ResidualsOf(predictor_, last, now), ResidualsOf(other, last, now));
 }
 
 // Damaged residuals must not overflow an integer, whichever vertex they hit.
 TEST_F(DeltaPredictorTest, ResidualsThatLeaveWhatIsAllowedAreRefused) {
-  const Eigen::Matrix3Xi last = SnapToGrid(torus_.positions, box_);
+  const Eigen::Matrix3Xi last = Snapped(torus_.positions, box_);
   for (const int column : {0, 1, num_vertices_ / 2, num_vertices_ - 1}) {
     for (const int bad : {std::numeric_limits<int>::max(), std::numeric_limits<int>::min(),
                           static_cast<int>(kMaxCoordinate) + 100'000}) {
@@ -148,10 +155,10 @@ TEST_F(DeltaPredictorTest, ResidualsThatLeaveWhatIsAllowedAreRefused) {
 TEST_F(DeltaPredictorTest, VerticesWithoutNeighborsFollowTheOneBefore) {
   const TestMesh mesh = WithExtra(torus_, 5, {});  // 5 vertices that no triangle uses
   const DeltaPredictor predictor(mesh.topology, mesh.positions, box_);
-  const Eigen::Matrix3Xi last = SnapToGrid(mesh.positions, box_);
+  const Eigen::Matrix3Xi last = Snapped(mesh.positions, box_);
   const Eigen::Matrix3Xi now = last.colwise() + Eigen::Vector3i(3, 2, 1);
   Eigen::Matrix3Xi residuals, restored;
-  predictor.Residuals(last, now, &residuals);
+  residuals = ResidualsOf(predictor, last, now);
   EXPECT_TRUE(residuals.rightCols(residuals.cols() - 1).isZero());
   ASSERT_TRUE(predictor.Restore(last, residuals, &restored));
   EXPECT_EQ(restored, now);

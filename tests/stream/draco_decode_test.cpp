@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "draco_bytes.h"
 #include "draco_encode.h"
 #include "support/hostile_bytes.h"
 #include "support/status_matchers.h"
@@ -29,13 +30,13 @@ const TestMesh& Torus() {
 std::string MeshBytes(MeshMethod method) {
   const auto mesh = MakeDracoMesh(kNumPoints, Torus().topology.triangles());
   SetDracoPositions(Torus().positions, {}, mesh.get());
-  return EncodeDracoMesh(*mesh, TorusBox(), method, 5).value();
+  return DracoBytes(EncodeDracoMesh, *mesh, TorusBox(), method, 5).value();
 }
 
 std::string CloudBytes() {
   const auto cloud = MakeDracoPointCloud(kNumPoints);
   SetDracoPositions(Torus().positions, {}, cloud.get());
-  return EncodeDracoPointCloud(*cloud, TorusBox(), 5).value();
+  return DracoBytes(EncodeDracoPointCloud, *cloud, TorusBox(), 5).value();
 }
 
 Eigen::Matrix3Xi SomeResiduals() {
@@ -47,7 +48,7 @@ Eigen::Matrix3Xi SomeResiduals() {
 std::string ResidualBytes() {
   const auto cloud = MakeDracoResidualCloud(kNumPoints);
   SetDracoResiduals(SomeResiduals(), cloud.get());
-  return EncodeDracoResiduals(*cloud, 5).value();
+  return DracoBytes(EncodeDracoResiduals, *cloud, 5).value();
 }
 
 struct DecodedMesh {

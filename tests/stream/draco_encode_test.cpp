@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "draco/compression/decode.h"
+#include "draco_bytes.h"
 #include "pleat/base/random.h"
 #include "support/status_matchers.h"
 #include "support/test_meshes.h"
@@ -42,7 +43,7 @@ TEST(DracoEncodeTest, MeshesKeepPositionsNumbersAndTrianglesInBothMethods) {
   SetDracoPositions(torus.positions, {}, mesh.get());
   for (const MeshMethod method : {MeshMethod::kEdgebreaker, MeshMethod::kSequential}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                               EncodeDracoMesh(*mesh, TorusBox(), method, 5));
+                               DracoBytes(EncodeDracoMesh, *mesh, TorusBox(), method, 5));
     EXPECT_EQ(bytes.substr(0, 5), "DRACO");
     EXPECT_EQ(bytes[7], 1);  // a mesh
     EXPECT_EQ(bytes[8], method == MeshMethod::kEdgebreaker ? 1 : 0);
@@ -69,7 +70,7 @@ TEST(DracoEncodeTest, CloudsKeepTheGivenOrder) {
   SetDracoPositions(torus.positions, order, cloud.get());
   for (const int speed : {0, 5, 10}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                               EncodeDracoPointCloud(*cloud, TorusBox(), speed));
+                               DracoBytes(EncodeDracoPointCloud, *cloud, TorusBox(), speed));
     EXPECT_EQ(bytes[8], 0) << "the kd-tree loses the order";
     const auto decoded = DecodeWithDraco(bytes);
     ASSERT_EQ(decoded->num_points(), 80u);
@@ -99,7 +100,8 @@ TEST(DracoEncodeTest, ResidualsAreExactUpToTheLargestThatDracoCodes) {
     for (int& r : residuals.reshaped()) r = random.UniformInt(2 * spread + 1) - spread;
     const auto cloud = MakeDracoResidualCloud(200);
     SetDracoResiduals(residuals, cloud.get());
-    PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, EncodeDracoResiduals(*cloud, 5));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
+                               DracoBytes(EncodeDracoResiduals, *cloud, 5));
     const auto decoded = DecodeWithDraco(bytes);
     ASSERT_EQ(decoded->num_attributes(), 3);
     for (int c = 0; c < 3; ++c) {
@@ -118,7 +120,7 @@ TEST(DracoEncodeTest, WhatDracoCannotCodeIsAnErrorOrRoundTrips) {
   residuals(1, 9) = 1 << 27;
   const auto cloud = MakeDracoResidualCloud(50);
   SetDracoResiduals(residuals, cloud.get());
-  const absl::StatusOr<std::string> bytes = EncodeDracoResiduals(*cloud, 5);
+  const absl::StatusOr<std::string> bytes = DracoBytes(EncodeDracoResiduals, *cloud, 5);
   if (!bytes.ok()) {
     EXPECT_THAT(bytes, HasStatus(absl::StatusCode::kInternal,
                                  testing::StartsWith("Draco cannot encode: ")));
@@ -135,8 +137,9 @@ TEST(DracoEncodeTest, TheSameInputGivesTheSameBytes) {
   for (int round = 0; round < 2; ++round) {
     const auto mesh = MakeDracoMesh(torus.topology.num_vertices(), torus.topology.triangles());
     SetDracoPositions(torus.positions, {}, mesh.get());
-    PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                               EncodeDracoMesh(*mesh, TorusBox(), MeshMethod::kEdgebreaker, 5));
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const std::string bytes,
+        DracoBytes(EncodeDracoMesh, *mesh, TorusBox(), MeshMethod::kEdgebreaker, 5));
     if (round == 0) first = bytes;
     EXPECT_EQ(bytes, first);
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "draco/compression/expert_encode.h"
+#include "draco_bytes.h"
 #include "draco_encode.h"
 #include "support/hostile_bytes.h"
 #include "support/status_matchers.h"
@@ -20,7 +21,7 @@ QuantizationBox TorusBox() {
 std::string MeshBytes(const TestMesh& mesh, MeshMethod method) {
   const auto draco = MakeDracoMesh(mesh.topology.num_vertices(), mesh.topology.triangles());
   SetDracoPositions(mesh.positions, {}, draco.get());
-  return EncodeDracoMesh(*draco, TorusBox(), method, 5).value();
+  return DracoBytes(EncodeDracoMesh, *draco, TorusBox(), method, 5).value();
 }
 
 std::string CloudBytes(const TestMesh& mesh, int method) {
@@ -113,7 +114,7 @@ TEST(DracoFileTest, WhatIsNoDracoFileIsNamed) {
 TEST(DracoFileTest, FilesWithoutPositionsAreRefused) {
   const auto cloud = MakeDracoResidualCloud(20);
   SetDracoResiduals(Eigen::Matrix3Xi::Ones(3, 20), cloud.get());
-  EXPECT_THAT(DecodeDracoFile(EncodeDracoResiduals(*cloud, 5).value()),
+  EXPECT_THAT(DecodeDracoFile(DracoBytes(EncodeDracoResiduals, *cloud, 5).value()),
               HasStatus(absl::StatusCode::kDataLoss,
                         "malformed Draco frame: no positions of three coordinates"));
 }

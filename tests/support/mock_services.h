@@ -86,7 +86,7 @@ class MockPoseStream : public PoseStream {
  public:
   MOCK_METHOD(const StreamHeader&, header, (), (const, override));
   MOCK_METHOD(bool, HasRoom, (), (const, override));
-  MOCK_METHOD(void, Push, (LivePose pose), (override));
+  MOCK_METHOD(void, Push, (const LivePose& pose), (override));
   MOCK_METHOD(absl::Status, Acknowledge, (uint64_t num_replies), (override));
   MOCK_METHOD(bool, empty, (), (const, override));
   MOCK_METHOD(bool, ready, (), (const, override));

@@ -48,11 +48,11 @@ void Executor::Post(std::function<void()> task, uint64_t flow) {
   {
     std::lock_guard lock(mutex_);
     if (flow == 0) {
-      turns_.push_back({.task = std::move(task), .flow = 0});
+      turns_.PushBack() = {.task = std::move(task), .flow = 0};
     } else {
       std::deque<Task>& waiting = waiting_[flow];
       waiting.push_back(std::move(task));
-      if (waiting.size() == 1) turns_.push_back({.task = nullptr, .flow = flow});
+      if (waiting.size() == 1) turns_.PushBack() = {.task = nullptr, .flow = flow};
     }
   }
   changed_.notify_one();
@@ -60,7 +60,7 @@ void Executor::Post(std::function<void()> task, uint64_t flow) {
 
 Executor::Task Executor::TakeNext() {
   Turn turn = std::move(turns_.front());
-  turns_.pop_front();
+  turns_.PopFront();
   if (turn.flow == 0) return std::move(turn.task);
   const auto waiting = waiting_.find(turn.flow);
   Task task = std::move(waiting->second.front());
@@ -68,7 +68,7 @@ Executor::Task Executor::TakeNext() {
   if (waiting->second.empty()) {
     waiting_.erase(waiting);
   } else {
-    turns_.push_back(std::move(turn));
+    turns_.PushBack() = std::move(turn);
   }
   return task;
 }

@@ -125,9 +125,9 @@ absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
 absl::Status PoseEvaluator::EvaluateSkinned(const Pose& pose,
                                             const std::vector<double>& bone_scales,
                                             EvaluatedFrame* frame) {
-  const std::vector<const Pose*> poses = {&pose};
+  one_pose_.assign(1, &pose);
   PoseQuery query{
-      .poses = &poses, .bone_scales = &bone_scales, .skinned_only = true, .frame = frame};
+      .poses = &one_pose_, .bone_scales = &bone_scales, .skinned_only = true, .frame = frame};
   EvaluateBatch({&query, 1});
   return query.status;
 }
@@ -139,8 +139,16 @@ void PoseEvaluator::TakeParameters(const Scratch& scratch, FrameParameters* para
     rotation = rounded.cast<double>();
   }
   parameters->confidence = scratch.confidence;
-  parameters->coefficients.resize(0);
-  if (scratch.has_details) parameters->coefficients = scratch.coefficients;
+  if (scratch.has_details) {
+    parameters->coefficients = scratch.coefficients;
+  } else {
+    parameters->coefficients.resize(0);
+  }
+}
+
+PoseEvaluator::Scratch* PoseEvaluator::ScratchAt(size_t number) {
+  while (scratches_.size() <= number) scratches_.push_back(std::make_unique<Scratch>(*model_));
+  return scratches_[number].get();
 }
 
 void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
@@ -150,20 +158,18 @@ void PoseEvaluator::EvaluateBatch(std::span<PoseQuery> queries) {
 
 void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
   static const std::vector<double> kNoScales;
-  while (scratches_.size() < std::min(queries.size(), kMostTogether)) {
-    scratches_.push_back(std::make_unique<Scratch>(*model_));
-  }
   for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
     std::array<Scratch*, kMostTogether> scratches{};
     std::array<EvaluatedFrame*, kMostTogether> frames{};
     std::array<PoseQuery*, kMostTogether> taken{};
-    size_t count = 0;
+    size_t count = 0, num_own = 0;
     // Queries with details in front, so that those are predicted and expanded together.
     for (const bool skinned_only : {false, true}) {
       for (size_t q = begin; q < std::min(begin + kMostTogether, queries.size()); ++q) {
         if (queries[q].skinned_only != skinned_only) continue;
-        Scratch* scratch = scratches_[count].get();
         if (!queries[q].status.ok()) continue;
+        PoseEvaluator* const lender = queries[q].scratch_of;
+        Scratch* scratch = lender != nullptr ? lender->ScratchAt(0) : ScratchAt(num_own++);
         Prepare(queries[q], scratch);
         taken[count] = &queries[q];
         scratches[count++] = scratch;
@@ -257,8 +263,7 @@ absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
   if (!coefficients.allFinite()) {
     return absl::InvalidArgumentError("a detail coefficient is not finite");
   }
-  if (scratches_.empty()) scratches_.push_back(std::make_unique<Scratch>(*model_));
-  Scratch* scratch = scratches_[0].get();
+  Scratch* scratch = ScratchAt(0);
   CopyNormalized(parameters.pose, &scratch->history[0]);
   scratch->has_details = coefficients.size() > 0;
   scratch->confidence = parameters.confidence;

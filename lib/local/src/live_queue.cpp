@@ -7,6 +7,35 @@
 
 namespace pleat {
 
+Pose& PoseList::Grown() {
+  if (size_ == poses_.size()) poses_.emplace_back();
+  return poses_[size_++];
+}
+
+void PoseList::push_front(const Pose& pose, size_t most) {
+  if (size_ < most) Grown();
+  const auto end = poses_.begin() + static_cast<ptrdiff_t>(size_);
+  std::rotate(poses_.begin(), end - 1, end);  // exchanges the poses' memory
+  poses_.front() = pose;
+}
+
+void PoseList::CopyFrom(const PoseList& other) {
+  clear();
+  for (const Pose& pose : other) push_back(pose);
+}
+
+LiveQueue::LiveQueue(const LiveRules& rules, int depth, int num_joints)
+    : rules_(rules), depth_(depth), num_joints_(num_joints) {
+  Pose pose;
+  pose.rotations.resize(num_joints_);
+  LiveTurn turn;
+  for (size_t h = 0; h < depth_; ++h) turn.poses.push_back(pose);
+  recent_ = turn.poses;
+  recent_.clear();
+  waiting_ = RingQueue<LiveTurn>(std::vector<LiveTurn>(
+      static_cast<size_t>(rules_.latest_wins ? 1 : rules_.max_in_flight), turn));
+}
+
 bool LiveQueue::HasRoom() const {
   return rules_.latest_wins || static_cast<int>(waiting_.size()) < rules_.max_in_flight;
 }
@@ -24,26 +53,23 @@ absl::Status LiveQueue::Check(const LivePose& pose) const {
   return absl::OkStatus();
 }
 
-void LiveQueue::Push(LivePose pose, std::chrono::steady_clock::time_point now) {
+void LiveQueue::Push(const LivePose& pose, std::chrono::steady_clock::time_point now) {
   absl::Status status = Check(pose);
   if (status.ok()) {  // others must not become history
     if (pose.restart || !pose.history.empty()) recent_.clear();
-    recent_.insert(recent_.begin(), std::move(pose.pose));
-    for (Pose& earlier : pose.history) recent_.push_back(std::move(earlier));
-    if (recent_.size() > depth_) recent_.resize(depth_);
+    recent_.push_front(pose.pose, depth_);
+    for (size_t h = 0; h < pose.history.size() && recent_.size() < depth_; ++h) {
+      recent_.push_back(pose.history[h]);
+    }
   }
-  LiveTurn turn{.number = pose.number,
-                .status = std::move(status),
-                .poses = recent_,
-                .keyframe = pose.keyframe,
-                .num_superseded = 0,
-                .arrived = now};
-  if (rules_.latest_wins && !waiting_.empty()) {
-    turn.keyframe |= waiting_.back().keyframe;
-    turn.num_superseded = waiting_.back().num_superseded + 1;
-    waiting_.pop_back();
-  }
-  waiting_.push_back(std::move(turn));
+  const bool supersedes = rules_.latest_wins && !waiting_.empty();
+  LiveTurn& turn = supersedes ? waiting_.back() : waiting_.PushBack();
+  turn.keyframe = pose.keyframe || (supersedes && turn.keyframe);
+  turn.num_superseded = supersedes ? turn.num_superseded + 1 : 0;
+  turn.number = pose.number;
+  turn.status = std::move(status);
+  turn.poses.CopyFrom(recent_);
+  turn.arrived = now;
 }
 
 absl::Status LiveQueue::Acknowledge(uint64_t replies_received) {
@@ -61,10 +87,21 @@ bool LiveQueue::ready() const {
          num_sent_ - num_acknowledged_ < static_cast<uint64_t>(rules_.max_in_flight);
 }
 
-LiveTurn LiveQueue::Take() {
-  LiveTurn turn = std::move(waiting_.front());
-  waiting_.pop_front();
+void LiveQueue::Take(LiveTurn* turn) {
+  const LiveTurn& first = waiting_.front();
+  turn->number = first.number;
+  turn->status = first.status;
+  turn->poses.CopyFrom(first.poses);  // not exchanged: the slot keeps its memory
+  turn->keyframe = first.keyframe;
+  turn->num_superseded = first.num_superseded;
+  turn->arrived = first.arrived;
+  waiting_.PopFront();
   ++num_sent_;
+}
+
+LiveTurn LiveQueue::Take() {
+  LiveTurn turn;
+  Take(&turn);
   return turn;
 }
 

@@ -20,9 +20,9 @@ bool LocalPoseStream::HasRoom() const {
   return queue_.HasRoom();
 }
 
-void LocalPoseStream::Push(LivePose pose) {
+void LocalPoseStream::Push(const LivePose& pose) {
   std::lock_guard lock(mutex_);
-  queue_.Push(std::move(pose), std::chrono::steady_clock::now());
+  queue_.Push(pose, std::chrono::steady_clock::now());
 }
 
 absl::Status LocalPoseStream::Acknowledge(uint64_t num_replies) {
@@ -43,7 +43,7 @@ bool LocalPoseStream::ready() const {
 bool LocalPoseStream::Prepare(PoseQuery* query) {
   {
     std::lock_guard lock(mutex_);
-    turn_ = queue_.Take();
+    queue_.Take(&turn_);
   }
   start_ = std::chrono::steady_clock::now();
   if (!turn_.status.ok()) return false;
@@ -53,23 +53,24 @@ bool LocalPoseStream::Prepare(PoseQuery* query) {
   return true;
 }
 
-void LocalPoseStream::Evaluated(const PoseQuery* query, double evaluate_us, int num_together) {
-  LiveReply reply{
-      .number = turn_.number,
-      .num_superseded = turn_.num_superseded,
-      .queue_us = std::chrono::duration<double, std::micro>(start_ - turn_.arrived).count(),
-      .num_together = num_together};
-  if (turn_.keyframe) session_->RequestKeyframe();
-  if (query == nullptr) {
-    reply.frame = turn_.status;
-  } else {
-    try {
-      reply.frame = session_->Encode(*query, evaluate_us);
-    } catch (const std::bad_alloc&) {
-      reply.frame = absl::ResourceExhaustedError("the server has not enough memory for this pose");
-    }
+absl::Status LocalPoseStream::Encode(const PoseQuery& query, double evaluate_us) {
+  try {
+    if (!reply_.frame.ok()) reply_.frame.emplace();
+    return session_->Encode(query, evaluate_us, &*reply_.frame);
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError("the server has not enough memory for this pose");
   }
-  listener_->OnReply(std::move(reply));  // this object may be gone when it returns
+}
+
+void LocalPoseStream::Evaluated(const PoseQuery* query, double evaluate_us, int num_together) {
+  if (turn_.keyframe) session_->RequestKeyframe();
+  absl::Status status = query != nullptr ? Encode(*query, evaluate_us) : turn_.status;
+  if (!status.ok()) reply_.frame = std::move(status);
+  reply_.number = turn_.number;
+  reply_.num_superseded = turn_.num_superseded;
+  reply_.queue_us = std::chrono::duration<double, std::micro>(start_ - turn_.arrived).count();
+  reply_.num_together = num_together;
+  listener_->OnReply(std::move(reply_));  // this object may be gone when it returns
 }
 
 }  // namespace pleat

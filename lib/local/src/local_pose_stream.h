@@ -13,7 +13,8 @@
 
 namespace pleat {
 
-// `batcher` and `listener` must outlive it.
+// An answer allocates only what LocalPoseSession does, as long as the listener leaves the memory of
+// the frames. `batcher` and `listener` must outlive it.
 class LocalPoseStream final : public PoseStream, private PoseWork {
  public:
   LocalPoseStream(std::unique_ptr<LocalPoseSession> session, const LiveRules& rules,
@@ -21,7 +22,7 @@ class LocalPoseStream final : public PoseStream, private PoseWork {
 
   const StreamHeader& header() const override { return session_->header(); }
   bool HasRoom() const override;
-  void Push(LivePose pose) override;
+  void Push(const LivePose& pose) override;
   absl::Status Acknowledge(uint64_t num_replies) override;
   bool empty() const override;
   bool ready() const override;
@@ -32,12 +33,17 @@ class LocalPoseStream final : public PoseStream, private PoseWork {
   PoseEvaluator& evaluator() override { return session_->evaluator(); }
   void Evaluated(const PoseQuery* query, double evaluate_us, int num_together) override;
 
+  // Fills reply_.frame.
+  absl::Status Encode(const PoseQuery& query, double evaluate_us);
+
   PoseBatcher* const batcher_;
   LiveListener* const listener_;
   // Used by the one answer that is under way.
   const std::unique_ptr<LocalPoseSession> session_;
+  // Members for the sake of their memory.
   LiveTurn turn_;
   std::vector<const Pose*> poses_;  // of turn_
+  LiveReply reply_;
   std::chrono::steady_clock::time_point start_;
 
   mutable std::mutex mutex_;

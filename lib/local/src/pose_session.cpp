@@ -56,26 +56,43 @@ PoseQuery LocalPoseSession::QueryOf(const std::vector<const Pose*>* poses) {
           .bone_scales = &options_.bone_scales,
           .skinned_only = options_.skinned_only,
           .frame = &frame_,
-          .parameters = encoder_ == nullptr ? &parameters_ : nullptr};
+          .parameters = encoder_ == nullptr ? &parameters_ : nullptr,
+          .scratch_of = &evaluator_};
 }
 
-absl::StatusOr<EncodedFrame> LocalPoseSession::Encode(const PoseQuery& query, double evaluate_us) {
+absl::Status LocalPoseSession::Encode(const PoseQuery& query, double evaluate_us,
+                                      EncodedFrame* frame) {
   PLEAT_RETURN_IF_ERROR(query.status);
+  frame->evaluate_us = evaluate_us;
   if (encoder_ == nullptr) {
-    return EncodedFrame{.parameters = parameters_,
-                        .confidence = parameters_.confidence,
-                        .evaluate_us = evaluate_us};
+    frame->draco.clear();
+    frame->parameters = parameters_;
+    frame->confidence = parameters_.confidence;
+    frame->mark = {};
+    frame->encode_us = 0;
+    return absl::OkStatus();
   }
   const Clock::time_point start = Clock::now();
   const std::vector<int32_t>& vertices = header().control_vertices;
-  if (!vertices.empty()) control_ = frame_.positions(Eigen::all, vertices);
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes,
-                         (*encoder_)->Encode(vertices.empty() ? frame_.positions : control_));
-  return EncodedFrame{.draco = std::move(bytes),
-                      .confidence = frame_.confidence,
-                      .mark = (*encoder_)->mark(),
-                      .evaluate_us = evaluate_us,
-                      .encode_us = MicrosecondsBetween(start, Clock::now())};
+  if (!vertices.empty()) {  // by hand: Eigen would copy the list of vertices
+    control_.resize(3, static_cast<Eigen::Index>(vertices.size()));
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      control_.col(static_cast<Eigen::Index>(i)) = frame_.positions.col(vertices[i]);
+    }
+  }
+  PLEAT_RETURN_IF_ERROR(
+      (*encoder_)->Encode(vertices.empty() ? frame_.positions : control_, &frame->draco));
+  frame->parameters.reset();
+  frame->confidence = frame_.confidence;
+  frame->mark = (*encoder_)->mark();
+  frame->encode_us = MicrosecondsBetween(start, Clock::now());
+  return absl::OkStatus();
+}
+
+absl::StatusOr<EncodedFrame> LocalPoseSession::Encode(const PoseQuery& query, double evaluate_us) {
+  EncodedFrame frame;
+  PLEAT_RETURN_IF_ERROR(Encode(query, evaluate_us, &frame));
+  return frame;
 }
 
 absl::StatusOr<std::unique_ptr<LocalClipSession>> LocalClipSession::Open(

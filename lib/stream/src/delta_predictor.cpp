@@ -35,18 +35,17 @@ void AppendWeights(const Eigen::Matrix3Xi& grid, int v, std::span<const int32_t>
 
 }  // namespace
 
-Eigen::Matrix3Xi SnapToGrid(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
-                            const QuantizationBox& box) {
-  Eigen::Matrix3Xi integers(3, positions.cols());
+void SnapToGrid(const Eigen::Ref<const Eigen::Matrix3Xf>& positions, const QuantizationBox& box,
+                Eigen::Matrix3Xi* integers) {
+  integers->resize(3, positions.cols());
   const double scale = 1 / box.step_m();
   for (Eigen::Index v = 0; v < positions.cols(); ++v) {
     for (int c = 0; c < 3; ++c) {
       const double x = static_cast<double>(positions(c, v)) - box.origin_m[c];
       // floor(.. + 1/2) without a library call: truncation rounds positive numbers down.
-      integers(c, v) = static_cast<int>(x * scale + (kShift + 0.5)) - kShift;
+      (*integers)(c, v) = static_cast<int>(x * scale + (kShift + 0.5)) - kShift;
     }
   }
-  return integers;
 }
 
 void PlaceOnGrid(const Eigen::Matrix3Xi& integers, const QuantizationBox& box,
@@ -68,7 +67,8 @@ uint32_t GridChecksum(const Eigen::Matrix3Xi& integers) {
 
 DeltaPredictor::DeltaPredictor(const Topology& topology, const Eigen::Matrix3Xf& reference,
                                const QuantizationBox& box) {
-  const Eigen::Matrix3Xi grid = SnapToGrid(reference, box);
+  Eigen::Matrix3Xi grid;
+  SnapToGrid(reference, box, &grid);
   // Whole numbers below 2^24 are exact in float32 and their squared distances in float64: the
   // hierarchy does not depend on rounding. Coarser numbers are as good for larger ones.
   const Eigen::Matrix3Xf whole = grid.cast<float>();
@@ -105,12 +105,12 @@ bool DeltaPredictor::Walk(Eigen::Matrix3Xi* movement, Visit visit) const {
 }
 
 void DeltaPredictor::Residuals(const Eigen::Matrix3Xi& last, const Eigen::Matrix3Xi& now,
-                               Eigen::Matrix3Xi* residuals) const {
-  Eigen::Matrix3Xi movement = now - last;
+                               Eigen::Matrix3Xi* movement, Eigen::Matrix3Xi* residuals) const {
+  *movement = now - last;
   residuals->resize(3, now.cols());
-  Walk(&movement, [&](int i, int v, const int64_t* predicted) {
+  Walk(movement, [&](int i, int v, const int64_t* predicted) {
     for (int c = 0; c < 3; ++c) {
-      (*residuals)(c, i) = static_cast<int>(movement(c, v) - predicted[c]);
+      (*residuals)(c, i) = static_cast<int>((*movement)(c, v) - predicted[c]);
     }
     return true;
   });

@@ -12,8 +12,8 @@
 namespace pleat {
 
 // Positions on the grid of a box: x = origin + k step.
-Eigen::Matrix3Xi SnapToGrid(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
-                            const QuantizationBox& box);
+void SnapToGrid(const Eigen::Ref<const Eigen::Matrix3Xf>& positions, const QuantizationBox& box,
+                Eigen::Matrix3Xi* integers);
 void PlaceOnGrid(const Eigen::Matrix3Xi& integers, const QuantizationBox& box,
                  Eigen::Matrix3Xf* positions);
 
@@ -29,9 +29,10 @@ class DeltaPredictor {
   DeltaPredictor(const Topology& topology, const Eigen::Matrix3Xf& reference,
                  const QuantizationBox& box);
 
-  // residuals (3 x V): column i belongs to the i-th vertex of the walk.
+  // residuals (3 x V): column i belongs to the i-th vertex of the walk. movement: scratch, as all
+  // matrices allocated only when V changes.
   void Residuals(const Eigen::Matrix3Xi& last, const Eigen::Matrix3Xi& now,
-                 Eigen::Matrix3Xi* residuals) const;
+                 Eigen::Matrix3Xi* movement, Eigen::Matrix3Xi* residuals) const;
   // The inverse; false when a coordinate leaves what is allowed (damaged residuals).
   bool Restore(const Eigen::Matrix3Xi& last, const Eigen::Matrix3Xi& residuals,
                Eigen::Matrix3Xi* now) const;

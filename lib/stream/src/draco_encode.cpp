@@ -19,7 +19,7 @@ int AddAttribute(draco::GeometryAttribute::Type type, draco::DataType data_type,
   return cloud->AddAttribute(attribute, /*identity_mapping=*/true, num_values);
 }
 
-absl::StatusOr<std::string> Run(draco::ExpertEncoder* encoder) {
+absl::Status Run(draco::ExpertEncoder* encoder, std::string* bytes) {
   draco::EncoderBuffer buffer;
   try {
     // Draco throws std::length_error on values it cannot code, and std::bad_alloc.
@@ -30,7 +30,8 @@ absl::StatusOr<std::string> Run(draco::ExpertEncoder* encoder) {
   } catch (const std::exception& error) {
     return absl::InternalError(absl::StrCat("Draco cannot encode: ", error.what()));
   }
-  return std::string(buffer.data(), buffer.size());
+  bytes->assign(buffer.data(), buffer.size());
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -91,7 +92,7 @@ void SetDracoResiduals(const Eigen::Matrix3Xi& residuals, draco::PointCloud* clo
   }
 }
 
-absl::StatusOr<std::string> EncodeDracoResiduals(const draco::PointCloud& cloud, int speed) {
+absl::Status EncodeDracoResiduals(const draco::PointCloud& cloud, int speed, std::string* bytes) {
   draco::ExpertEncoder encoder(cloud);
   encoder.SetSpeedOptions(speed, speed);
   encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
@@ -99,27 +100,27 @@ absl::StatusOr<std::string> EncodeDracoResiduals(const draco::PointCloud& cloud,
     const draco::Status status = encoder.SetAttributePredictionScheme(c, draco::PREDICTION_NONE);
     if (!status.ok()) return absl::InternalError(status.error_msg_string());
   }
-  return Run(&encoder);
+  return Run(&encoder, bytes);
 }
 
-absl::StatusOr<std::string> EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box,
-                                            MeshMethod method, int speed) {
+absl::Status EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box, MeshMethod method,
+                             int speed, std::string* bytes) {
   draco::ExpertEncoder encoder(mesh);
   encoder.SetSpeedOptions(speed, speed);
   encoder.SetEncodingMethod(method == MeshMethod::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
                                                                : draco::MESH_SEQUENTIAL_ENCODING);
   encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
-  return Run(&encoder);
+  return Run(&encoder, bytes);
 }
 
-absl::StatusOr<std::string> EncodeDracoPointCloud(const draco::PointCloud& cloud,
-                                                  const QuantizationBox& box, int speed) {
+absl::Status EncodeDracoPointCloud(const draco::PointCloud& cloud, const QuantizationBox& box,
+                                   int speed, std::string* bytes) {
   draco::ExpertEncoder encoder(cloud);
   encoder.SetSpeedOptions(speed, speed);
   // The default for quantized clouds is the kd-tree, which loses the order.
   encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
   encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
-  return Run(&encoder);
+  return Run(&encoder, bytes);
 }
 
 }  // namespace pleat

@@ -1,11 +1,12 @@
-// The encoding half of the Draco library, as functions on plain arrays.
+// The encoding half of the Draco library, as functions on plain arrays. `bytes` keep their memory;
+// the library itself allocates for every frame.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
-#include "absl/status/statusor.h"
+#include "absl/status/status.h"
 #include "draco/mesh/mesh.h"
 #include "draco/point_cloud/point_cloud.h"
 #include "pleat/stream/stream_header.h"
@@ -27,11 +28,11 @@ void SetDracoPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
 // decode in half the time of one attribute with three components.
 std::unique_ptr<draco::PointCloud> MakeDracoResidualCloud(int num_points);
 void SetDracoResiduals(const Eigen::Matrix3Xi& residuals, draco::PointCloud* cloud);
-absl::StatusOr<std::string> EncodeDracoResiduals(const draco::PointCloud& cloud, int speed);
+absl::Status EncodeDracoResiduals(const draco::PointCloud& cloud, int speed, std::string* bytes);
 
-absl::StatusOr<std::string> EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box,
-                                            MeshMethod method, int speed);
-absl::StatusOr<std::string> EncodeDracoPointCloud(const draco::PointCloud& cloud,
-                                                  const QuantizationBox& box, int speed);
+absl::Status EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box, MeshMethod method,
+                             int speed, std::string* bytes);
+absl::Status EncodeDracoPointCloud(const draco::PointCloud& cloud, const QuantizationBox& box,
+                                   int speed, std::string* bytes);
 
 }  // namespace pleat

@@ -123,7 +123,7 @@ absl::Status FrameDecoder::DecodeDelta(std::string_view bytes, const FrameMark& 
     if (!((positions->colwise() - header_.box.origin_m).cwiseAbs().maxCoeff() < limit)) {
       return absl::DataLossError("malformed key frame: a position is out of range");
     }
-    now_ = SnapToGrid(*positions, header_.box);
+    SnapToGrid(*positions, header_.box, &now_);
   } else {
     if (last.cols() != header_.num_vertices) {
       return absl::FailedPreconditionError(

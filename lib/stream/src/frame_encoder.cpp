@@ -134,13 +134,14 @@ struct FrameEncoder::State {
   std::optional<DeltaPredictor> predictor;
   ResidualWriter writer;
   std::unique_ptr<draco::PointCloud> residual_cloud;  // for residuals too large for `writer`
-  Eigen::Matrix3Xi last, now, residuals;  // 3 x V, on the grid; `last` is empty before a key frame
+  Eigen::Matrix3Xi last, now, movement, residuals;    // 3 x V, on the grid
+  bool has_last = false;                              // false: a key frame must come next
   Eigen::Matrix3Xf placed;
-  size_t key_bytes = 0;  // of the last key frame
+  std::string key;  // the last key frame
 
   // Encodes the mesh with `method` and fills the header; false when a vertex was lost.
   absl::StatusOr<bool> TryTopology() {
-    PLEAT_ASSIGN_OR_RETURN(header.topology, EncodeDracoMesh(*mesh, header.box, method, speed));
+    PLEAT_RETURN_IF_ERROR(EncodeDracoMesh(*mesh, header.box, method, speed, &header.topology));
     PLEAT_ASSIGN_OR_RETURN(const DecodedOrder decoded, ReadBack(header.topology));
     header.num_points = static_cast<int>(decoded.point_vertices.size());
     header.num_triangles = decoded.num_triangles;
@@ -149,37 +150,41 @@ struct FrameEncoder::State {
     return num_shown == header.num_vertices;
   }
 
-  absl::StatusOr<std::string> EncodeKeyframe() {
+  absl::Status EncodeKeyframe() {
     // Of points of the grid Draco makes the same integers again.
     PlaceOnGrid(now, header.box, &placed);
     SetDracoPositions(placed, header.vertex_order, cloud.get());
-    PLEAT_ASSIGN_OR_RETURN(std::string bytes, EncodeDracoPointCloud(*cloud, header.box, speed));
-    key_bytes = bytes.size();
-    return bytes;
+    return EncodeDracoPointCloud(*cloud, header.box, speed, &key);
   }
 
-  absl::StatusOr<std::string> EncodeDelta(const Eigen::Ref<const Eigen::Matrix3Xf>& positions) {
-    now = SnapToGrid(positions, header.box);
+  // Room for every difference from now on: a larger one is sent as a key frame.
+  void Reserve(std::string* bytes) const { bytes->reserve(key.size() + key.size() / 2); }
+
+  absl::Status EncodeDelta(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
+                           std::string* bytes) {
+    SnapToGrid(positions, header.box, &now);
     mark.checksum = GridChecksum(now);
-    mark.keyframe = last.cols() == 0;
-    std::string bytes;
+    mark.keyframe = !has_last;
     if (!mark.keyframe) {
-      predictor->Residuals(last, now, &residuals);
-      if (!writer.Write(residuals, &bytes)) {
+      Reserve(bytes);
+      predictor->Residuals(last, now, &movement, &residuals);
+      if (!writer.Write(residuals, bytes)) {
         SetDracoResiduals(residuals, residual_cloud.get());
-        PLEAT_ASSIGN_OR_RETURN(bytes, EncodeDracoResiduals(*residual_cloud, speed));
+        PLEAT_RETURN_IF_ERROR(EncodeDracoResiduals(*residual_cloud, speed, bytes));
       }
     }
     // After a cut a key frame may be smaller.
-    if (mark.keyframe || bytes.size() > key_bytes - key_bytes / 8) {
-      PLEAT_ASSIGN_OR_RETURN(std::string key, EncodeKeyframe());
-      if (mark.keyframe || key.size() <= bytes.size()) {
+    if (mark.keyframe || bytes->size() > key.size() - key.size() / 8) {
+      PLEAT_RETURN_IF_ERROR(EncodeKeyframe());
+      if (mark.keyframe || key.size() <= bytes->size()) {
         mark.keyframe = true;
-        bytes = std::move(key);
+        Reserve(bytes);
+        bytes->assign(key);
       }
     }
     last.swap(now);
-    return bytes;
+    has_last = true;
+    return absl::OkStatus();
   }
 
   // Encodes the reference frame; edgebreaker where it keeps every vertex, else sequential (it drops
@@ -200,7 +205,7 @@ FrameEncoder& FrameEncoder::operator=(FrameEncoder&&) noexcept = default;
 
 const StreamHeader& FrameEncoder::header() const { return state_->header; }
 const FrameMark& FrameEncoder::mark() const { return state_->mark; }
-void FrameEncoder::RequestKeyframe() { state_->last.resize(3, 0); }
+void FrameEncoder::RequestKeyframe() { state_->has_last = false; }
 
 absl::StatusOr<FrameEncoder> FrameEncoder::Create(
     const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
@@ -243,21 +248,28 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(
   return FrameEncoder(std::move(state));
 }
 
-absl::StatusOr<std::string> FrameEncoder::Encode(
-    const Eigen::Ref<const Eigen::Matrix3Xf>& positions) {
+absl::Status FrameEncoder::Encode(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
+                                  std::string* bytes) {
   const StreamHeader& header = state_->header;
   if (positions.cols() != header.num_vertices) {
     return absl::InvalidArgumentError(absl::StrCat("the frame has ", positions.cols(),
                                                    " vertices, the session ", header.num_vertices));
   }
   PLEAT_RETURN_IF_ERROR(CheckPositions(positions, header.box));
-  if (header.encoding == FrameEncoding::kDracoDelta) return state_->EncodeDelta(positions);
+  if (header.encoding == FrameEncoding::kDracoDelta) return state_->EncodeDelta(positions, bytes);
   if (header.encoding == FrameEncoding::kDracoPointCloud) {
     SetDracoPositions(positions, header.vertex_order, state_->cloud.get());
-    return EncodeDracoPointCloud(*state_->cloud, header.box, state_->speed);
+    return EncodeDracoPointCloud(*state_->cloud, header.box, state_->speed, bytes);
   }
   SetDracoPositions(positions, {}, state_->mesh.get());
-  return EncodeDracoMesh(*state_->mesh, header.box, state_->method, state_->speed);
+  return EncodeDracoMesh(*state_->mesh, header.box, state_->method, state_->speed, bytes);
+}
+
+absl::StatusOr<std::string> FrameEncoder::Encode(
+    const Eigen::Ref<const Eigen::Matrix3Xf>& positions) {
+  std::string bytes;
+  PLEAT_RETURN_IF_ERROR(Encode(positions, &bytes));
+  return bytes;
 }
 
 }  // namespace pleat

@@ -50,6 +50,7 @@ bool ResidualWriter::CountSymbols(const Eigen::Matrix3Xi& residuals, int c) {
     largest = std::max(largest, channel.symbols[i]);
   }
   if (largest > kMaxSymbol) return false;
+  channel.counts.reserve(kMaxSymbol + 1);
   channel.counts.assign(largest + 1, 0);
   for (const uint32_t symbol : channel.symbols) ++channel.counts[symbol];
   channel.num_used = channel.counts.size() - static_cast<size_t>(std::count(
@@ -66,6 +67,7 @@ void ResidualWriter::Normalize(Channel* channel) {
   const int64_t target = int64_t{1} << channel->precision_bits;
   const auto total = static_cast<int64_t>(channel->symbols.size());
 
+  channel->steps.reserve(kMaxSymbol + 1);
   channel->steps.assign(counts.size(), Step());
   int64_t sum = 0, above_one = 0;
   size_t most_frequent = 0;

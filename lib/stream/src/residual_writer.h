@@ -11,7 +11,7 @@ namespace pleat {
 
 // Writes sequential Draco point clouds of three int32 attributes of one component without
 // prediction, what EncodeDracoResiduals makes with Draco itself, in a quarter of its time. One per
-// thread: it owns scratch memory.
+// thread: it owns scratch memory, as large as it can get from the first frame on.
 class ResidualWriter {
  public:
   // residuals: 3 x V. False when they are too large, or too few for their range: then Draco itself

@@ -129,7 +129,7 @@ class LiveReactor final
   }
 
   // On a thread of the service. Nothing else touches response_ until it is written.
-  void OnReply(LiveReply reply) override {
+  void OnReply(LiveReply&& reply) override {
     Answered(CallGuarded([&] {
       Fill(std::move(reply));
       return absl::OkStatus();
@@ -165,7 +165,7 @@ class LiveReactor final
   }
 
   // A pose that cannot be shown is an answer, not an error.
-  void Fill(LiveReply reply) {
+  void Fill(LiveReply&& reply) {
     response_.Clear();
     *response_.mutable_report() = ReportOf(reply);
     if (reply.frame.ok()) {

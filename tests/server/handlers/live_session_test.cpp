@@ -20,9 +20,9 @@ class EchoStream final : public PoseStream {
 
   const StreamHeader& header() const override { return header_; }
   bool HasRoom() const override { return true; }
-  void Push(LivePose pose) override {
+  void Push(const LivePose& pose) override {
     std::lock_guard lock(mutex_);
-    poses_.push_back(std::move(pose));
+    poses_.push_back(pose);
   }
   absl::Status Acknowledge(uint64_t num_replies) override {
     return num_replies < 100 ? absl::OkStatus() : absl::InvalidArgumentError("not so many");

@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "pleat/base/ring_queue.h"
+
 namespace pleat {
 
 // Runs tasks on its own threads. Tasks start in the order in which they were posted, except that
@@ -30,7 +32,9 @@ class Executor {
   Executor& operator=(const Executor&) = delete;
 
   // Queues `task`, which must not throw. `flow` says whose task it is: a flow gets one task per
-  // round, however many of its tasks wait. The flow 0 stands for a flow of the task's own.
+  // round, however many of its tasks wait. The flow 0 stands for a flow of the task's own; posting
+  // to it allocates nothing when the captures of the task fit into std::function itself (two
+  // pointers) and the queue has been as long before.
   void Post(std::function<void()> task, uint64_t flow = 0);
   int num_threads() const { return static_cast<int>(threads_.size()); }
 
@@ -47,7 +51,7 @@ class Executor {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Turn> turns_;                                  // guarded by mutex_
+  RingQueue<Turn> turns_;                                   // guarded by mutex_
   std::unordered_map<uint64_t, std::deque<Task>> waiting_;  // guarded by mutex_, never empty lists
   bool stopping_ = false;                                   // guarded by mutex_
   std::vector<std::thread> threads_;

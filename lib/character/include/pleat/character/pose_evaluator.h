@@ -27,6 +27,8 @@ struct FrameParameters {
   double confidence = 0;
 };
 
+class PoseEvaluator;
+
 // One of several queries that are answered together.
 struct PoseQuery {
   const std::vector<const Pose*>* poses = nullptr;   // as for PoseEvaluator::Evaluate
@@ -34,6 +36,10 @@ struct PoseQuery {
   bool skinned_only = false;                         // without the learned detail
   EvaluatedFrame* frame = nullptr;
   FrameParameters* parameters = nullptr;  // where given: these are filled in place of the frame
+  // Whose scratch memory the query uses, of the same model and in no other query of the batch: a
+  // batch of sessions that have evaluated before then allocates nothing, whoever evaluates it.
+  // Null: memory that the evaluating one keeps.
+  PoseEvaluator* scratch_of = nullptr;
   absl::Status status{};  // set by the evaluation; when it is not OK the frame is untouched
 };
 
@@ -83,7 +89,9 @@ class PoseEvaluator {
       const Progress& progress = {});
 
  private:
-  struct Scratch;                                   // of one query
+  struct Scratch;  // of one query
+  // The one with this number, made when it is needed first.
+  Scratch* ScratchAt(size_t number);
   size_t NumPosesOf(const PoseQuery& query) const;  // that are looked at, with their history
   absl::Status Check(const PoseQuery& query) const;
   // EvaluateBatch of queries that are checked already; those with a status that is not OK are left.
@@ -98,7 +106,8 @@ class PoseEvaluator {
   void FillFrames(std::span<Scratch* const> scratches, std::span<EvaluatedFrame* const> frames);
 
   std::shared_ptr<const CharacterModel> model_;
-  std::vector<std::unique_ptr<Scratch>> scratches_;  // as many as the largest batch so far
+  std::vector<std::unique_ptr<Scratch>> scratches_;  // as many as were needed at once so far
+  std::vector<const Pose*> one_pose_;                // of EvaluateSkinned
 };
 
 }  // namespace pleat

@@ -1,9 +1,9 @@
 // Poses of one model that wait at the same time are evaluated together.
 #pragma once
 
-#include <deque>
-#include <map>
+#include <memory>
 #include <mutex>
+#include <vector>
 
 #include "pleat/base/executor.h"
 #include "pleat/character/pose_evaluator.h"
@@ -23,11 +23,16 @@ class PoseWork {
 
  protected:
   ~PoseWork() = default;
+
+ private:
+  friend class PoseBatcher;
+  PoseWork* next_waiting_ = nullptr;  // for the same model; by the batcher's mutex
 };
 
 // A matrix product of several poses reads the model from memory once. Every work holds one turn of
 // the executor, so sessions of other models wait for at most one batch in place of one pose, and
-// the work that has waited longest is always in the next batch of its model. Thread-safe.
+// the work that has waited longest is always in the next batch of its model. Allocates nothing for
+// a frame, unless more models than ever before have work. Thread-safe.
 class PoseBatcher {
  public:
   // most_together: 1 evaluates one by one.
@@ -37,12 +42,32 @@ class PoseBatcher {
   void Submit(const CharacterModel* model, PoseWork* work);
 
  private:
+  // What waits for one model, in the order of Submit: a list through the works themselves.
+  struct Line {
+    const CharacterModel* model = nullptr;
+    PoseWork* first = nullptr;
+    PoseWork* last = nullptr;
+    size_t size = 0;
+  };
+  // What is evaluated together; its memory is used again.
+  struct Batch {
+    std::vector<PoseWork*> works;  // in `queries`' order, once they are prepared
+    std::vector<PoseQuery> queries;
+  };
+
+  // With the first work, because the executor may be made after the batcher. With mutex_.
+  void MakeBatches();
   void Run(const CharacterModel* model);
+  // The next batch of `model`, null when there is none: an earlier turn has taken all works.
+  std::unique_ptr<Batch> TakeBatch(const CharacterModel* model);
+  static void Evaluate(Batch* batch);
 
   Executor* const executor_;
   const int most_together_;
   std::mutex mutex_;
-  std::map<const CharacterModel*, std::deque<PoseWork*>> waiting_;  // not empty; by mutex_
+  std::vector<Line> waiting_;                   // not empty, in any order; guarded by mutex_
+  std::vector<std::unique_ptr<Batch>> unused_;  // one for each idle thread; guarded by mutex_
+  bool has_batches_ = false;                    // guarded by mutex_
 };
 
 }  // namespace pleat

@@ -34,7 +34,10 @@ class LocalPoseSession final : public PoseSession {
   // `poses`, which must live until it is evaluated by any evaluator of the model; and the frame.
   PoseQuery QueryOf(const std::vector<const Pose*>* poses);
   PoseEvaluator& evaluator() { return evaluator_; }
-  // evaluate_us: what the evaluation took.
+  // evaluate_us: what the evaluation took. `frame` keeps its memory: with the same one again and
+  // again a frame allocates only what FrameEncoder does. After an error it holds nothing useful.
+  absl::Status Encode(const PoseQuery& query, double evaluate_us, EncodedFrame* frame);
+  // The same as a new frame.
   absl::StatusOr<EncodedFrame> Encode(const PoseQuery& query, double evaluate_us);
 
   // The next frame of a kDracoDelta session will be a key frame.

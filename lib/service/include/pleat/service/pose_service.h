@@ -88,8 +88,10 @@ struct LiveReply {
 // Where the replies of a pose stream go.
 class LiveListener {
  public:
-  // Runs on a thread of the service. It may destroy the stream.
-  virtual void OnReply(LiveReply reply) = 0;
+  // Runs on a thread of the service. It may take the frame out of the reply or exchange it; the
+  // stream uses the memory that is left for its next reply. It may call Answer or destroy the
+  // stream, but must not touch `reply` after that.
+  virtual void OnReply(LiveReply&& reply) = 0;
 
  protected:
   ~LiveListener() = default;
@@ -105,7 +107,8 @@ class PoseStream {
 
   // False: do not read further poses now.
   virtual bool HasRoom() const = 0;
-  virtual void Push(LivePose pose) = 0;
+  // Copies what it needs.
+  virtual void Push(const LivePose& pose) = 0;
   // `num_replies` of this stream were read by the client; an older number changes nothing.
   // kInvalidArgument when there were not as many.
   virtual absl::Status Acknowledge(uint64_t num_replies) = 0;

@@ -46,7 +46,11 @@ class FrameEncoder {
   // the rounding of float32). kInvalidArgument names the first vertex that is not finite,
   // kOutOfRange the first that is too far from the box.
   // In a kDracoDelta stream the frame is the cheaper of a key frame and a difference to the frame
-  // encoded before: every frame must reach the decoder, in order.
+  // encoded before: every frame must reach the decoder, in order. `bytes` are replaced and keep
+  // their memory; differences are encoded without any allocation after the first of them, all other
+  // frames by Draco, which allocates.
+  absl::Status Encode(const Eigen::Ref<const Eigen::Matrix3Xf>& positions, std::string* bytes);
+  // The same as a new string.
   absl::StatusOr<std::string> Encode(const Eigen::Ref<const Eigen::Matrix3Xf>& positions);
   // Of the frame encoded last.
   const FrameMark& mark() const;
