@@ -162,7 +162,9 @@ TEST_F(LiveTurnAllocationTest, ManySessionsOfOneModelInBatchesOfAnySize) {
     Add({}, {.encoder = parameters});
     Add({}, {.skinned_only = true, .encoder = kDifferences});
   }
-  EXPECT_EQ(TurnsAfterTheFirst(), 0);
+  // How turns share batches depends on the threads, so a batch may reach a size that it has not had
+  // before, and its lists grow once more. A turn that allocated would count nine per pose.
+  EXPECT_LT(TurnsAfterTheFirst(), 9);
 }
 
 TEST_F(LiveTurnAllocationTest, CutsAndGivenHistories) {
