@@ -36,7 +36,7 @@ TEST_F(InspectVerbTest, JsonSaysCountsBoundsAndContent) {
   EXPECT_EQ(json["num_triangles"], 4);
   EXPECT_EQ(json["fps"], 24);
   EXPECT_NEAR(json["diagonal_m"].get<double>(), std::sqrt(3), 1e-6);
-  // Of all frames: it grows by 1 % and moves by 10 cm in each.
+  // The bounds enclose all frames: the tube grows by 1 % and moves by 10 cm in each.
   EXPECT_EQ(json["bounds"]["min_m"][0], 0);
   EXPECT_NEAR(json["bounds"]["max_m"][0].get<double>(), 1.04 + .4, 1e-6);
   EXPECT_NEAR(json["bounds"]["max_m"][2].get<double>(), 1.04, 1e-6);

@@ -18,7 +18,7 @@ class RenderVerbTest : public testing::Test {
     return RunPleat(inputs);
   }
   std::string Png() const { return ReadFile(output_).value_or(""); }
-  // Of a PNG, from its first chunk (big-endian).
+  // The size of a PNG is in its first chunk (big-endian).
   int Width() const { return Number(16); }
   int Height() const { return Number(20); }
 

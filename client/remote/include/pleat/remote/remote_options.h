@@ -11,7 +11,8 @@ struct RemoteOptions {
   double connect_seconds = 5;    // until Connect gives up
   double deadline_seconds = 60;  // of one call that is no stream
   int max_attempts = 5;          // of an upload, download or watch that breaks off
-  // Of EvaluateClip; 16 bits are about .02 mm on a person. Live sessions choose their own.
+  // How EvaluateClip encodes its frames; 16 bits are about .02 mm on a person. Live sessions choose
+  // their own encoding.
   FrameEncoderOptions stream{.position_bits = 16};
   bool tls = false;
   std::string tls_root_certificates{};                     // PEM; empty = those of the system

@@ -67,7 +67,7 @@ const char* ChoiceNameOrNull(Choice value) {
   return nullptr;
 }
 
-// Of a value of the enum.
+// Returns the name that the table gives to a value of the enum.
 template <typename Choice>
 std::string ChoiceName(Choice value) {
   const char* name = ChoiceNameOrNull(value);
