@@ -4,7 +4,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "absl/strings/str_cat.h"
 #include "pleat/service/compressed_sequence_service.h"
 #include "pleat/service/job_service.h"
 #include "pleat/service/model_service.h"
@@ -12,12 +11,6 @@
 #include "pleat/store/v1/records.pb.h"
 
 namespace pleat {
-
-// OK when `count` is not negative; counts are stored as signed numbers.
-inline absl::Status CheckStoredCount(int count, absl::string_view what) {
-  if (count >= 0) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(what, " is ", count, ", not a count"));
-}
 
 store::v1::FrameRate ToRecord(const FrameRate& frame_rate);
 absl::StatusOr<FrameRate> FromRecord(const store::v1::FrameRate& message);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/check_count.h"
 #include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
@@ -71,9 +72,9 @@ void ClipToRecord(const Info& info, Message* message) {
 template <typename Message, typename Info>
 absl::Status ClipFromRecord(const Message& message, Info* info) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), "id"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_frames(), "num_frames"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_vertices(), "num_vertices"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_faces(), "num_faces"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_frames(), "num_frames"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_vertices(), "num_vertices"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_faces(), "num_faces"));
   info->id = message.id();
   info->name = message.name();
   info->num_frames = message.num_frames();
@@ -135,10 +136,10 @@ store::v1::Model ToRecord(const ModelInfo& info) {
 
 absl::StatusOr<ModelInfo> FromRecord(const store::v1::Model& message) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), "id"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_vertices(), "num_vertices"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_faces(), "num_faces"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_control_vertices(), "num_control_vertices"));
-  PLEAT_RETURN_IF_ERROR(CheckStoredCount(message.num_components(), "num_components"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_vertices(), "num_vertices"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_faces(), "num_faces"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_control_vertices(), "num_control_vertices"));
+  PLEAT_RETURN_IF_ERROR(CheckCount(message.num_components(), "num_components"));
   ModelInfo info;
   info.id = message.id();
   info.name = message.name();

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
-#include "check_count.h"
+#include "pleat/base/check_count.h"
 #include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"

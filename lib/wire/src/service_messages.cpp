@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "check_count.h"
 #include "clip_info.h"
+#include "pleat/base/check_count.h"
 #include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
