@@ -113,7 +113,7 @@ TEST(Draco3dTest, NodeReadsEveryPayload) {
     GTEST_SKIP() << "node with the package draco3d is not on this machine (NODE_PATH)";
   }
   const Payloads payloads;
-  EXPECT_EQ(Output("node " PLEAT_SOURCE_DIR "/tests/codec/draco3d.js " + payloads.folder()),
+  EXPECT_EQ(Output("node " PLEAT_SOURCE_DIR "/tests/stream/draco3d.js " + payloads.folder()),
             payloads.expected());
 }
 
@@ -122,7 +122,7 @@ TEST(Draco3dTest, ThreeJsReadsEveryPayload) {
     GTEST_SKIP() << "node with the package three is not on this machine (NODE_PATH)";
   }
   const Payloads payloads;
-  EXPECT_EQ(Output("node " PLEAT_SOURCE_DIR "/tests/codec/dracoloader.mjs " + payloads.folder()),
+  EXPECT_EQ(Output("node " PLEAT_SOURCE_DIR "/tests/stream/dracoloader.mjs " + payloads.folder()),
             payloads.expected());
 }
 
