@@ -1,3 +1,9 @@
+// Encoder and decoder both walk over the vertices from coarse to fine, and each predicts a movement
+// from the movements that it has already passed. The decoder can do this because neighbors always
+// come earlier in the walk than the vertex that they predict. The two sides must agree on every
+// bit, or the difference would restore another frame. Hence the weights and predictions are
+// integers, the hierarchy is built from integers too, and any change of this file changes the
+// stream format (docs/formats/frame_stream.md).
 #include "delta_predictor.h"
 
 #include "pleat/geometry/surface_hierarchy.h"
@@ -6,11 +12,13 @@ namespace pleat {
 namespace {
 
 constexpr int kWeightBits = 12, kWeightSum = 1 << kWeightBits;
-// Coordinates stay within 16 box edges of the box, of at most 2^20 steps each.
+// What a decoder accepts. An encoder stays below 2^25: it sends coordinates within 16 box edges of
+// the box, and an edge has at most 2^20 steps.
 constexpr int64_t kMaxCoordinate = int64_t{1} << 26;
-constexpr int kShift = 1 << 27;
+constexpr int kShift = 1 << 27;  // larger than kMaxCoordinate, so that shifted numbers are positive
 
-// Shares of kWeightSum by falling squared distance.
+// Divides kWeightSum among the neighbors in inverse proportion to their squared distance. The last
+// neighbor gets what rounding leaves, so the weights of a vertex add up exactly.
 void AppendWeights(const Eigen::Matrix3Xi& grid, int v, std::span<const int32_t> neighbors,
                    std::vector<int32_t>* weights) {
   std::vector<int64_t> inverse;
@@ -42,7 +50,7 @@ void SnapToGrid(const Eigen::Ref<const Eigen::Matrix3Xf>& positions, const Quant
   for (Eigen::Index v = 0; v < positions.cols(); ++v) {
     for (int c = 0; c < 3; ++c) {
       const double x = static_cast<double>(positions(c, v)) - box.origin_m[c];
-      // floor(.. + 1/2) without a library call: truncation rounds positive numbers down.
+      // This is floor(x * scale + 1/2) without a library call: a cast rounds positive numbers down.
       (*integers)(c, v) = static_cast<int>(x * scale + (kShift + 0.5)) - kShift;
     }
   }
@@ -69,8 +77,9 @@ DeltaPredictor::DeltaPredictor(const Topology& topology, const Eigen::Matrix3Xf&
                                const QuantizationBox& box) {
   Eigen::Matrix3Xi grid;
   SnapToGrid(reference, box, &grid);
-  // Whole numbers below 2^24 are exact in float32 and their squared distances in float64: the
-  // hierarchy does not depend on rounding. Coarser numbers are as good for larger ones.
+  // Whole numbers below 2^24 are exact in float32, and their squared distances are exact in
+  // float64, so the hierarchy does not depend on how a machine rounds. The reference lies inside
+  // the box and has at most 2^20 steps.
   const Eigen::Matrix3Xf whole = grid.cast<float>();
   const SurfaceHierarchy hierarchy(topology, &whole);
   order_ = hierarchy.order();
@@ -83,7 +92,9 @@ DeltaPredictor::DeltaPredictor(const Topology& topology, const Eigen::Matrix3Xf&
   }
 }
 
-// Calls visit(i, v, predicted) for every vertex; it must set column v of `movement`.
+// Calls visit(i, v, predicted) for every vertex v = order_[i] until a call returns false. When
+// visit returns, column v of `movement` must hold the true movement, since later predictions read
+// it.
 template <typename Visit>
 bool DeltaPredictor::Walk(Eigen::Matrix3Xi* movement, Visit visit) const {
   int64_t predicted[3] = {0, 0, 0};
@@ -96,7 +107,7 @@ bool DeltaPredictor::Walk(Eigen::Matrix3Xi* movement, Visit visit) const {
     }
     if (starts_[i + 1] > starts_[i]) {
       for (int c = 0; c < 3; ++c) predicted[c] = sum[c] >> kWeightBits;
-    } else if (i > 0) {  // the coarsest vertices move as the one before
+    } else if (i > 0) {  // without neighbors, a vertex is expected to move like the one before it
       for (int c = 0; c < 3; ++c) predicted[c] = (*movement)(c, order_[i - 1]);
     }
     if (!visit(i, order_[i], predicted)) return false;

@@ -1,3 +1,12 @@
+// Three lines of defense stand around Draco, each for what the one before cannot see:
+//
+//   1. Our own reading of the header compares the counts with what the stream declared, before
+//      Draco sees the bytes and allocates by those counts.
+//   2. AttributesAreExpected runs inside Draco (see GuardedDecoder), after it has decoded the
+//      connectivity and the declarations of the attributes, and before it allocates and decodes
+//      their values.
+//   3. ReadPositions and ReadMesh check every index and number afterwards. Sequential meshes with
+//      faces beyond their points decode without complaint.
 #include "draco_decode.h"
 
 #include "absl/strings/str_cat.h"
@@ -16,7 +25,7 @@ absl::Status ExpectCount(uint64_t found, uint64_t expected, absl::string_view wh
   return MalformedDraco(absl::StrCat(found, " ", what, ", the stream declared ", expected));
 }
 
-// Reads the header; returns the encoding method.
+// Reads the header and returns the encoding method.
 absl::StatusOr<uint8_t> ReadHeader(ByteReader* reader, DracoType type) {
   PLEAT_ASSIGN_OR_RETURN(const DracoHeader header, ReadDracoHeader(reader));
   if (header.type != static_cast<uint8_t>(type)) {
@@ -33,7 +42,7 @@ bool IsInteger(const draco::PointAttribute& attribute) {
          attribute.data_type() == draco::DT_INT32 && attribute.num_components() == 1;
 }
 
-// What must hold before attribute values are decoded: this alone bounds Draco's memory.
+// Says whether the values may be decoded. This check alone bounds the memory that they take.
 bool AttributesAreExpected(const draco::PointCloud& cloud, uint32_t num_points, Contents contents) {
   if (cloud.num_points() != num_points) return false;
   if (contents == Contents::kResiduals) {

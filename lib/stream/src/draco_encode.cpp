@@ -22,7 +22,7 @@ int AddAttribute(draco::GeometryAttribute::Type type, draco::DataType data_type,
 absl::Status Run(draco::ExpertEncoder* encoder, std::string* bytes) {
   draco::EncoderBuffer buffer;
   try {
-    // Draco throws std::length_error on values it cannot code, and std::bad_alloc.
+    // Draco throws std::length_error on values that it cannot code, and std::bad_alloc.
     const draco::Status status = encoder->EncodeToBuffer(&buffer);
     if (!status.ok()) {
       return absl::InternalError(absl::StrCat("Draco cannot encode: ", status.error_msg_string()));
@@ -96,7 +96,7 @@ absl::Status EncodeDracoResiduals(const draco::PointCloud& cloud, int speed, std
   draco::ExpertEncoder encoder(cloud);
   encoder.SetSpeedOptions(speed, speed);
   encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
-  for (int c = 0; c < 3; ++c) {  // they are predicted already
+  for (int c = 0; c < 3; ++c) {  // what arrives here has been predicted already
     const draco::Status status = encoder.SetAttributePredictionScheme(c, draco::PREDICTION_NONE);
     if (!status.ok()) return absl::InternalError(status.error_msg_string());
   }
@@ -117,7 +117,7 @@ absl::Status EncodeDracoPointCloud(const draco::PointCloud& cloud, const Quantiz
                                    int speed, std::string* bytes) {
   draco::ExpertEncoder encoder(cloud);
   encoder.SetSpeedOptions(speed, speed);
-  // The default for quantized clouds is the kd-tree, which loses the order.
+  // Draco's default for quantized clouds is the kd-tree, which loses the order of the points.
   encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
   encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
   return Run(&encoder, bytes);

@@ -21,7 +21,8 @@ absl::Status CheckLimit(uint64_t count, int64_t limit, absl::string_view what) {
       absl::StrCat("the Draco file declares ", count, " ", what, ", the limit is ", limit));
 }
 
-// Few attributes of few components, and no more points than allowed.
+// Says whether the values may be decoded. Edgebreaker may split vertices, so a mesh can have more
+// points than vertices; twice as many is generous.
 bool AttributesAreSmall(const draco::PointCloud& cloud, const MeshLimits& limits) {
   if (int64_t{cloud.num_points()} > 2 * limits.max_vertices) return false;
   if (cloud.num_attributes() > kMaxAttributes) return false;
@@ -40,7 +41,7 @@ absl::StatusOr<const draco::PointAttribute*> FindPositions(const draco::PointClo
   return positions;
 }
 
-// The first int32 attribute of one component; null where there is none.
+// Returns the first int32 generic attribute of one component, or null when there is none.
 const draco::PointAttribute* FindNumbers(const draco::PointCloud& cloud) {
   for (int a = 0; a < cloud.num_attributes(); ++a) {
     const draco::PointAttribute* attribute = cloud.attribute(a);
@@ -58,7 +59,7 @@ absl::StatusOr<uint32_t> ValueOf(const draco::PointAttribute& attribute, uint32_
   return index.value();
 }
 
-// Fills column `column` with value `index`.
+// Fills column `column` of the positions with the value `index` of the attribute.
 absl::Status ReadPosition(const draco::PointAttribute& attribute, uint32_t index, int column,
                           DracoGeometry* geometry) {
   if (!attribute.ConvertValue<float>(draco::AttributeValueIndex(index), 3,
@@ -109,7 +110,8 @@ absl::StatusOr<DracoGeometry> FromMesh(const draco::Mesh& mesh) {
 }
 
 absl::Status CheckCounts(const DracoHeader& header, const MeshLimits& limits, ByteReader* reader) {
-  // Behind metadata, whose length nobody says, the counts are Draco's to read.
+  // Metadata stands before the counts and does not say how long it is, so only Draco can read past
+  // it. The checks of the attributes and of the triangles still follow.
   if (header.has_metadata()) return absl::OkStatus();
   if (header.type == static_cast<uint8_t>(DracoType::kMesh)) {
     PLEAT_ASSIGN_OR_RETURN(const DracoMeshCounts counts,

@@ -1,4 +1,5 @@
-// What reading any Draco bytes shares. Header layout: Draco bitstream specification
+// What frames of a stream and Draco files from anywhere have in common: reading the header before
+// Draco does, and running a decoder. The layout follows the Draco bitstream specification
 // (google.github.io/draco/spec), sections "Draco header", "Sequential decoder" and "EdgeBreaker
 // decoder".
 #pragma once
@@ -22,9 +23,10 @@
 namespace pleat {
 
 enum class DracoType : uint8_t { kPointCloud = 0, kMesh = 1 };
-inline constexpr uint8_t kDracoSequential = 0;   // method of meshes and point clouds
-inline constexpr uint8_t kDracoEdgebreaker = 1;  // method of meshes
-inline constexpr uint8_t kDracoKdTree = 1;       // method of point clouds
+// Encoding methods. The meaning of 1 depends on the geometry type.
+inline constexpr uint8_t kDracoSequential = 0;   // meshes and point clouds
+inline constexpr uint8_t kDracoEdgebreaker = 1;  // meshes
+inline constexpr uint8_t kDracoKdTree = 1;       // point clouds
 
 inline absl::Status MalformedDraco(absl::string_view why) {
   return absl::DataLossError(absl::StrCat("malformed Draco frame: ", why));
@@ -36,7 +38,7 @@ struct DracoHeader {
   bool has_metadata() const { return (flags & 0x8000) != 0; }
 };
 
-// The first 11 bytes.
+// Reads the first 11 bytes.
 inline absl::StatusOr<DracoHeader> ReadDracoHeader(ByteReader* reader) {
   PLEAT_ASSIGN_OR_RETURN(const std::string_view magic, reader->ReadRaw(5, "Draco magic"));
   if (magic != "DRACO") return MalformedDraco("no Draco header");
@@ -46,7 +48,7 @@ inline absl::StatusOr<DracoHeader> ReadDracoHeader(ByteReader* reader) {
   PLEAT_ASSIGN_OR_RETURN(header.type, reader->Read<uint8_t>("Draco header"));
   PLEAT_ASSIGN_OR_RETURN(header.method, reader->Read<uint8_t>("Draco header"));
   PLEAT_ASSIGN_OR_RETURN(header.flags, reader->Read<uint16_t>("Draco flags"));
-  // Versions of the bitstream since Draco 1.1.
+  // Draco has written these versions of the bitstream since its release 1.1.
   const uint8_t minor = header.type == static_cast<uint8_t>(DracoType::kMesh) ? 2 : 3;
   if (header.major != 2 || header.minor != minor) {
     return MalformedDraco(absl::StrCat("bitstream version ", header.major, ".", header.minor));
@@ -64,11 +66,11 @@ inline absl::StatusOr<uint64_t> ReadDracoVarint(ByteReader* reader, absl::string
   return MalformedDraco(absl::StrCat(what, " is too long"));
 }
 
-// The counts behind the header of a mesh.
+// The counts that follow the header of a mesh.
 struct DracoMeshCounts {
-  uint64_t num_points = 0;  // of edgebreaker: encoded vertices, before it splits any
+  uint64_t num_points = 0;  // for edgebreaker: the encoded vertices, before it splits any
   uint64_t num_faces = 0;
-  uint8_t num_attribute_data = 0;  // of edgebreaker
+  uint8_t num_attribute_data = 0;  // edgebreaker only
 };
 inline absl::StatusOr<DracoMeshCounts> ReadDracoMeshCounts(ByteReader* reader, uint8_t method) {
   DracoMeshCounts counts;
@@ -86,10 +88,12 @@ inline absl::StatusOr<DracoMeshCounts> ReadDracoMeshCounts(ByteReader* reader, u
   return counts;
 }
 
-// What must hold before attribute values are decoded.
+// Says whether the declared attributes may be decoded.
 using AttributeCheck = std::function<bool(const draco::PointCloud&)>;
 
 // A Draco decoder that looks at the declared attributes before it decodes their values.
+// DecodeAllAttributes is the one hook between the two: Draco calls it when the declarations have
+// been read and nothing has been allocated for the values.
 template <typename Decoder>
 class GuardedDecoder final : public Decoder {
  public:
@@ -104,6 +108,8 @@ class GuardedDecoder final : public Decoder {
   AttributeCheck check_;
 };
 
+// Decodes `bytes` into `geometry`. Draco reports most damage by its status, and some by exceptions
+// of the standard library, which end here: kDataLoss, or kResourceExhausted when memory ran out.
 template <typename Decoder, typename Geometry>
 absl::Status RunDracoDecoder(std::string_view bytes, AttributeCheck check, Geometry* geometry) {
   GuardedDecoder<Decoder> decoder(std::move(check));

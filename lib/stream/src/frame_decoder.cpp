@@ -1,3 +1,13 @@
+// How a kDracoDelta stream is decoded. A key frame holds positions that lie on the grid, from which
+// the integers are computed; it needs nothing else. A difference holds residuals, which give the
+// new integers together with those of the frame before. Positions are always computed from the
+// integers, so a key frame and a chain of differences give the same floats.
+//
+// Decoding starts by taking the last frame out of last_, and only a frame whose checksum agrees
+// puts one back. So there is no way to go on from a frame that is damaged or was restored from the
+// wrong predecessor: when a frame was lost on its way, the next difference fails by its checksum,
+// the differences after that fail because last_ is empty, and the next key frame mends the stream.
+// The caller asks the sender for one.
 #include "pleat/stream/frame_decoder.h"
 
 #include <utility>
@@ -66,7 +76,8 @@ absl::Status CheckStreamHeader(const StreamHeader& header, const MeshLimits& lim
 
 namespace {
 
-// positions (3 x V): column point_vertices[p] = points.col(p). False when a vertex has no point.
+// Sets column point_vertices[p] of `positions` (3 x V) to points.col(p) for every point p. Returns
+// false when a vertex has no point.
 bool Scatter(const Eigen::Matrix3Xf& points, const std::vector<int32_t>& point_vertices,
              int num_vertices, Eigen::Matrix3Xf* positions) {
   positions->resize(3, num_vertices);
@@ -111,7 +122,7 @@ absl::StatusOr<FrameDecoder> FrameDecoder::Create(StreamHeader header, const Mes
 
 absl::Status FrameDecoder::DecodeDelta(std::string_view bytes, const FrameMark& mark,
                                        Eigen::Matrix3Xf* positions) {
-  const Eigen::Matrix3Xi last = std::move(last_);  // empty again until this frame is right
+  const Eigen::Matrix3Xi last = std::move(last_);  // stays empty until this frame is right
   last_.resize(3, 0);
   if (mark.keyframe) {
     PLEAT_RETURN_IF_ERROR(DecodeDracoPointCloud(bytes, header_.num_vertices, &points_));
@@ -119,6 +130,7 @@ absl::Status FrameDecoder::DecodeDelta(std::string_view bytes, const FrameMark& 
     for (int k = 0; k < header_.num_vertices; ++k) {
       positions->col(header_.vertex_order[k]) = points_.col(k);
     }
+    // SnapToGrid converts to int and needs numbers below 2^26; written so that a NaN fails.
     const float limit = static_cast<float>(header_.box.step_m() * (1 << 26));
     if (!((positions->colwise() - header_.box.origin_m).cwiseAbs().maxCoeff() < limit)) {
       return absl::DataLossError("malformed key frame: a position is out of range");

@@ -1,3 +1,19 @@
+// A kDracoDelta stream, from the encoder's side. Every frame is snapped to integers on the grid
+// first, and all that follows is exact on them:
+//
+//   key frame    all positions, moved onto the grid, as a Draco point cloud. Draco quantizes on the
+//                same grid and finds the same integers again, so a reader needs no frame before it.
+//   difference   what the DeltaPredictor leaves of the movement since the last frame, as three
+//                int32 attributes. It means something only to a reader that has the last frame.
+//
+// `last` is the frame that a reader has, if all went well. It is replaced when a frame has been
+// encoded, and not when encoding fails, since the caller sends nothing then. Whether the bytes
+// arrive is unknown here. A reader that has missed a frame notices by the checksum in the mark and
+// asks for a key frame; RequestKeyframe then makes the next frame independent of `last`.
+//
+// Most differences are a quarter of a key frame. After a cut they can be larger, so a difference of
+// more than 7/8 of the last key frame is compared with a new key frame, and the smaller is sent.
+// The threshold saves encoding each frame twice.
 #include "pleat/stream/frame_encoder.h"
 
 #include <algorithm>
@@ -26,11 +42,13 @@ QuantizationBox MakeBox(const Eigen::Ref<const Eigen::Matrix3Xf>& reference,
   const Eigen::Vector3f high = reference.rowwise().maxCoeff();
   const float edge = static_cast<float>((high - low).maxCoeff() * options.box_margin);
   box.range_m = std::max(edge, 1e-6f);
-  if (options.max_error_mm > 0) {  // the cube's half diagonal is the bound
+  if (options.max_error_mm > 0) {
+    // A vertex is off by at most half the diagonal of a grid cell, sqrt(3)/2 steps. The last factor
+    // leaves room for the rounding of float32.
     const double step_m = options.max_error_mm * 1e-3 * 2 / std::sqrt(3.0) * (1 - 1e-4);
     box.bits = QuantizationBox::kMinBits;
     while (box.bits <= QuantizationBox::kMaxBits && step_m * ((1 << box.bits) - 1) < box.range_m) {
-      ++box.bits;  // one too many is refused by Validate
+      ++box.bits;  // may end one above kMaxBits, which Validate refuses
     }
     box.range_m = static_cast<float>(step_m * ((1 << box.bits) - 1));
   }
@@ -42,7 +60,9 @@ absl::Status CheckPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                             const QuantizationBox& box) {
   const Eigen::Array3f center = box.origin_m.array() + box.range_m / 2;
   const float limit = box.range_m * (0.5f + QuantizationBox::kMaxEdgesOutside);
-  int num_inside = 0;  // without branches; coordinates that are not finite are not inside
+  // The common case, that all is well, is decided without branches. A coordinate that is not finite
+  // does not count as inside.
+  int num_inside = 0;
   for (Eigen::Index v = 0; v < positions.cols(); ++v) {
     const float* position = &positions.coeffRef(0, v);
     for (int c = 0; c < 3; ++c) num_inside += std::fabs(position[c] - center[c]) <= limit;
@@ -62,12 +82,13 @@ absl::Status CheckPositions(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
   return absl::OkStatus();
 }
 
-// Point -> vertex of an encoded topology mesh, and its triangle count. Trusted bytes: our own.
+// What Draco has made of the topology mesh.
 struct DecodedOrder {
-  std::vector<int32_t> point_vertices;
+  std::vector<int32_t> point_vertices;  // the vertex of every point
   int num_triangles = 0;
 };
 
+// Decodes bytes that this process has just encoded; no guard is needed.
 absl::StatusOr<DecodedOrder> ReadBack(const std::string& bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
@@ -88,7 +109,8 @@ absl::StatusOr<DecodedOrder> ReadBack(const std::string& bytes) {
   return order;
 }
 
-// Vertices in the order of their first point; vertices without a point follow.
+// Returns the vertices in the order of their first points, then those without a point. `num_shown`
+// is the number of vertices that have one.
 std::vector<int32_t> FirstAppearance(const std::vector<int32_t>& point_vertices, int num_vertices,
                                      int* num_shown) {
   std::vector<int32_t> order;
@@ -126,20 +148,20 @@ struct FrameEncoder::State {
   StreamHeader header;
   MeshMethod method = MeshMethod::kEdgebreaker;
   int speed = 5;
-  std::unique_ptr<draco::Mesh> mesh;         // for kDracoMesh
-  std::unique_ptr<draco::PointCloud> cloud;  // for clouds and key frames
+  std::unique_ptr<draco::Mesh> mesh;         // kept for kDracoMesh only
+  std::unique_ptr<draco::PointCloud> cloud;  // for point clouds and key frames
   FrameMark mark;
 
-  // For kDracoDelta:
+  // The rest serves kDracoDelta streams.
   std::optional<DeltaPredictor> predictor;
   ResidualWriter writer;
-  std::unique_ptr<draco::PointCloud> residual_cloud;  // for residuals too large for `writer`
-  Eigen::Matrix3Xi last, now, movement, residuals;    // 3 x V, on the grid
+  std::unique_ptr<draco::PointCloud> residual_cloud;  // for residuals that `writer` refuses
+  Eigen::Matrix3Xi last, now, movement, residuals;    // 3 x V, in grid steps
   bool has_last = false;                              // false: a key frame must come next
-  Eigen::Matrix3Xf placed;
-  std::string key;  // the last key frame
+  Eigen::Matrix3Xf placed;                            // 3 x V, meters: `now` for a key frame
+  std::string key;  // the key frame encoded last, even if a smaller difference was sent instead
 
-  // Encodes the mesh with `method` and fills the header; false when a vertex was lost.
+  // Encodes the mesh with `method` and fills in the header. Returns false when a vertex was lost.
   absl::StatusOr<bool> TryTopology() {
     PLEAT_RETURN_IF_ERROR(EncodeDracoMesh(*mesh, header.box, method, speed, &header.topology));
     PLEAT_ASSIGN_OR_RETURN(const DecodedOrder decoded, ReadBack(header.topology));
@@ -151,13 +173,13 @@ struct FrameEncoder::State {
   }
 
   absl::Status EncodeKeyframe() {
-    // Of points of the grid Draco makes the same integers again.
     PlaceOnGrid(now, header.box, &placed);
     SetDracoPositions(placed, header.vertex_order, cloud.get());
     return EncodeDracoPointCloud(*cloud, header.box, speed, &key);
   }
 
-  // Room for every difference from now on: a larger one is sent as a key frame.
+  // Makes room for the frames that follow, so that the first difference is the last to allocate:
+  // one that is larger than a key frame is not sent.
   void Reserve(std::string* bytes) const { bytes->reserve(key.size() + key.size() / 2); }
 
   absl::Status EncodeDelta(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
@@ -173,7 +195,6 @@ struct FrameEncoder::State {
         PLEAT_RETURN_IF_ERROR(EncodeDracoResiduals(*residual_cloud, speed, bytes));
       }
     }
-    // After a cut a key frame may be smaller.
     if (mark.keyframe || bytes->size() > key.size() - key.size() / 8) {
       PLEAT_RETURN_IF_ERROR(EncodeKeyframe());
       if (mark.keyframe || key.size() <= bytes->size()) {
@@ -187,8 +208,8 @@ struct FrameEncoder::State {
     return absl::OkStatus();
   }
 
-  // Encodes the reference frame; edgebreaker where it keeps every vertex, else sequential (it drops
-  // vertices that belong to no triangle).
+  // Encodes the reference frame by edgebreaker, or sequentially where edgebreaker loses a vertex:
+  // it drops those that belong to no triangle.
   absl::Status MakeTopology(const Eigen::Ref<const Eigen::Matrix3Xf>& reference) {
     SetDracoPositions(reference, {}, mesh.get());
     method = MeshMethod::kEdgebreaker;
@@ -240,7 +261,8 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(
     state->cloud = MakeDracoPointCloud(header.num_vertices);
   }
   if (options.encoding == FrameEncoding::kDracoDelta) {
-    // From the decoder's view of the header, which may lack degenerate triangles.
+    // The predictor is built from what a decoder sees. Its mesh may lack degenerate triangles, and
+    // its reference frame has been quantized.
     PLEAT_ASSIGN_OR_RETURN(const FrameDecoder view, FrameDecoder::Create(header));
     state->predictor.emplace(view.topology(), view.reference(), header.box);
     state->residual_cloud = MakeDracoResidualCloud(header.num_vertices);

@@ -2,6 +2,13 @@
 // "Sequential decoder", "Symbol decoding" and "rANS decoding". Coder: J. Duda, Asymmetric numeral
 // systems (2013), the range variant. Division by multiplication: T. Granlund, P. Montgomery,
 // Division by invariant integers using multiplication (PLDI 1994), theorem 4.2.
+//
+// The work on a frame: turn residuals into symbols and count them, scale the counts to frequencies
+// that add up to a power of two, run the coder over the symbols, and write header, frequencies and
+// coded bytes. The coder is a stack: it takes the symbols from last to first, and the decoder,
+// which reads the bytes from their end, gets them from first to last. The order of the bytes, the
+// scaling of the frequencies and the widths below are those of Draco's decoder and cannot be chosen
+// freely; only the way to the frequencies can.
 #include "residual_writer.h"
 
 #include <algorithm>
@@ -10,13 +17,13 @@
 namespace pleat {
 namespace {
 
-// Larger symbols come from cuts, where a key frame is cheaper anyway.
+// Symbols that are larger come from cuts, where a key frame is cheaper anyway.
 constexpr uint32_t kMaxSymbol = 1 << 14;
-// With fewer values per different symbol the table of frequencies costs too much: Draco then codes
-// the number of bits of every value, and its bits.
+// With fewer values per different symbol the table of frequencies costs too much. Draco's other
+// form is then smaller: it codes the number of bits of every value, and the bits as they are.
 constexpr size_t kMinValuesPerSymbol = 16;
 constexpr int kMinPrecisionBits = 12, kMaxPrecisionBits = 20;
-// The state stays in [4, 1024) times 2^precision_bits.
+// Between two symbols the state of the coder is in [4, 1024) times 2^precision_bits.
 constexpr uint32_t kLowestState = 4;
 constexpr int kStateBits = 10;
 
@@ -32,7 +39,7 @@ void AppendLittleEndian(uint32_t value, int num_bytes, std::string* bytes) {
   for (int i = 0; i < num_bytes; ++i) bytes->push_back(static_cast<char>(value >> (8 * i)));
 }
 
-// 0, -1, 1, -2, ... -> 0, 1, 2, 3, ...
+// Maps 0, -1, 1, -2, ... to 0, 1, 2, 3, ...
 uint32_t ZigZag(int value) {
   return (static_cast<uint32_t>(value) << 1) ^ static_cast<uint32_t>(value >> 31);
 }
@@ -58,7 +65,8 @@ bool ResidualWriter::CountSymbols(const Eigen::Matrix3Xi& residuals, int c) {
   return channel.num_used * kMinValuesPerSymbol <= channel.symbols.size();
 }
 
-// Frequencies that sum to 2^precision_bits, none of them 0 where the symbol occurs.
+// Scales the counts to frequencies that add up to 2^precision_bits. A symbol that occurs must keep
+// a frequency of at least 1, or it could not be coded.
 void ResidualWriter::Normalize(Channel* channel) {
   const std::vector<uint32_t>& counts = channel->counts;
   channel->bit_length = static_cast<int>(std::bit_width(channel->num_used));
@@ -79,7 +87,8 @@ void ResidualWriter::Normalize(Channel* channel) {
     above_one += channel->steps[s].frequency - 1;
     if (counts[s] > counts[most_frequent]) most_frequent = s;
   }
-  // Rare symbols that were raised to 1 are paid for by all others in proportion.
+  // All other symbols pay, in proportion, for the rare ones that were raised to 1. What rounding
+  // leaves is taken in steps of 1, and whatever is missing goes to the most frequent symbol.
   if (const int64_t excess = sum - target; excess > 0) {
     for (Step& step : channel->steps) {
       if (step.frequency < 2) continue;
@@ -100,7 +109,8 @@ void ResidualWriter::Normalize(Channel* channel) {
     step.cumulative = cumulative;
     cumulative += step.frequency;
     if (step.frequency == 0) continue;
-    // Exact for states below 2^31: m = floor(2^(31 + l) / d) + 1, l = ceil(log2 d).
+    // With l = ceil(log2 d) and m = floor(2^(31 + l) / d) + 1, the quotient x / d is exact for
+    // every x below 2^31. States stay below 1024 * 2^20 = 2^30.
     const int log = std::bit_width(step.frequency - 1);
     step.shift = static_cast<uint32_t>(31 + log);
     step.reciprocal =
@@ -108,14 +118,15 @@ void ResidualWriter::Normalize(Channel* channel) {
   }
 }
 
-// The three coders advance together: each waits for its own last step only.
+// Codes all three channels. They advance together because every step depends on the one before it
+// in the same channel: the processor works on two channels while the third waits for its state.
 void ResidualWriter::EncodeSymbols() {
   const size_t count = channels_[0].symbols.size();
   uint32_t state[3], precision[3];
   uint8_t* out[3];
   for (int c = 0; c < 3; ++c) {
     Channel& channel = channels_[c];
-    channel.bytes.resize(3 * count + 8);
+    channel.bytes.resize(3 * count + 8);  // a symbol takes less than 3 bytes, the last state 4
     out[c] = channel.bytes.data();
     precision[c] = uint32_t{1} << channel.precision_bits;
     state[c] = kLowestState * precision[c];
@@ -130,7 +141,8 @@ void ResidualWriter::EncodeSymbols() {
     }
   }
   for (int c = 0; c < 3; ++c) {
-    // The state ends the bytes; its two highest bits say how many more bytes it has.
+    // The last state ends the bytes. The two highest bits of the last byte say how many more bytes
+    // belong to the state.
     const uint32_t x = state[c] - kLowestState * precision[c];
     const int more = x < 1u << 6 ? 0 : x < 1u << 14 ? 1 : x < 1u << 22 ? 2 : 3;
     const uint32_t word = x + (static_cast<uint32_t>(more) << (6 + 8 * more));
@@ -147,7 +159,7 @@ void ResidualWriter::AppendChannel(const Channel& channel, std::string* bytes) {
   AppendVarint(channel.steps.size(), bytes);
   for (size_t s = 0; s < channel.steps.size(); ++s) {
     const uint32_t frequency = channel.steps[s].frequency;
-    if (frequency == 0) {  // and up to 63 more
+    if (frequency == 0) {  // one entry for up to 64 of them; the last symbol of the table occurs
       size_t more = 0;
       while (more < 63 && channel.steps[s + more + 1].frequency == 0) ++more;
       bytes->push_back(static_cast<char>(more << 2 | 3));
@@ -170,10 +182,10 @@ bool ResidualWriter::Write(const Eigen::Matrix3Xi& residuals, std::string* bytes
   EncodeSymbols();
 
   bytes->assign("DRACO\x02\x03", 7);  // version 2.3
-  bytes->append(4, '\0');             // point cloud, sequential, no flags
+  bytes->append(4, '\0');             // point cloud, sequential, two bytes without flags
   AppendLittleEndian(static_cast<uint32_t>(residuals.cols()), 4, bytes);
   bytes->push_back(1);  // one attribute decoder
-  bytes->push_back(3);  // attributes
+  bytes->push_back(3);  // its attributes
   for (int c = 0; c < 3; ++c) {
     for (const int field : {int{kGeneric}, int{kInt32}, /*components=*/1, /*normalized=*/0, c}) {
       bytes->push_back(static_cast<char>(field));

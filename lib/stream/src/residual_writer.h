@@ -1,4 +1,4 @@
-// Residuals -> Draco bytes, faster than Draco's own encoder.
+// Writes residuals as Draco bytes, faster than Draco's own encoder does.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,32 +9,34 @@
 
 namespace pleat {
 
-// Writes sequential Draco point clouds of three int32 attributes of one component without
-// prediction, what EncodeDracoResiduals makes with Draco itself, in a quarter of its time. One per
-// thread: it owns scratch memory, as large as it can get from the first frame on.
+// Writes sequential Draco point clouds with three int32 attributes of one component each and
+// without prediction. EncodeDracoResiduals makes the same kind of cloud with Draco itself and takes
+// four times as long. One writer serves one thread: it owns scratch memory, which has its final
+// size after the first frame.
 class ResidualWriter {
  public:
-  // residuals: 3 x V. False when they are too large, or too few for their range: then Draco itself
-  // finds a smaller form.
+  // residuals: 3 x V. Returns false when they are too large, or too few for the number of different
+  // values; Draco itself then finds a smaller form.
   bool Write(const Eigen::Matrix3Xi& residuals, std::string* bytes);
 
  private:
-  // How a symbol changes the state of the coder.
+  // How one symbol changes the state of the coder.
   struct Step {
-    uint32_t frequency = 0;   // of 2^precision_bits
-    uint32_t cumulative = 0;  // frequencies of the symbols before
-    uint32_t reciprocal = 0;  // division by the frequency: multiply and shift
+    uint32_t frequency = 0;   // all frequencies add up to 2^precision_bits
+    uint32_t cumulative = 0;  // the sum of the frequencies of smaller symbols
+    uint32_t reciprocal = 0;  // x / frequency = (x * reciprocal) >> shift
     uint32_t shift = 0;
   };
+  // One coordinate of all residuals: the zigzag symbols, their statistics, and the coded bytes.
   struct Channel {
     std::vector<uint32_t> symbols;  // V
-    std::vector<uint32_t> counts;   // per symbol
-    size_t num_used = 0;            // symbols that occur
-    std::vector<Step> steps;        // per symbol
-    std::vector<uint8_t> bytes;     // of the coder, last symbol first
-    size_t num_bytes = 0;
-    int bit_length = 0;      // what Draco calls the maximum bit length of the symbols
-    int precision_bits = 0;  // follows from it
+    std::vector<uint32_t> counts;   // one per possible symbol
+    size_t num_used = 0;            // how many different symbols occur
+    std::vector<Step> steps;        // one per possible symbol
+    std::vector<uint8_t> bytes;     // the output of the coder, the last symbol first
+    size_t num_bytes = 0;           // how much of `bytes` is used
+    int bit_length = 0;             // what Draco calls the maximum bit length of the symbols
+    int precision_bits = 0;         // follows from bit_length, here and in every decoder
   };
 
   bool CountSymbols(const Eigen::Matrix3Xi& residuals, int c);

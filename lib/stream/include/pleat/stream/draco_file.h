@@ -1,4 +1,4 @@
-// Draco files from anywhere (.drc) -> plain arrays. Bytes are hostile.
+// Reads Draco files from anywhere (.drc) into plain arrays. The bytes are treated as hostile.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,19 +12,21 @@
 namespace pleat {
 
 struct DracoGeometry {
-  // 3 x N, meters: the position values of a mesh in the order of the file (corners that differ in a
-  // texture coordinate only share one), or the points of a point cloud.
+  // 3 x N, meters. For a mesh these are the position values in the order of the file; corners that
+  // differ only in a texture coordinate share one. For a point cloud they are its points.
   Eigen::Matrix3Xf positions;
-  Eigen::Matrix3Xi triangles;  // 3 x F, columns of `positions`, checked; none in a point cloud
-  // N or empty: the int32 generic attribute, where there is one (Pleat writes vertex numbers).
+  // 3 x F. The entries are columns of `positions` and are known to exist. A point cloud has none.
+  Eigen::Matrix3Xi triangles;
+  // N entries, or empty: the first int32 generic attribute of a mesh, if it has one. Pleat's own
+  // files keep the original vertex numbers there.
   std::vector<int32_t> vertex_numbers;
 };
 
-// Reads what Draco 1.1 or newer wrote. Counts in the header and the declared attributes are
-// compared with the limits before Draco allocates for them; but what Draco takes in between is not
-// bounded by them (61 bytes reached 20 GB and 56 s), so bytes from outside belong into a process
-// with a memory limit (client/draco_child). kDataLoss: malformed. kResourceExhausted: over a limit,
-// or no memory.
+// Reads files written by Draco 1.1 or newer. The counts in the header and the declared attributes
+// are compared with the limits before Draco allocates memory for them. This does not bound what
+// Draco takes in between: a file of 61 bytes reached 20 GB and 56 s. Bytes from outside therefore
+// belong in a process with a memory limit (client/draco_child). Returns kDataLoss for a malformed
+// file and kResourceExhausted for one that exceeds a limit or the available memory.
 absl::StatusOr<DracoGeometry> DecodeDracoFile(std::string_view bytes,
                                               const MeshLimits& limits = {});
 

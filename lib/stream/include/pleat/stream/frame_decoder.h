@@ -1,4 +1,5 @@
-// Draco bytes of a stream -> positions in the character's own vertex order. Bytes are hostile.
+// Decodes the Draco bytes of a stream into positions in the character's own vertex order. The bytes
+// are treated as hostile.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,26 +16,35 @@ namespace pleat {
 
 class DeltaPredictor;
 
-// kInvalidArgument names what a decoder cannot use: counts, box, vertex order.
+// Returns OK when a decoder can use `header`. kInvalidArgument names the field that it cannot use:
+// a count, the box, the control vertices or the vertex order. The topology bytes are not read here.
 absl::Status CheckStreamHeader(const StreamHeader& header, const MeshLimits& limits = {});
 
-// Draco is memory-safe on hostile bytes but not resource-safe (an 86-byte file reached 22 GB), and
-// accepts face indices that do not exist. So every header count is compared with what the stream
-// declared before Draco allocates, attributes before their values are decoded, indices afterwards.
+// Draco is memory-safe on hostile bytes, but it is not resource-safe (an 86-byte file reached
+// 22 GB), and it accepts face indices that do not exist. Hence there are three checks against what
+// the stream declared: the counts of every frame before Draco allocates anything, the attributes
+// before their values are decoded, and the indices afterwards.
+//
+// One decoder serves one thread: it owns scratch memory and, in a kDracoDelta stream, the last
+// frame.
 class FrameDecoder {
  public:
-  // Decodes and checks the topology. kInvalidArgument or kDataLoss names what is wrong.
+  // Decodes and checks the topology. kInvalidArgument says what is wrong with the header, kDataLoss
+  // what is wrong with the bytes of its topology.
   static absl::StatusOr<FrameDecoder> Create(StreamHeader header, const MeshLimits& limits = {});
 
   const StreamHeader& header() const { return header_; }
-  // Triangles over the character's vertices, in the order of the topology mesh.
+  // The triangles index the character's vertices and stand in the order of the topology mesh.
   const Topology& topology() const { return topology_; }
-  const Eigen::Matrix3Xf& reference() const { return reference_; }  // 3 x V, decoded
+  // The reference frame as it was decoded from the header: 3 x V, meters.
+  const Eigen::Matrix3Xf& reference() const { return reference_; }
 
-  // Fills `positions` (3 x V, meters, character's vertex order). kDataLoss says what is wrong; then
-  // `positions` holds nothing useful. Not for two threads at once.
-  // `mark` is the frame's own; streams other than kDracoDelta do without. In those a frame that is
-  // a difference needs the frame before: after an error only a key frame is decoded again.
+  // Fills `positions` (3 x V, meters, in the character's vertex order). After an error `positions`
+  // holds nothing useful; kDataLoss says what is wrong with the bytes.
+  //
+  // `mark` travels beside the bytes and is used in kDracoDelta streams only. There a difference
+  // needs the frame before it. After any error the decoder forgets that frame, and every difference
+  // returns kFailedPrecondition until a key frame comes.
   absl::Status Decode(std::string_view bytes, const FrameMark& mark, Eigen::Matrix3Xf* positions);
   absl::Status Decode(std::string_view bytes, Eigen::Matrix3Xf* positions) {
     return Decode(bytes, FrameMark{}, positions);
@@ -46,14 +56,16 @@ class FrameDecoder {
   StreamHeader header_;
   Topology topology_;
   Eigen::Matrix3Xf reference_;
-  Eigen::Matrix3Xf points_;  // 3 x number of points in the last frame
+  // Scratch memory: the points of the last frame (3 x P) and the vertex of each of them.
+  Eigen::Matrix3Xf points_;
   std::vector<int32_t> point_vertices_;
-  // Of kDracoDelta streams:
+
+  // The rest serves kDracoDelta streams.
   absl::Status DecodeDelta(std::string_view bytes, const FrameMark& mark,
                            Eigen::Matrix3Xf* positions);
   std::shared_ptr<const DeltaPredictor> predictor_;
-  Eigen::Matrix3Xi last_, now_,
-      residuals_;  // 3 x V, on the grid; last_ is empty before a key frame
+  // 3 x V, in grid steps. last_ is empty while a key frame must come next.
+  Eigen::Matrix3Xi last_, now_, residuals_;
 };
 
 }  // namespace pleat
