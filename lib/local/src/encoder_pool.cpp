@@ -11,9 +11,10 @@
 namespace pleat {
 namespace {
 
-// Topology mesh, cloud, header and the integers of two frames; measured once, not exact.
+// What an encoder holds: the topology mesh, a cloud, the header and the integers of two frames. The
+// number was measured once and is not exact.
 constexpr uint64_t kBytesPerVertex = 300;
-constexpr double kControlShare = .05;  // of the vertices
+constexpr double kControlShare = .05;  // the share of the vertices that are control vertices
 
 uint64_t ChargeOf(const FrameEncoder& encoder) {
   return kBytesPerVertex * static_cast<uint64_t>(encoder.header().num_vertices);
@@ -25,7 +26,7 @@ std::string KeyOf(const std::string& model_id, const FrameEncoderOptions& option
                       options.max_error_mm, "/", options.speed, "/", options.box_margin);
 }
 
-// Of the model's mesh, or of its control mesh.
+// Makes an encoder for the model's mesh or for its control mesh.
 absl::StatusOr<FrameEncoder> MakeEncoder(const CharacterModel& model,
                                          const FrameEncoderOptions& options) {
   const Eigen::Matrix3Xd& rest = model.rig().rest_positions;
@@ -65,6 +66,7 @@ absl::StatusOr<std::unique_ptr<EncoderPool::Lease>> EncoderPool::Take(
     }
     ++num_made_;
   }
+  // Made without the lock, since it takes longer than all that other sessions do under it.
   PLEAT_ASSIGN_OR_RETURN(FrameEncoder encoder, MakeEncoder(model, options));
   return std::make_unique<Lease>(this, std::move(key), std::move(encoder));
 }

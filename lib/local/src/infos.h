@@ -1,4 +1,4 @@
-// Descriptions of sequences and models.
+// Make the descriptions of sequences and models that the services return and the catalogue keeps.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ Pose& PoseList::Grown() {
 void PoseList::push_front(const Pose& pose, size_t most) {
   if (size_ < most) Grown();
   const auto end = poses_.begin() + static_cast<ptrdiff_t>(size_);
-  std::rotate(poses_.begin(), end - 1, end);  // exchanges the poses' memory
+  std::rotate(poses_.begin(), end - 1, end);  // moves poses, which exchanges their memory
   poses_.front() = pose;
 }
 
@@ -55,13 +55,15 @@ absl::Status LiveQueue::Check(const LivePose& pose) const {
 
 void LiveQueue::Push(const LivePose& pose, std::chrono::steady_clock::time_point now) {
   absl::Status status = Check(pose);
-  if (status.ok()) {  // others must not become history
+  if (status.ok()) {  // a pose that cannot be shown must not become history
     if (pose.restart || !pose.history.empty()) recent_.clear();
     recent_.push_front(pose.pose, depth_);
     for (size_t h = 0; h < pose.history.size() && recent_.size() < depth_; ++h) {
       recent_.push_back(pose.history[h]);
     }
   }
+  // A pose that replaces another one takes over its wish for a key frame: the client asked because
+  // it cannot decode differences, and that has not changed.
   const bool supersedes = rules_.latest_wins && !waiting_.empty();
   LiveTurn& turn = supersedes ? waiting_.back() : waiting_.PushBack();
   turn.keyframe = pose.keyframe || (supersedes && turn.keyframe);
@@ -91,7 +93,7 @@ void LiveQueue::Take(LiveTurn* turn) {
   const LiveTurn& first = waiting_.front();
   turn->number = first.number;
   turn->status = first.status;
-  turn->poses.CopyFrom(first.poses);  // not exchanged: the slot keeps its memory
+  turn->poses.CopyFrom(first.poses);  // copied, not moved, so that the slot keeps its memory
   turn->keyframe = first.keyframe;
   turn->num_superseded = first.num_superseded;
   turn->arrived = first.arrived;

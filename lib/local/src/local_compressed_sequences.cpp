@@ -23,7 +23,7 @@ CompressedSequenceInfo MakeInfo(const SequenceDecoder& decoder, const std::strin
           .record = std::nullopt};
 }
 
-// A session with the memory that it takes.
+// A session that holds the reservation of its memory as long as it lives.
 class ReservedSession final : public DecodeSession {
  public:
   ReservedSession(std::unique_ptr<DecodeSession> session, Reservation memory)
@@ -32,7 +32,7 @@ class ReservedSession final : public DecodeSession {
   absl::StatusOr<const Eigen::Matrix3Xf*> Next() override { return session_->Next(); }
 
  private:
-  const Reservation memory_;  // given back after the session has freed it
+  const Reservation memory_;  // declared first, so that it is given back when session_ is gone
   const std::unique_ptr<DecodeSession> session_;
 };
 
@@ -69,7 +69,8 @@ absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> LocalCompressedSequenc
 
 absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
     pleat::Upload* upload) {
-  // The same file made by a job has a record that an upload must not replace.
+  // When a job has made the same file, its row has a record that an upload must not replace. The
+  // bytes that came are checked all the same.
   absl::StatusOr<CompressedSequenceInfo> known = Get(upload->id());
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, upload->ReadComplete());
   if (known.ok()) {
@@ -117,7 +118,8 @@ absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDec
     const std::string& id, FrameRange range) {
   PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info, Get(id));
   const std::string what = absl::StrCat("decoding '", id, "'");
-  // First the file, then all that its decoder will take.
+  // The memory is reserved in two steps, because only the opened file says what its decoder will
+  // take: first for the bytes of the file, then for everything.
   PLEAT_ASSIGN_OR_RETURN(Reservation memory, decode_memory_.Reserve(info.size_bytes, what));
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, files_->blobs().Get(id));
   PLEAT_ASSIGN_OR_RETURN(SequenceDecoder decoder, OpenDecoder(std::move(bytes)));

@@ -11,7 +11,8 @@
 namespace pleat {
 namespace {
 
-// What can be said about a rig before its mesh is read.
+// Checks what can be said about a rig before its mesh is read, so that a wrong rig is refused when
+// the job is created and not when it runs.
 absl::Status CheckRigCounts(const RigFile& rig, const SequenceInfo& clip) {
   if (rig.rest_frame >= clip.num_frames) {
     return absl::InvalidArgumentError(absl::StrCat("rig: rest_frame ", rig.rest_frame, " of '",
@@ -26,7 +27,7 @@ absl::Status CheckRigCounts(const RigFile& rig, const SequenceInfo& clip) {
   return absl::OkStatus();
 }
 
-// One job of the manager as one observer follows it.
+// One observer of one job. It shares the job with the manager, which must outlive it.
 class LocalSubscription final : public JobSubscription {
  public:
   LocalSubscription(const JobManager* manager, std::shared_ptr<JobStateMachine> job,

@@ -1,3 +1,31 @@
+// The way of a pose through a live session. The names in front are the threads.
+//
+//   caller         Push copies the pose into queue_. When no answer is under way and the queue is
+//                  ready, the caller calls Answer, which submits this object to the batcher.
+//   pose thread    Prepare takes the next pose out of the queue and makes its query. The batcher
+//                  evaluates it together with those of other sessions. Evaluated encodes the frame
+//                  and hands the reply to the listener, all on the same thread.
+//   any            When the reply is out of the way, the caller calls Answer again. It may do so
+//                  from inside OnReply.
+//
+// Only queue_ is shared between these threads, and mutex_ guards it alone: nothing is computed and
+// nobody is called while it is held, so a pose can arrive at any time. Session, turn and reply have
+// no lock, because PoseStream allows one answer at a time: the caller knows of OnReply before it
+// calls Answer again. On its way from Answer to Prepare the new answer passes through the mutex of
+// the batcher, which makes all writes of the last one visible to the new thread.
+//
+// The pose is taken in Prepare and not in Answer. While the session waits for its turn, a newer
+// pose may replace the one that waits (latest_wins), and the time in the queue is measured up to
+// here.
+//
+// A pose that cannot be shown is an answer too: Prepare returns false, and Evaluated replies with
+// the status. So does an evaluation or an encoding that runs out of memory. The session goes on.
+// The wish for a key frame is passed on before the frame is encoded and survives a failure: the
+// encoder remembers it until a frame succeeds.
+//
+// Memory: the queue is allocated with the stream; turn, pointers and reply grow with the first
+// answers and are used again. The listener gets reply_ by reference, may exchange the frame in it,
+// and leaves the rest. OnReply may destroy this object, so nothing follows it.
 #include "local_pose_stream.h"
 
 #include <new>
@@ -70,7 +98,7 @@ void LocalPoseStream::Evaluated(const PoseQuery* query, double evaluate_us, int 
   reply_.num_superseded = turn_.num_superseded;
   reply_.queue_us = std::chrono::duration<double, std::micro>(start_ - turn_.arrived).count();
   reply_.num_together = num_together;
-  listener_->OnReply(std::move(reply_));  // this object may be gone when it returns
+  listener_->OnReply(std::move(reply_));  // must stay last: it may destroy this object
 }
 
 }  // namespace pleat

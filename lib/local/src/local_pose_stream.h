@@ -1,4 +1,4 @@
-// Poses as they happen, answered by a batcher.
+// A live session in this process: poses as they happen, answered by a batcher.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@
 namespace pleat {
 
 // An answer allocates only what LocalPoseSession does, as long as the listener leaves the memory of
-// the frames. `batcher` and `listener` must outlive it.
+// the frames where it is. `batcher` and `listener` must outlive the stream.
 class LocalPoseStream final : public PoseStream, private PoseWork {
  public:
   LocalPoseStream(std::unique_ptr<LocalPoseSession> session, const LiveRules& rules,
@@ -33,18 +33,18 @@ class LocalPoseStream final : public PoseStream, private PoseWork {
   PoseEvaluator& evaluator() override { return session_->evaluator(); }
   void Evaluated(const PoseQuery* query, double evaluate_us, int num_together) override;
 
-  // Fills reply_.frame.
+  // Fills reply_.frame, or says why it cannot.
   absl::Status Encode(const PoseQuery& query, double evaluate_us);
 
   PoseBatcher* const batcher_;
   LiveListener* const listener_;
-  // Used by the one answer that is under way.
+  // Everything up to start_ belongs to the one answer that is under way and needs no lock. Apart
+  // from the session, these are members in order to keep their memory from answer to answer.
   const std::unique_ptr<LocalPoseSession> session_;
-  // Members for the sake of their memory.
   LiveTurn turn_;
-  std::vector<const Pose*> poses_;  // of turn_
+  std::vector<const Pose*> poses_;  // the poses of turn_
   LiveReply reply_;
-  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point start_;  // when turn_ was taken
 
   mutable std::mutex mutex_;
   LiveQueue queue_;  // guarded by mutex_

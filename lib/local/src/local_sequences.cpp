@@ -66,7 +66,8 @@ absl::Status LocalSequences::Delete(const std::string& id) {
 }
 
 absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) {
-  // An id is of one kind of file only, whatever it was uploaded as.
+  // The id is the hash of the bytes, and no bytes are a sequence and a compressed sequence at once,
+  // so one question serves both kinds of upload.
   const absl::StatusOr<SequenceInfo> sequence = Get(id);
   if (sequence.ok()) return UploadStatus{sequence->size_bytes, true};
   const absl::StatusOr<CompressedSequenceInfo> compressed =

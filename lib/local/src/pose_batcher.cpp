@@ -1,3 +1,28 @@
+// Two queues meet here. The executor decides when a thread works, by turns; the lines in waiting_
+// decide what it does in its turn. Submit puts a work at the end of its model's line and then posts
+// one turn for the model. A turn does not belong to the work that brought it: it takes the works at
+// the front of the line, several at once if they are there. The turns that these works brought find
+// an empty line later, and return. The other way around is impossible: the work enters the line
+// before its turn is posted, and a turn that finds a line takes at least one work from it, so there
+// are never more works in a line than turns to come. No work is forgotten.
+//
+// How many a turn takes: an equal share of the line for each thread, rounded up. Two works on two
+// threads are two batches of one, since a core that does nothing costs more than a batch saves.
+//
+// A work has one owner at a time. While it waits, its link belongs to mutex_; from TakeBatch on, it
+// belongs to the thread that took it, until Evaluated is called. Prepare, evaluation and Evaluated
+// run without the mutex. Evaluated encodes and sends the frame, and the session may submit itself
+// again or be gone before the call returns. So no work is touched after it was told, and those with
+// a query are told when the whole batch has been evaluated, since it borrows their memory. Prepare
+// comes as late as possible: it picks the pose, and a newer one may have replaced the pose that
+// Submit was called for.
+//
+// `model` is a key here and is never dereferenced. A late turn may outlive its model; if another
+// model has its address by then, that one gets a turn more than it needs.
+//
+// What is allocated, and when: as many batches as the executor has threads, with the first Submit;
+// room for kExpectedModels lines at the same time; nothing for a frame. Works are linked through a
+// member of their own, and the task of a turn, two pointers, fits into std::function itself.
 #include "pleat/local/pose_batcher.h"
 
 #include <algorithm>
@@ -35,7 +60,7 @@ void PoseBatcher::Submit(const CharacterModel* model, PoseWork* work) {
     line->last = work;
     ++line->size;
   }
-  executor_->Post([this, model] { Run(model); });  // small enough for std::function itself
+  executor_->Post([this, model] { Run(model); });
 }
 
 std::unique_ptr<PoseBatcher::Batch> PoseBatcher::TakeBatch(const CharacterModel* model) {
@@ -43,10 +68,9 @@ std::unique_ptr<PoseBatcher::Batch> PoseBatcher::TakeBatch(const CharacterModel*
   const auto line = std::find_if(waiting_.begin(), waiting_.end(),
                                  [model](const Line& line) { return line.model == model; });
   if (line == waiting_.end()) return nullptr;
-  // An equal share for every thread: together is cheaper, but not than a core that does nothing.
   const auto num_threads = static_cast<size_t>(executor_->num_threads());
   const size_t share = (line->size + num_threads - 1) / num_threads;
-  // Every thread of the executor has at most one.
+  // There are as many batches as threads, and a turn has at most one, so one is there.
   std::unique_ptr<Batch> batch = std::move(unused_.back());
   unused_.pop_back();
   for (size_t i = 0; i < std::min(share, static_cast<size_t>(most_together_)); ++i) {
@@ -54,7 +78,7 @@ std::unique_ptr<PoseBatcher::Batch> PoseBatcher::TakeBatch(const CharacterModel*
     line->first = line->first->next_waiting_;
     --line->size;
   }
-  if (line->size == 0) {
+  if (line->size == 0) {  // the order of lines does not matter
     *line = waiting_.back();
     waiting_.pop_back();
   }

@@ -28,7 +28,7 @@ absl::StatusOr<std::unique_ptr<LocalPoseSession>> LocalPoseSession::Open(
 absl::StatusOr<std::unique_ptr<LocalPoseSession>> LocalPoseSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
     std::unique_ptr<EncoderPool::Lease> encoder) {
-  // Fails early, before the first pose, when the scales do not fit.
+  // Evaluates the rest pose, so that wrong bone scales fail now and not with the first pose.
   PoseEvaluator evaluator(model);
   EvaluatedFrame frame;
   PLEAT_RETURN_IF_ERROR(
@@ -74,7 +74,7 @@ absl::Status LocalPoseSession::Encode(const PoseQuery& query, double evaluate_us
   }
   const Clock::time_point start = Clock::now();
   const std::vector<int32_t>& vertices = header().control_vertices;
-  if (!vertices.empty()) {  // by hand: Eigen would copy the list of vertices
+  if (!vertices.empty()) {  // column by column, because Eigen's indexing would copy the list
     control_.resize(3, static_cast<Eigen::Index>(vertices.size()));
     for (size_t i = 0; i < vertices.size(); ++i) {
       control_.col(static_cast<Eigen::Index>(i)) = frame_.positions.col(vertices[i]);

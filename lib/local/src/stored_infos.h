@@ -1,4 +1,4 @@
-// Catalogue rows as descriptions of what they stand for.
+// Read rows of the catalogue as the descriptions that they hold.
 #pragma once
 
 #include <string>
@@ -12,6 +12,7 @@
 
 namespace pleat {
 
+// Says which kind of entry a description belongs to, and how its row is decoded.
 template <typename Info>
 struct StoredKind;
 template <>

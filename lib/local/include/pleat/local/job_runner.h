@@ -1,4 +1,4 @@
-// What jobs do: train a model, or compress a sequence.
+// The work of jobs: training a model, or compressing a sequence.
 #pragma once
 
 #include <functional>
@@ -20,16 +20,19 @@ using TrainFunction = std::function<absl::StatusOr<std::shared_ptr<const Charact
     const std::vector<MeshSequence>& clips, const TrainOptions& options,
     const TrainResources& resources, TrainSummary* summary, const Progress& progress)>;
 
-// Thread-safe. `files` and `sequences` must outlive it.
+// Runs jobs on the threads of its callers, several at a time. Thread-safe. `files` and `sequences`
+// must outlive it.
 class JobRunner {
  public:
-  // num_threads: of one job, 0 = one per core.
+  // train: how a job without a rig of its own is trained; tests put their own function here.
+  // num_threads: the threads of one job, 0 = one per core.
   JobRunner(StoredFiles* files, LocalSequences* sequences, TrainFunction train, int num_threads)
       : files_(files), sequences_(sequences), train_(std::move(train)), num_threads_(num_threads) {}
 
-  // Does the work of the job and stores its result.
+  // Does the work of the job and stores its result. Returns the errors of reading, training or
+  // compressing, and kCancelled when `progress` was cancelled.
   absl::StatusOr<JobOutcome> Run(const JobInfo& job, const Progress& progress) const;
-  // Reads a user's rig under the limits of the service.
+  // Reads a user's rig (JSON) under the limits of the service.
   absl::StatusOr<RigFile> DecodeUserRig(const std::string& text) const;
 
  private:

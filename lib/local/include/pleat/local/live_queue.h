@@ -12,7 +12,7 @@
 
 namespace pleat {
 
-// Poses whose memory is used again when their number changes.
+// A list of poses that keeps the memory of poses it no longer holds, for those that come later.
 class PoseList {
  public:
   size_t size() const { return size_; }
@@ -21,49 +21,54 @@ class PoseList {
 
   void clear() { size_ = 0; }
   void push_back(const Pose& pose) { Grown() = pose; }
-  // The last one goes when there are more than `most`.
+  // Drops the last pose when there would be more than `most`.
   void push_front(const Pose& pose, size_t most);
   void CopyFrom(const PoseList& other);
 
  private:
-  Pose& Grown();  // the new last one
+  Pose& Grown();  // adds a last pose, which holds old values, and returns it
 
-  std::vector<Pose> poses_;  // the first size_ count
+  std::vector<Pose> poses_;  // the list is the first size_ of them; the rest is memory
   size_t size_ = 0;
 };
 
 // What one reply answers.
 struct LiveTurn {
-  uint64_t number = 0;
-  absl::Status status{};  // not OK: why the pose cannot be shown
-  PoseList poses;         // [0] is shown, [h] is h intervals earlier
-  bool keyframe = false;  // asked for by this pose or one that it supersedes
-  int num_superseded = 0;
+  uint64_t number = 0;     // the number that the client gave to the pose
+  absl::Status status{};   // not OK: why the pose cannot be shown
+  PoseList poses;          // [0] is shown, [h] is h training-frame intervals earlier
+  bool keyframe = false;   // asked for by this pose or by one that it supersedes
+  int num_superseded = 0;  // poses that it replaced and that get no reply
   std::chrono::steady_clock::time_point arrived;
 };
 
-// Bounded whatever the client does: without latest_wins HasRoom says when to stop reading, with it
-// a newer pose takes the place of the one that waits. All memory is allocated when the queue is
-// made. Not thread-safe.
+// The queue is bounded whatever the client does. Without latest_wins, HasRoom says when the caller
+// must stop reading. With latest_wins, a newer pose takes the place of the one that waits, and what
+// is bounded is the number of replies that the client has not acknowledged. All memory for poses is
+// allocated when the queue is made. Not thread-safe.
+//
+// The history of a pose is what was pushed before it, whether it was answered or superseded, so
+// that speeds stay right when a client sends more poses than are shown. Poses that cannot be shown
+// do not become history.
 class LiveQueue {
  public:
-  // depth: poses per query, 1 to kMaxPosesPerQuery. Poses without `num_joints` rotations get a
-  // status.
+  // depth: the poses of a query with its history, 1 to kMaxPosesPerQuery. A pose, or a pose of its
+  // history, that does not have `num_joints` rotations gets a status that says so.
   LiveQueue(const LiveRules& rules, int depth, int num_joints);
 
   bool HasRoom() const;
-  // Copies what it needs.
+  // Call it when HasRoom(). `pose` is copied; `now` is when it arrived.
   void Push(const LivePose& pose, std::chrono::steady_clock::time_point now);
 
-  // `replies_received` of this session were read by the client; an older number changes nothing.
-  // kInvalidArgument when there were not as many.
+  // Notes that the client has read the first `replies_received` replies of this session. A number
+  // smaller than an earlier one changes nothing. kInvalidArgument when fewer replies were sent.
   absl::Status Acknowledge(uint64_t replies_received);
 
   bool empty() const { return waiting_.empty(); }
-  // A pose waits and its reply may be sent now.
+  // Says whether a pose waits and its reply may be sent now.
   bool ready() const;
-  // The pose to answer next; call when ready. Counts its reply as sent.
-  // `turn` keeps its memory.
+  // Takes out the pose to answer next and counts its reply as sent. Call it when a pose waits.
+  // `turn` is overwritten and keeps its memory.
   void Take(LiveTurn* turn);
   LiveTurn Take();
 
@@ -74,7 +79,8 @@ class LiveQueue {
   const size_t depth_;
   const size_t num_joints_;
   RingQueue<LiveTurn> waiting_;  // at most one with latest_wins
-  PoseList recent_;              // newest first, at most depth_
+  PoseList recent_;              // what becomes history: newest first, at most depth_
+  // Counts of replies. Only latest_wins looks at their difference, the replies in flight.
   uint64_t num_sent_ = 0, num_acknowledged_ = 0;
 };
 

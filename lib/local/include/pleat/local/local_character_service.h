@@ -1,4 +1,4 @@
-// Everything Pleat offers, in this process: store, jobs and cache behind the five interfaces.
+// Everything that Pleat offers, in this process: store, jobs and cache behind the five interfaces.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +18,13 @@ namespace pleat {
 
 struct LocalServiceOptions {
   std::string data_dir{};
-  uint64_t reserve_bytes = uint64_t{256} << 20;  // kept free on the disk
-  int num_workers = 1;                           // jobs at the same time
+  uint64_t reserve_bytes = uint64_t{256} << 20;  // space that is kept free on the disk
+  int num_workers = 1;                           // jobs that run at the same time
   int num_threads_per_job = 0;                   // 0 = one per core
   int num_pose_threads = 0;                      // 0 = one per core
-  int max_batch = 8;                             // live poses of one model evaluated together
+  int max_batch = 8;                             // live poses of a model evaluated together
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
-  uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences
+  uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences together
   uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
   ServiceLimits limits{};
   TrainFunction train = TrainCharacter;
@@ -34,6 +34,7 @@ struct LocalServiceOptions {
 class LocalCharacterService final : public CharacterService {
  public:
   // Opens the data folder, takes over the jobs of the process before, and starts the workers.
+  // Returns the errors of the store, such as a folder that another process uses.
   static absl::StatusOr<std::unique_ptr<LocalCharacterService>> Open(LocalServiceOptions options);
   ~LocalCharacterService() override;
 
@@ -43,16 +44,17 @@ class LocalCharacterService final : public CharacterService {
   LocalPoses& poses() override { return poses_; }
   LocalCompressedSequences& compressed_sequences() override { return compressed_sequences_; }
 
-  // Ids whose file was gone when the data folder was opened.
+  // The ids of entries whose file was gone when the data folder was opened.
   const std::vector<std::string>& missing_files() const { return files_.missing_files(); }
 
-  // Stops the workers; running jobs are queued for the next process. Watchers end.
+  // Stops the workers and ends all subscriptions. Jobs that run are queued for the next process.
   void Shutdown() { jobs_.Shutdown(); }
 
  private:
   LocalCharacterService(const LocalServiceOptions& options, std::unique_ptr<Store> store);
 
-  // In this order, so that each outlives its users.
+  // In this order, because members are destroyed from the last to the first: the jobs and the
+  // poses, which have threads, end before what their threads use.
   StoredFiles files_;
   LocalSequences sequences_;
   LocalModels models_;

@@ -13,10 +13,10 @@
 
 namespace pleat {
 
-// Thread-safe. `files` must outlive it, and it the sessions that it opens.
+// Thread-safe. `files` must outlive it, and it must outlive the sessions that it opens.
 class LocalCompressedSequences final : public CompressedSequenceService {
  public:
-  // decode_bytes: memory of all decoders together.
+  // decode_bytes: the memory that all decoders together may take.
   LocalCompressedSequences(StoredFiles* files, uint64_t decode_bytes)
       : files_(files),
         decode_bytes_(decode_bytes),
@@ -35,6 +35,7 @@ class LocalCompressedSequences final : public CompressedSequenceService {
   absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,
                                                             FrameRange range) override;
 
+  // The memory that is reserved for decoders now.
   uint64_t decoder_bytes() const { return decode_memory_.used_bytes(); }
 
  private:

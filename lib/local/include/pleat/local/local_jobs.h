@@ -1,4 +1,4 @@
-// Jobs in this process: checked, queued, written down, run by workers.
+// The jobs of this process: they are checked, queued, stored in the catalogue and run by workers.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace pleat {
 // Thread-safe. `files` and `sequences` must outlive it.
 class LocalJobs final : public JobService {
  public:
-  // num_workers: jobs that run at the same time.
+  // num_workers: the number of jobs that run at the same time.
   LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, int num_workers);
 
   absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
@@ -31,10 +31,11 @@ class LocalJobs final : public JobService {
 
   // Takes over the jobs of the process before and starts the workers. Call once.
   absl::Status Start();
-  // Stops the workers; running jobs are queued for the next process. Watchers end.
+  // Stops the workers and ends all subscriptions. Jobs that run are queued for the next process.
   void Shutdown() { manager_.Shutdown(); }
 
  private:
+  // Hands the stored jobs to the manager, and deletes the rigs that no unfinished job needs.
   absl::Status Restore();
 
   StoredFiles* const files_;

@@ -1,4 +1,4 @@
-// Trained characters in the store of this process, and in its memory while they are used.
+// Trained characters in the store of this process, and in its memory while they are in use.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ class LocalModels final : public ModelService {
   absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
                                         uint64_t count) override;
 
-  // The model, pinned in the cache as long as the handle lives.
+  // Returns the model, from the cache or loaded from the store. It stays in memory as long as the
+  // handle lives. kNotFound when there is none, kDataLoss when its file is damaged.
   absl::StatusOr<std::shared_ptr<const CharacterModel>> Acquire(const std::string& id);
   ByteCacheStats cache_stats() const { return cache_.stats(); }
 

@@ -1,4 +1,4 @@
-// Frames of the models of this process.
+// Frames of the models of this process: one pose, a clip, or poses as they happen.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,14 @@
 namespace pleat {
 
 struct LocalPosesOptions {
-  int64_t max_frames = 0;                       // of one clip
+  int64_t max_frames = 0;                       // the largest number of frames in a clip
   uint64_t encoder_bytes = uint64_t{64} << 20;  // frame encoders that nobody uses at the moment
-  int num_threads = 0;                          // that answer pose streams; 0 = one per core
-  int max_batch = 8;  // poses of one model that are evaluated together, 1 = none
+  int num_threads = 0;  // threads that answer pose streams; 0 = one per core
+  int max_batch = 8;    // poses of one model that are evaluated together; 1 = one by one
 };
 
-// Thread-safe. `models` must outlive it, and it the sessions and streams that it opens.
+// Thread-safe. `models` must outlive it, and it must outlive the sessions and streams that it
+// opens. Clips and single poses are computed on the caller's thread, streams on the executor's.
 class LocalPoses final : public PoseService {
  public:
   LocalPoses(LocalModels* models, const LocalPosesOptions& options)
@@ -44,8 +45,8 @@ class LocalPoses final : public PoseService {
                                                          LiveRules rules,
                                                          LiveListener* listener) override;
 
-  // Where pose streams are answered. A server computes its other poses here too, so that they take
-  // turns and do not compete for the processor.
+  // The threads that answer pose streams. A server computes its other poses on them too, so that
+  // all take turns and do not compete for the processor.
   Executor* executor() { return &executor_; }
   const EncoderPool& encoders() const { return encoders_; }
 
@@ -55,7 +56,7 @@ class LocalPoses final : public PoseService {
   LocalModels* const models_;
   const int64_t max_frames_;
   EncoderPool encoders_;
-  // The last tasks of the executor use the batcher, so the executor goes first.
+  // The executor is destroyed first: it runs what still waits, and these tasks use the batcher.
   PoseBatcher batcher_;
   Executor executor_;
 };

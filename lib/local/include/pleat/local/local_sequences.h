@@ -25,7 +25,7 @@ class LocalSequences final : public SequenceService {
                                                               uint64_t size_bytes,
                                                               uint64_t offset_bytes) override;
 
-  // The sequence itself, for jobs.
+  // Reads and decodes the sequence itself, for jobs. kNotFound when there is none.
   absl::StatusOr<MeshSequence> Load(const std::string& id);
 
  private:

@@ -1,4 +1,4 @@
-// Bytes that all calls of one kind may use together.
+// The bytes that all calls of one kind may use together.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace pleat {
 
 class MemoryBudget;
 
-// Gives its bytes back when it is destroyed.
+// Bytes of a budget that are given back when the reservation is destroyed. The budget must outlive
+// it. A reservation made by default holds none.
 class Reservation {
  public:
   Reservation() = default;
@@ -34,11 +35,11 @@ class Reservation {
 // Thread-safe.
 class MemoryBudget {
  public:
-  // flag: the option that sets the capacity, for messages.
+  // flag: the option that sets the capacity, named in messages.
   MemoryBudget(uint64_t capacity_bytes, std::string flag)
       : capacity_bytes_(capacity_bytes), flag_(std::move(flag)) {}
 
-  // kResourceExhausted names `what` and the numbers when the bytes do not fit now.
+  // Never waits: kResourceExhausted names `what` and the numbers when the bytes do not fit now.
   absl::StatusOr<Reservation> Reserve(uint64_t bytes, const std::string& what);
   uint64_t used_bytes() const;
 
@@ -47,7 +48,7 @@ class MemoryBudget {
   const uint64_t capacity_bytes_;
   const std::string flag_;
   mutable std::mutex mutex_;
-  uint64_t used_bytes_ = 0;  // guarded by mutex_; <= capacity_bytes_
+  uint64_t used_bytes_ = 0;  // guarded by mutex_; at most capacity_bytes_
 };
 
 }  // namespace pleat

@@ -1,4 +1,5 @@
-// Poses of one model that wait at the same time are evaluated together.
+// Evaluates poses of one model together when they wait at the same time
+// (docs/method/streams.md#batches).
 #pragma once
 
 #include <memory>
@@ -10,15 +11,20 @@
 
 namespace pleat {
 
-// What one session has to do for its next frame. It is in the batcher at most once.
+// What one session has to do for its next frame. A work is in the batcher at most once: from Submit
+// until Evaluated is called. The three calls come in this order, on one thread of the executor.
 class PoseWork {
  public:
-  // Fills in what to show now, which may have changed since Submit; false: nothing.
+  // Fills in what to show now, which may have changed since Submit. Returns false when there is
+  // nothing to evaluate; Evaluated is then called with null.
   virtual bool Prepare(PoseQuery* query) = 0;
-  // Evaluates for any session of the same model; nobody else uses it meanwhile.
+  // An evaluator that may evaluate the queries of all works in the batch. The work itself must not
+  // use it until Evaluated is called.
   virtual PoseEvaluator& evaluator() = 0;
-  // The query after its evaluation, or null when there was nothing. evaluate_us: elapsed time of
-  // all queries that were evaluated together. The work may be gone when this returns.
+  // Takes the evaluated query, whose status may be an error, or null when there was nothing.
+  // evaluate_us: the elapsed time of the evaluation, in microseconds, for all `num_together`
+  // queries together. It may submit the work again or destroy it, so the batcher does not touch it
+  // after.
   virtual void Evaluated(const PoseQuery* query, double evaluate_us, int num_together) = 0;
 
  protected:
@@ -26,48 +32,58 @@ class PoseWork {
 
  private:
   friend class PoseBatcher;
-  PoseWork* next_waiting_ = nullptr;  // for the same model; by the batcher's mutex
+  // The next work that waits for the same model; guarded by the batcher's mutex.
+  PoseWork* next_waiting_ = nullptr;
 };
 
-// A matrix product of several poses reads the model from memory once. Every work holds one turn of
-// the executor, so sessions of other models wait for at most one batch in place of one pose, and
-// the work that has waited longest is always in the next batch of its model. Allocates nothing for
-// a frame, unless more models than ever before have work. Thread-safe.
+// A matrix product of several poses reads the model from memory once, which makes a batch cheaper
+// than its poses one by one. Every work brings one turn of the executor, so sessions of other
+// models wait for at most one batch where they would have waited for one pose. The work that has
+// waited longest is always in the next batch of its model. Nothing is allocated for a frame, unless
+// more models have work at once than ever before. Thread-safe.
 class PoseBatcher {
  public:
-  // most_together: 1 evaluates one by one.
+  // most_together: the largest number of works in a batch; 1 evaluates them one by one. The
+  // executor may be constructed after the batcher, but before the first Submit.
   PoseBatcher(Executor* executor, int most_together)
       : executor_(executor), most_together_(most_together) {}
 
+  // Queues `work`, which keeps `model` alive. A work must not be queued twice; it has left the
+  // batcher when Evaluated is called.
   void Submit(const CharacterModel* model, PoseWork* work);
 
  private:
-  // What waits for one model, in the order of Submit: a list through the works themselves.
+  // The works that wait for one model, in the order of Submit, as a list through the works
+  // themselves.
   struct Line {
     const CharacterModel* model = nullptr;
     PoseWork* first = nullptr;
     PoseWork* last = nullptr;
     size_t size = 0;
   };
-  // What is evaluated together; its memory is used again.
+  // Works that are evaluated together. Batches are used again for the sake of their memory.
   struct Batch {
-    std::vector<PoseWork*> works;  // in `queries`' order, once they are prepared
+    std::vector<PoseWork*> works;  // once prepared, works[i] has queries[i]
     std::vector<PoseQuery> queries;
   };
 
-  // With the first work, because the executor may be made after the batcher. With mutex_.
+  // Allocates the batches. This happens at the first Submit, since the executor may be constructed
+  // after the batcher. Call it with mutex_ held.
   void MakeBatches();
+  // One turn of the executor.
   void Run(const CharacterModel* model);
-  // The next batch of `model`, null when there is none: an earlier turn has taken all works.
+  // Takes the next batch of `model`. Returns null when earlier turns have taken all works.
   std::unique_ptr<Batch> TakeBatch(const CharacterModel* model);
+  // Evaluates a batch that is prepared and not empty, and hands the queries to their works.
   static void Evaluate(Batch* batch);
 
   Executor* const executor_;
   const int most_together_;
   std::mutex mutex_;
-  std::vector<Line> waiting_;                   // not empty, in any order; guarded by mutex_
-  std::vector<std::unique_ptr<Batch>> unused_;  // one for each idle thread; guarded by mutex_
-  bool has_batches_ = false;                    // guarded by mutex_
+  // All three are guarded by mutex_.
+  std::vector<Line> waiting_;                   // the lines that are not empty, in any order
+  std::vector<std::unique_ptr<Batch>> unused_;  // one for each thread without a batch
+  bool has_batches_ = false;
 };
 
 }  // namespace pleat

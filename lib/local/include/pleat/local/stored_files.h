@@ -1,4 +1,4 @@
-// Stored files with their catalogue rows, as all services of this process keep them.
+// Stored files and their rows in the catalogue, as all services of this process keep them.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace pleat {
 
-// Thread-safe.
+// The store together with the limits of the service. Thread-safe.
 class StoredFiles {
  public:
   StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits)
@@ -30,7 +30,7 @@ class StoredFiles {
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 
-  // A file and its row appear and go together (see Store).
+  // A file and its row appear and disappear together (see Store).
   absl::Status Add(EntryKind kind, const CatalogueEntry& entry, std::string_view bytes) {
     return store_->Add(kind, entry, bytes);
   }
@@ -38,13 +38,15 @@ class StoredFiles {
     return store_->Add(kind, entry, upload);
   }
   absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
-  // `count` bytes (fewer at the end) of the file of an entry.
+  // Returns `count` bytes of the file of an entry from `offset` on, fewer at its end. kNotFound
+  // when there is no such entry.
   absl::StatusOr<std::string> ReadBytes(EntryKind kind, const std::string& id, uint64_t offset,
                                         uint64_t count);
-  // All `size_bytes` of it.
+  // Returns the whole file, which has `size_bytes`. kDataLoss when the file is shorter.
   absl::StatusOr<std::string> Download(EntryKind kind, const std::string& id, uint64_t size_bytes,
                                        const Progress& progress);
-  // The right to write an upload; checks the declared size against the limits and the disk.
+  // Gives the right to write an upload from `offset_bytes` on. kResourceExhausted when the declared
+  // size exceeds the limits or the disk, kOutOfRange when the offset is beyond the size.
   absl::StatusOr<std::unique_ptr<Upload>> BeginUpload(const std::string& id, uint64_t size_bytes,
                                                       uint64_t offset_bytes);
 
@@ -53,7 +55,7 @@ class StoredFiles {
   const ServiceLimits limits_;
 };
 
-// An upload of the store that ends as `finish` says.
+// An upload into the store. `finish` checks the complete bytes and adds them to the catalogue.
 template <typename Info>
 class StoredUpload final : public ContentUpload<Info> {
  public:
