@@ -1,4 +1,5 @@
-// What a learner must beat on held-out motion (docs/method/evaluation.md#baselines).
+// The baselines, which a learner must beat on held-out motion
+// (docs/method/evaluation.md#baselines).
 #pragma once
 
 #include <Eigen/Core>
@@ -11,12 +12,12 @@
 
 namespace pleat {
 
-// Feature row (D_S) -> details of the control vertices (3C), meters.
+// Turns a feature row (D_S) into the details of the control vertices (3C, meters).
 using DetailPredictor = std::function<Eigen::VectorXd(const Eigen::VectorXd& features)>;
 
-// "zero" (no detail), "mean" (of the training details), "nearest" (details of the training frame
-// with the nearest features) and "ridge" (linear regression), trained on `data`, which must
-// outlive them.
+// Trains the baselines on `data`, which must outlive them: "zero" (no detail), "mean" (the mean of
+// the training details), "nearest" (the details of the training frame with the nearest features)
+// and "ridge" (linear regression).
 absl::StatusOr<std::map<std::string, DetailPredictor>> TrainBaselines(const LearningData& data);
 
 }  // namespace pleat

@@ -108,6 +108,8 @@ Eigen::MatrixXd UpsampleColumns(const RbfUpsampler& upsampler, const Eigen::Matr
   return full;
 }
 
+// Folds the upsampling into the basis. The result is quantized as finely as the basis of the
+// control vertices was, component by component, so upsampling does not add a coarser rounding.
 absl::StatusOr<DetailBasis> Upsample(const RbfUpsampler& upsampler, const DetailBasis& control) {
   const Eigen::VectorXd mean = control.Mean().cast<double>();
   return DetailBasis::Quantize(UpsampleColumns(upsampler, mean).cast<float>(),

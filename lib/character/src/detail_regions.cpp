@@ -8,13 +8,13 @@
 namespace pleat {
 namespace {
 
-// Bones that share a joint: parent and child, and children of one parent.
+// Says whether two bones share a joint: a parent and its child do, and children of one parent.
 bool AreNeighbors(const Skeleton& skeleton, int a, int b) {
   return skeleton.parent(a) == b || skeleton.parent(b) == a ||
          skeleton.parent(a) == skeleton.parent(b);
 }
 
-// `bones` and their neighbors.
+// Returns `bones` together with their neighbors.
 std::set<int> Grown(const Skeleton& skeleton, const std::set<int>& bones) {
   std::set<int> grown = bones;
   for (int candidate = 1; candidate < skeleton.num_joints(); ++candidate) {
@@ -25,8 +25,8 @@ std::set<int> Grown(const Skeleton& skeleton, const std::set<int>& bones) {
   return grown;
 }
 
-// The columns of the feature row that belong to `bone` (not the root, which has none) in pose `h`
-// of the history.
+// Returns the columns of the feature row that belong to `bone` in pose `h` of the history. The root
+// has no features and must not be asked for.
 std::vector<int> ColumnsOf(int h, int bone, int num_joints, const TrainOptions& options) {
   const int values = NumCoordinates(options.rotations);
   std::vector<int> columns;
@@ -36,7 +36,7 @@ std::vector<int> ColumnsOf(int h, int bone, int num_joints, const TrainOptions& 
   return columns;
 }
 
-// Those that belong to `bones`, in every pose of the history.
+// Returns the columns that belong to `bones` in every pose of the history.
 std::vector<int> ColumnsOf(const std::set<int>& bones, int num_joints,
                            const TrainOptions& options) {
   std::vector<int> columns;

@@ -15,8 +15,8 @@
 namespace pleat {
 namespace {
 
-// The training side of the split: the frames, with a clip start wherever one is missing before;
-// or all frames of several clips.
+// Returns the training side of the split: the given frames, with a clip start wherever the frame
+// before is missing, or all frames of several clips.
 absl::StatusOr<TrainingFrames> TrainingSide(const MeshSequence& sequence,
                                             const std::vector<int>& frames,
                                             const std::vector<MeshSequence>& more_clips) {
@@ -33,7 +33,7 @@ absl::StatusOr<TrainingFrames> TrainingSide(const MeshSequence& sequence,
   return TrainingFrames{sequence.Subset(frames), std::move(clip_starts), count, frames};
 }
 
-// Seconds since the last lap, by the caller's clock.
+// Measures laps by the caller's clock; without a clock every lap takes 0 seconds.
 class LapTimer {
  public:
   explicit LapTimer(const std::function<double()>& clock) : clock_(clock), last_(Now()) {}
@@ -48,7 +48,8 @@ class LapTimer {
   double last_;
 };
 
-// The learners to measure: those asked for and the chosen one, each once.
+// Returns the learners that are asked for and the chosen one, each once. The order by name puts gp
+// before regional, as LearnModels requires.
 std::vector<LearnerChoice> LearnersToMeasure(const EvaluateOptions& options, LearnerChoice chosen) {
   std::vector<LearnerChoice> learners = options.learners;
   learners.push_back(chosen);
@@ -84,7 +85,8 @@ absl::Status CheckTestSequence(const MeshSequence& sequence,
 
 using ModelsByLearner = std::map<std::string, std::shared_ptr<const CharacterModel>>;
 
-// `learners`: each once; regional after gp, whose Gaussian process it shares.
+// Trains one model for each of `learners`, which must be different. When gp comes before regional,
+// its Gaussian process is trained once for both.
 absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const LearningData& data,
                                             const std::vector<LearnerChoice>& learners,
                                             const TrainOptions& options, double diagonal_m,
@@ -104,7 +106,8 @@ absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const Le
   return models;
 }
 
-// Fills the report's skinned, learners and baselines.
+// Fills in the errors of the skinned rig, of all learners and of the baselines. Any model serves
+// for the first and the last: they differ in the learner only.
 absl::Status MeasureAll(const ModelsByLearner& models,
                         const std::map<std::string, DetailPredictor>& baselines,
                         const TestSide& test, const Progress& progress, EvaluateReport* report) {

@@ -20,14 +20,15 @@ constexpr std::array<std::pair<Experiment, const char*>, 4> kExperiments = {{
 }};
 
 std::vector<ExperimentVariant> FullVsFine(const TrainOptions& base) {
-  // Neither side may win by how many components its energy is cut to.
+  // All components are kept, so that neither side wins by where its energy is cut.
   TrainOptions fine = base;
   fine.deformation = DetailBase::kSkinned;
   fine.detail_energy = 1;
   fine.max_components = 1024;
   TrainOptions full = fine;
   full.deformation = DetailBase::kRoot;
-  // The own axes of a vertex turn by as much as the deformation that they would have to describe.
+  // The local axes of a vertex turn with its bones, and the turning of the bones is a part of the
+  // deformation that is to be learned here.
   if (full.detail_axes == DetailAxes::kLocal) full.detail_axes = DetailAxes::kRoot;
   return {{"deformation", "fine (details)", fine}, {"deformation", "full deformation", full}};
 }

@@ -15,15 +15,16 @@ namespace pleat {
 namespace {
 
 constexpr int kNumValidationBlocks = 4;
-constexpr double kValidationShare = 0.2;  // of the training frames
-constexpr int kMinFramesToValidate = 20;  // below, too little is left to learn from
+constexpr double kValidationShare = 0.2;  // the share of the training frames that is held out
+constexpr int kMinFramesToValidate = 20;  // with fewer, too little is left to learn from
 
 struct RowSplit {
   std::vector<int> train, held_out;
   std::vector<int> train_clip_starts;  // rows of `train` whose predecessor is not the row before
 };
 
-// Holds out evenly spaced contiguous blocks: frames beside a training frame would be too easy.
+// Holds out evenly spaced, contiguous blocks. Single frames would be too easy to predict, since the
+// frames on both sides of them would be in training.
 RowSplit HoldOutBlocks(int num_rows, const std::vector<int>& clip_starts) {
   RowSplit split;
   const int block =
@@ -48,10 +49,11 @@ RowSplit HoldOutBlocks(int num_rows, const std::vector<int>& clip_starts) {
   return split;
 }
 
-// Enough to compare learners; a sequence may have thousands.
+// These are enough to compare learners; a sequence may have thousands.
 constexpr int kMaxHeldOutRows = 400;
 
-// Mean vertex distance, meters, between predicted and true details of the held-out rows.
+// Returns the mean vertex distance, in meters, between the predicted and the true details of the
+// held-out rows.
 double HeldOutError(const DetailModel& model, const LearningData& data,
                     const std::vector<int>& rows) {
   DetailModel::Workspace workspace;

@@ -1,4 +1,4 @@
-// What the options of training mean to the features of poses.
+// What the training options mean for the features of poses.
 #pragma once
 
 #include "pleat/character/train_options.h"

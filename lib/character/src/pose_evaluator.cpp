@@ -1,3 +1,24 @@
+// A query goes through four steps, and a batch goes through each of them together:
+//
+//   Prepare      copies the poses, normalized, and computes the row of features.
+//   Predict      turns features into the coefficients of the detail basis and a confidence.
+//   Place        computes the motions of the bones and the axes of the details, for one query.
+//   FillFrames   expands the coefficients to details and skins the vertices.
+//
+// Predict and FillFrames read the large parts of the model: training rows, and the basis with its
+// 3V rows. They read them once for all queries of a batch. No sum crosses from one query to
+// another, so a frame has the same bits whatever else is in its batch.
+//
+// FillFrames streams over the vertices in tiles of kTileBlocks blocks. For each tile it first
+// expands the details of all queries and then skins them, so the 3V details of a frame never exist
+// at once, and those of a tile are still in the nearest cache when skinning reads them.
+//
+// Everything that a query needs on its way is in its Scratch, which keeps its memory. In a batch of
+// sessions every query brings the scratch of its own session's evaluator (scratch_of), so what has
+// been allocated does not depend on which session evaluates for the others.
+//
+// Parameters leave after Predict. Another machine continues with Show, which begins at Place with
+// the rounded rotations and gets by without poses of the past and without the training rows.
 #include "pleat/character/pose_evaluator.h"
 
 #include <algorithm>
@@ -16,10 +37,10 @@ namespace pleat {
 struct PoseEvaluator::Scratch {
   explicit Scratch(const CharacterModel& model);
 
-  std::vector<Pose> history;  // normalized copies, [0] = pose to show
+  std::vector<Pose> history;  // normalized copies; [0] is the pose to show
   std::vector<const Pose*> history_pointers;
   BoneTransforms transforms;
-  std::vector<Eigen::Matrix3d> axes;  // J, of the bones' details
+  std::vector<Eigen::Matrix3d> axes;  // J: the axes in which the details of a bone are written
   BoneMotions motions;
   bool has_details = false;
   double confidence = 0;
@@ -27,14 +48,14 @@ struct PoseEvaluator::Scratch {
   Eigen::VectorXf coefficients;  // r
   DetailModel::Workspace workspace;
   DetailBasis::Query expansion;
-  std::vector<float> details;  // of the tile at hand, by blocks
+  std::vector<float> details;  // the details of one tile, block by block
 };
 
 namespace {
 
 constexpr double kMinBoneScale = 0.05, kMaxBoneScale = 20;
 
-// A pose that comes alone, of a skeleton with that many joints.
+// Checks a pose that comes from outside and belongs to no valid track.
 absl::Status CheckFits(const Pose& pose, int num_joints) {
   PLEAT_RETURN_IF_ERROR(CheckJointCount(pose, num_joints));
   return CheckPose(pose);
@@ -56,7 +77,7 @@ absl::Status CheckBoneScales(const std::vector<double>& bone_scales, int num_joi
   return absl::OkStatus();
 }
 
-// Assigns without allocating once `target` has the right size.
+// Copies without an allocation once `target` has the right size.
 void CopyNormalized(const Pose& source, Pose* target) {
   target->root_position = source.root_position;
   target->rotations.resize(source.rotations.size());
@@ -65,8 +86,8 @@ void CopyNormalized(const Pose& source, Pose* target) {
   }
 }
 
-// The axes B_t(v) of a vertex's detail are the mean of its bones' axes, which are all the same
-// unless details are local.
+// Sets the axes of the bones' details. The axes B_t(v) of a vertex are the mean of those of its
+// bones, which are all the same unless details are local.
 void SetAxes(DetailAxes axes, const BoneTransforms& transforms,
              std::vector<Eigen::Matrix3d>* bone_axes) {
   switch (axes) {
@@ -82,7 +103,8 @@ void SetAxes(DetailAxes axes, const BoneTransforms& transforms,
   }
 }
 
-// The base of full deformations: every vertex moves with the root alone (ComputeDetailBase).
+// Makes every bone move with the root, which is the base of models that learn all deformation
+// (ComputeDetailBase).
 void MoveAllWithRoot(BoneTransforms* transforms) {
   for (size_t b = 1; b < transforms->linear.size(); ++b) {
     transforms->linear[b] = transforms->linear[0];
@@ -90,8 +112,12 @@ void MoveAllWithRoot(BoneTransforms* transforms) {
   }
 }
 
+// The largest number of queries that go through the steps together. Larger batches are cut, so that
+// lists of queries fit into arrays on the stack.
 constexpr size_t kMostTogether = 16;
-constexpr int kTileBlocks = 2;  // few: the sums of the next tile start while this one is skinned
+// Tiles are small, so that the processor begins with the sums of the next one while it still skins
+// this one.
+constexpr int kTileBlocks = 2;
 
 }  // namespace
 
@@ -163,7 +189,7 @@ void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
     std::array<EvaluatedFrame*, kMostTogether> frames{};
     std::array<PoseQuery*, kMostTogether> taken{};
     size_t count = 0, num_own = 0;
-    // Queries with details in front, so that those are predicted and expanded together.
+    // Queries with details come first, because Predict takes them from the front.
     for (const bool skinned_only : {false, true}) {
       for (size_t q = begin; q < std::min(begin + kMostTogether, queries.size()); ++q) {
         if (queries[q].skinned_only != skinned_only) continue;
@@ -176,7 +202,7 @@ void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
       }
     }
     Predict({scratches.data(), count});
-    size_t num_frames = 0;
+    size_t num_frames = 0;  // queries that want parameters drop out; the others move up
     for (size_t i = 0; i < count; ++i) {
       if (taken[i]->parameters != nullptr) {
         TakeParameters(*scratches[i], taken[i]->parameters);
@@ -308,7 +334,8 @@ absl::Status PoseEvaluator::EvaluateClip(
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
   constexpr int kBatch = 8;
   PoseHistory history(track, model_->frame_rate().fps(), model_->options().history);
-  std::vector<std::vector<Pose>> poses(kBatch);  // copies: a history lives until the next
+  // The poses are copied, because what PoseHistory returns is valid only until the next call.
+  std::vector<std::vector<Pose>> poses(kBatch);
   std::vector<std::vector<const Pose*>> pointers(kBatch);
   std::vector<EvaluatedFrame> frames(kBatch);
   std::vector<PoseQuery> queries(kBatch);

@@ -9,7 +9,8 @@
 namespace pleat {
 namespace {
 
-// Calls `predict` for every test frame and collects the errors.
+// Calls `predict` for every test frame and collects the errors. The error of motion counts where
+// the frame before is a test frame too.
 absl::StatusOr<ErrorSummary> MeasureFrames(
     const TestSide& test, double diagonal_m, const Progress& progress,
     const std::function<absl::Status(int t, Eigen::Matrix3Xf* positions)>& predict) {

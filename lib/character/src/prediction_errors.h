@@ -1,4 +1,4 @@
-// Errors of predicted test frames, whoever predicts them.
+// Measures the errors of predicted test frames, whatever predicts them.
 #pragma once
 
 #include <memory>
@@ -14,19 +14,20 @@
 
 namespace pleat {
 
-// Everything the comparison needs for one test frame at a time.
+// What the predictions are compared with.
 struct TestSide {
   MeshSequence sequence;    // the whole clip that holds the test frames
   PoseTrack track;          // its poses, fitted with the trained rig
   std::vector<int> frames;  // test frames, ascending
 };
 
-// Of the model, or with `skinned_only` of its rig alone.
+// Measures the model, or with `skinned_only` its rig alone. diagonal_m: what percentages refer to.
 absl::StatusOr<ErrorSummary> MeasureModel(const std::shared_ptr<const CharacterModel>& model,
                                           const TestSide& test, double diagonal_m,
                                           bool skinned_only, const Progress& progress);
 
-// A baseline predicts control details; the rest of the way is the model's own.
+// Measures a baseline. It predicts the details of the control vertices; upsampling and skinning are
+// the model's own.
 absl::StatusOr<ErrorSummary> MeasureBaseline(const DetailPredictor& predictor,
                                              const CharacterModel& model, const TestSide& test,
                                              double diagonal_m, const Progress& progress);

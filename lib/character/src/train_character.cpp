@@ -19,15 +19,16 @@ ErrorSummary WithoutFrames(ErrorSummary summary) {
   return summary;
 }
 
-// Whether frame t of `num_frames` is measured: all, or of thousands pairs of neighbors.
+// Says whether frame t is measured: every frame, or of thousands of frames pairs of neighbors,
+// since the error of motion needs two frames in a row.
 bool IsMeasured(int t, int num_frames) {
   constexpr int kMaxMeasuredFrames = 2000;
   const int period = 2 * ((num_frames + kMaxMeasuredFrames - 1) / kMaxMeasuredFrames);
   return t % period < 2;
 }
 
-// The five frames with the largest mean error, by clip. frames: the number of each frame in the
-// joined sequence.
+// Returns the five frames with the largest mean error. frames[i]: the index, in the joined
+// sequence, of the frame that entry i of frame_mean_percent belongs to.
 std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percent,
                                     const std::vector<int>& frames, const PoseTrack& track) {
   std::vector<int> order(frame_mean_percent.size());
@@ -43,7 +44,8 @@ std::vector<FrameError> WorstFrames(const std::vector<double>& frame_mean_percen
   return worst;
 }
 
-// Mean error of every bone's vertices, each vertex as far as the bone moves it; 0 without vertices.
+// Returns the mean error of every bone's vertices, weighted by how much the bone moves each of
+// them, or 0 for a bone that moves none.
 std::vector<double> JointErrors(const SkinWeights& weights, const Eigen::VectorXd& vertex_error) {
   std::vector<double> sums(weights.num_joints(), 0), totals(weights.num_joints(), 0);
   for (int v = 0; v < weights.num_vertices(); ++v) {
@@ -57,7 +59,8 @@ std::vector<double> JointErrors(const SkinWeights& weights, const Eigen::VectorX
   return sums;
 }
 
-// The errors of the record: skinned only and hybrid against the input.
+// Measures the errors of the record on the training frames: skinned only and hybrid against the
+// input.
 absl::StatusOr<TrainingRecord> MeasureReconstruction(
     const std::shared_ptr<const CharacterModel>& model, const MeshSequence& sequence,
     const PoseTrack& track, const Progress& progress) {
@@ -91,7 +94,7 @@ absl::StatusOr<TrainingRecord> MeasureReconstruction(
   return record;
 }
 
-// `rig` may be null: found automatically.
+// Trains with the given rig, or finds one when `rig` is null.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
     const std::vector<MeshSequence>& clips, const UserRig* rig, const TrainOptions& options,
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {

@@ -21,7 +21,7 @@ absl::Status CheckRange(absl::string_view name, T value, T low, T high) {
       absl::StrCat("option ", name, ": ", value, " is outside ", low, " to ", high));
 }
 
-// The shortest decimal text that reads back as the same value.
+// Returns the shortest decimal text that reads back as the same value.
 template <typename T>
 std::string FormatValue(const T& value) {
   if constexpr (std::is_same_v<T, double>) {

@@ -1,3 +1,17 @@
+// The details of a training run are a matrix of T x 3V numbers in double precision, which for
+// thousands of frames does not fit into memory. Hence this order, in ComputeControlDetails:
+//
+//   1. The details of at most kMaxBasisFrames frames, evenly spread over the sequence, are computed
+//      at once. Where the upsampling is refined, they are those of all vertices: it learns from
+//      them, and only those of the control vertices are kept. Their principal components are the
+//      basis.
+//   2. When there are more frames, that matrix is freed, and ProjectAllFrames expresses all frames
+//      in the basis, one block after the other. A block is gone when its scores (T x r) are known.
+//
+// A detail depends on its own frame and pose only, so frames may be taken in any selection. Short
+// sequences end after the first step, with the scores that the principal components gave. Results
+// do not depend on the number of threads: work is cut into items of a fixed size, and no sum
+// crosses from one item to another.
 #include "training_steps.h"
 
 #include <algorithm>
@@ -16,9 +30,9 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxBridgedFrames = 2;
+constexpr int kMaxBridgedFrames = 2;  // held-out frames in a row between two training frames
 
-// Says how topology `b` of clip `name` differs from `a`.
+// Returns an error that says how topology `b` of the clip `name` differs from `a`.
 absl::Status ConnectivityDiffers(const std::string& name, const Topology& a, const Topology& b) {
   if (a.num_vertices() != b.num_vertices() || a.num_faces() != b.num_faces()) {
     return absl::InvalidArgumentError(
@@ -33,7 +47,8 @@ absl::Status ConnectivityDiffers(const std::string& name, const Topology& a, con
                    "; all clips of a character share one connectivity"));
 }
 
-// From the control vertices to all by radial basis functions on the rest pose.
+// Makes the interpolation from the control vertices to all vertices, by radial basis functions on
+// the rest pose.
 absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged,
                                            const std::vector<int>& control_vertices,
                                            const TrainResources& resources,
@@ -45,10 +60,10 @@ absl::StatusOr<RbfUpsampler> MakeUpsampler(const RiggedFrames& rigged,
                              control_vertices, rbf, progress);
 }
 
-// Frames whose details give the basis; those of a longer sequence are expressed in it.
+// The largest number of frames whose details give the basis.
 constexpr int kMaxBasisFrames = 1000;
 
-// The frames and poses `frame_indices`, each alone: details know no neighbors.
+// Computes the details of `vertices` in the frames `frame_indices`, one row per frame.
 absl::StatusOr<Eigen::MatrixXd> DetailsOfFrames(const RiggedFrames& rigged, const PoseTrack& track,
                                                 const std::vector<int>& frame_indices,
                                                 const std::vector<int>& vertices,
@@ -58,8 +73,8 @@ absl::StatusOr<Eigen::MatrixXd> DetailsOfFrames(const RiggedFrames& rigged, cons
                         track.Subset(frame_indices), vertices, options, progress);
 }
 
-// Fills data->upsampler from the details of all vertices, and returns those of the control
-// vertices.
+// Refines data->upsampler on the details of all vertices (3V columns), and returns those of the
+// control vertices (3C columns).
 absl::StatusOr<Eigen::MatrixXd> RefineUpsampler(const Eigen::MatrixXd& details,
                                                 const TrainResources& resources,
                                                 const Progress& progress, LearningData* data) {
@@ -74,7 +89,8 @@ absl::StatusOr<Eigen::MatrixXd> RefineUpsampler(const Eigen::MatrixXd& details,
   return control;
 }
 
-// The scores of all frames in the basis that some of them gave, block by block.
+// Computes the scores of all frames in the basis that some of them gave, block by block. The energy
+// that the basis keeps is then that of all frames too.
 absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track,
                               const ComputeDetailsOptions& options, const Progress& progress,
                               LearningData* data) {
@@ -92,7 +108,7 @@ absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track
     if (data->differential) rows = data->differential->Encode(rows);
     rows.rowwise() -= details.mean.transpose();
     energy += rows.squaredNorm();
-    // Items of fixed size: the result does not depend on the number of threads.
+    // Items have a fixed size, so that the result does not depend on the number of threads.
     constexpr int kItemFrames = 32;
     const auto num_rows = static_cast<int>(rows.rows());
     ParallelFor((num_rows + kItemFrames - 1) / kItemFrames, options.num_threads, [&](int item) {
@@ -106,9 +122,8 @@ absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track
   return absl::OkStatus();
 }
 
-// Fills details and upsampler of `data`, whose control vertices are known. Refined upsampling
-// learns its weights from the details of all vertices in the training frames. Never more than
-// kMaxBasisFrames frames of details are in memory.
+// Fills in the details and the upsampler of `data`, whose control vertices are known. The order is
+// explained at the top of this file.
 absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& track,
                                    const TrainOptions& options, const TrainResources& resources,
                                    const Progress& progress, LearningData* data) {
@@ -187,7 +202,6 @@ absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const Train
   if (options.yaw_degrees >= 0) rig_options.yaw_degrees = options.yaw_degrees;
   rig_options.num_threads = resources.num_threads;
   AutoRigSummary summary;
-  // A copy of thousands of frames would not fit where they just do.
   const MeshSequence first_clip = frames.num_rig_frames == frames.sequence.num_frames()
                                       ? frames.sequence
                                       : frames.sequence.Subset(rig_frames);
@@ -256,7 +270,8 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   }
   PLEAT_RETURN_IF_ERROR(ComputeControlDetails(rigged, track, options, resources, progress, &data));
   const PoseFeatureOptions feature_options = FeatureOptionsOf(options);
-  // A single held-out frame is bridged from its neighbors, so that the frame after it has a speed.
+  // One or two held-out frames are bridged by interpolation, so that the frame after them has a
+  // speed.
   const FilledTrack filled = FillGaps(track, rigged.frames.frame_numbers, kMaxBridgedFrames);
   data.feature_reference = PoseFeatures::Reference(feature_options, track);
   data.features =

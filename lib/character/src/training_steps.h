@@ -1,4 +1,4 @@
-// The steps that training and evaluation share; steps 3 to 7 of the data's way (ARCHITECTURE.md).
+// The steps that training and evaluation share: steps 3 to 7 of the data flow in ARCHITECTURE.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,81 +22,90 @@
 
 namespace pleat {
 
-// Frames of one or more recordings, one after the other.
+// The frames of one or more recordings, one after the other.
 struct TrainingFrames {
   MeshSequence sequence;
-  std::vector<int> clip_starts;  // ascending, first is 0; no history or dynamics across a start
-  int num_rig_frames;            // the rest frame is one of the first so many (the first clip)
-  std::vector<int>
-      frame_numbers;  // of every frame in its recording; gaps where frames are held out
+  std::vector<int> clip_starts;  // ascending from 0; history and dynamics end at a start
+  int num_rig_frames;            // the rest frame is one of these first frames (the first clip)
+  // The number of every frame in its recording. Numbers are missing where frames are held out.
+  std::vector<int> frame_numbers;
 };
 
-// Joins clips of the same connectivity. kInvalidArgument names the clip that does not fit.
+// Joins clips that have the same connectivity and frame rate. kInvalidArgument names the clip that
+// does not fit.
 absl::StatusOr<TrainingFrames> JoinClips(const std::vector<MeshSequence>& clips);
 
 struct RiggedFrames {
   TrainingFrames frames;
   Rig rig;
   AutoRigSummary rig_summary;
-  std::vector<int> locked_joints;  // against refinement
+  std::vector<int> locked_joints;  // joints that refinement must leave alone
 };
-// The user's rig; weights by heat where it has none.
+// Takes the user's rig, with heat weights where it has none. kInvalidArgument when it does not fit
+// the frames.
 absl::StatusOr<RiggedFrames> TakeUserRig(const TrainingFrames& frames, const UserRig& rig,
                                          const TrainResources& resources, const Progress& progress);
+// Finds the rig automatically (AutoRig), on the frames of the first clip.
 absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const TrainOptions& options,
                                        const TrainResources& resources, const Progress& progress);
 
-// The poses of any frames; `summary` may be null.
+// Fits poses to any frames, with the rig fixed. `summary` may be null.
 absl::StatusOr<PoseTrack> FitFrames(const MeshSequence& sequence,
                                     const std::vector<int>& clip_starts, const Rig& rig,
                                     const TrainOptions& options, const TrainResources& resources,
                                     PoseFitSummary* summary, const Progress& progress);
 
-// The poses of the training frames. With options.refine the rig is refined on those poses first
-// (RefineRig) and they are fitted again.
+// Fits poses to the training frames. With options.refine, the rig is then refined on these poses
+// (RefineRig) and the poses are fitted again with the new rig.
 absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
                                             const TrainResources& resources, RiggedFrames* rigged,
                                             PoseFitSummary* summary, const Progress& progress);
 
-// What every learner sees: plain matrices, and what turns its output into a full mesh.
+// What every learner sees, which is plain matrices, and what turns its output into a full mesh.
 struct LearningData {
-  Eigen::VectorXd feature_reference;
-  Eigen::MatrixXd features;  // T x D_S
-  // T rows of scores, 3C values each: offsets in meters, or those that `differential` encodes.
+  Eigen::VectorXd feature_reference;  // PoseFeatures::Reference
+  Eigen::MatrixXd features;           // T x D_S
+  // The details of the control vertices as T rows of scores (T x r) in a basis of 3C values, which
+  // are offsets in meters or what `differential` encodes.
   PrincipalComponents details;
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
   std::optional<RbfUpsampler> upsampler;
-  std::optional<DifferentialCoordinates> differential;  // learn in these, with that option
+  // The coordinates of the details, with the option detail_coordinates=differential.
+  std::optional<DifferentialCoordinates> differential;
   std::vector<DetailRegion> regions;             // one for each bone that moves a control vertex
   std::vector<std::vector<int>> feature_groups;  // columns of `features`, by joint and pose
 
-  // The offsets (3C, meters) that one row of scores stands for.
+  // Returns the offsets (3C, meters) that one row of scores (r) stands for.
   Eigen::VectorXd DetailOf(const Eigen::VectorXd& scores) const;
 };
+// Computes features and details of the training frames. Of a long sequence, never more than a fixed
+// number of frames of details is in memory.
 absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, const PoseTrack& track,
                                                  const TrainOptions& options,
                                                  const TrainResources& resources,
                                                  const Progress& progress);
 
-// Trains `learner`, which is chosen (not auto). The model predicts offsets, whatever coordinates it
-// was trained in.
-// The direct GP of some data and options, once one of the learners has trained it. `direct_gp` may
-// be null; else it is taken from there, or left there.
+// The direct GP of some data and options, once one of the learners has trained it.
 using DirectGp = std::optional<GpRegression>;
+// Trains `learner`, which must not be "auto". The model predicts offsets, whatever coordinates it
+// was trained in. `direct_gp` may be null. Otherwise a learner that needs the direct GP takes it
+// from there, or trains it and leaves it there; all calls must then have the same data and options.
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 LearnerChoice learner,
                                                                 const TrainOptions& options,
                                                                 const Progress& progress,
                                                                 DirectGp* direct_gp = nullptr);
 
-// The learner of `options`; for auto the one with the lowest error on contiguous blocks of
-// training frames that it did not see. validation: filled then, in % of diagonal_m; may be null.
+// Returns the learner of `options`; for "auto", the one with the lowest error on contiguous blocks
+// of training frames that it did not see. `validation` may be null; for "auto" it is filled in, in
+// % of diagonal_m.
 absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const TrainOptions& options,
                                             double diagonal_m, LearnerValidation* validation,
                                             const Progress& progress);
 
-// All but the errors of the record. diagonal_m: bounding-box diagonal of the first frame, meters.
+// Makes the model with everything but the errors in its record. diagonal_m: the bounding-box
+// diagonal of the first frame, meters.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
     const RiggedFrames& rigged, const LearningData& data, const TrainOptions& options,
     LearnerChoice learner, std::shared_ptr<const DetailModel> detail_model, double diagonal_m);

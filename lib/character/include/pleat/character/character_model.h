@@ -1,4 +1,4 @@
-// The character: rig, learned detail and what training recorded. Immutable and shared.
+// The character: a rig, the learned detail and what training has recorded. Immutable and shared.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,38 +23,43 @@ namespace pleat {
 
 struct FrameError {
   int clip = 0;             // index of the training clip
-  int frame = 0;            // in that clip
-  double mean_percent = 0;  // mean vertex distance
+  int frame = 0;            // index of the frame in that clip
+  double mean_percent = 0;  // mean vertex distance, % of the diagonal
 };
 
-// How learners did on contiguous blocks of training frames that they did not see, which is what
-// the learner "auto" chooses by.
+// How well the learners did on contiguous blocks of training frames that they did not see. The
+// learner "auto" chooses by this.
 struct LearnerValidation {
-  int num_held_out_frames = 0;                 // 0: nothing was held out
-  std::map<std::string, double> mean_percent;  // per learner: mean vertex distance
+  int num_held_out_frames = 0;  // 0: nothing was held out
+  // The mean vertex distance of each learner, by its name, in % of the diagonal.
+  std::map<std::string, double> mean_percent;
 };
 
-// What training found out about its own result; kept in the model file.
+// What training found out about its own result. It is kept in the model file. Percentages of
+// lengths refer to diagonal_m.
 struct TrainingRecord {
   std::string learner;           // the learner that was chosen, one of LearnerNames()
-  LearnerValidation validation;  // that chose it
-  int num_frames = 0;            // training frames
-  int rest_frame = 0;
-  double yaw_degrees = 0;       // facing that was found
-  double rig_residual = 0;      // of the embedding; under .03 is trusted
-  double diagonal_m = 0;        // bounding-box diagonal of the first frame, meters
-  ErrorSummary fit;             // skinned only against the input; frame_mean_percent not kept
-  ErrorSummary reconstruction;  // hybrid against the input; frame_mean_percent not kept
+  LearnerValidation validation;  // what it was chosen by
+  int num_frames = 0;            // the number of training frames
+  int rest_frame = 0;            // the frame that was rigged
+  double yaw_degrees = 0;        // the facing that was found, about +y from +z
+  double rig_residual = 0;       // of embedding the template; a value under .03 can be trusted
+  double diagonal_m = 0;         // bounding-box diagonal of the first frame, meters
+  // The errors of the skinned rig alone and of the whole model on the training frames. Their
+  // frame_mean_percent is not kept.
+  ErrorSummary fit;
+  ErrorSummary reconstruction;
   std::vector<std::string> warnings;
-  std::vector<FrameError> worst_frames;   // up to five, skinned only, largest error first
-  std::vector<double> joint_fit_percent;  // per joint: skinned only, mean over its bone's vertices
-  // How much the poses shake (RotationJitter), and what smoothing started from.
+  std::vector<FrameError> worst_frames;  // up to five, skinned only, the largest error first
+  // J: the mean error of each bone's vertices, skinned only, weighted by the skinning weights.
+  std::vector<double> joint_fit_percent;
+  // How much the poses shake (RotationJitter), and what they were like before smoothing.
   double pose_jitter_degrees = 0;
   double unsmoothed_jitter_degrees = 0;
   double unsmoothed_rms_percent = 0;
 };
 
-// Never changes after it is made; queries share it without locks.
+// A model never changes after it is made, so any number of threads may query it without locks.
 class CharacterModel {
  public:
   struct Parts {
@@ -62,19 +67,20 @@ class CharacterModel {
     FrameRate frame_rate;
     Topology topology;
     MeshAppearance appearance;
-    Rig rig;                                // all V vertices, J joints
-    TrainOptions options;                   // as used
+    Rig rig;                                // V vertices, J joints
+    TrainOptions options;                   // as they were used
     Eigen::VectorXd feature_reference;      // PoseFeatures::reference()
     std::vector<int> control_vertices;      // C ascending vertex indices; all V at full resolution
     std::optional<RbfUpsampler> upsampler;  // V x C; absent at full resolution
-    std::shared_ptr<const DetailModel> detail_model;  // features -> details, 3C outputs
+    // Turns a feature row (D_S) into the details of the control vertices (3C).
+    std::shared_ptr<const DetailModel> detail_model;
     TrainingRecord record;
   };
 
-  // Checks that all parts fit together (counts, ranges): kInvalidArgument names what does not.
+  // Checks that counts and ranges of all parts fit together. kInvalidArgument names what does not.
   static absl::StatusOr<std::shared_ptr<const CharacterModel>> Create(Parts parts);
 
-  // The same character with another record.
+  // Returns the same character with another record.
   std::shared_ptr<const CharacterModel> WithRecord(TrainingRecord record) const;
 
   const Parts& parts() const { return parts_; }
@@ -89,8 +95,9 @@ class CharacterModel {
   FrameRate frame_rate() const { return parts_.frame_rate; }
   int num_vertices() const { return parts_.topology.num_vertices(); }
 
-  // Control-to-full upsampling folded into the detail basis: it gives the details of all vertices
-  // (3V; xyz of vertex 0, of vertex 1, ...).
+  // The detail basis for all vertices (3V rows: x, y, z of vertex 0, then of vertex 1, and so on).
+  // Below full resolution, the upsampling from the control vertices is folded into it once, so that
+  // a query expands coefficients to all vertices in one step.
   const DetailBasis& full_basis() const {
     return parts_.upsampler ? upsampled_basis_ : parts_.detail_model->basis();
   }
@@ -98,7 +105,7 @@ class CharacterModel {
   // The rig as a query reads it.
   const FrameSkinning& skinning() const { return skinning_; }
 
-  // Resident size, what the cache is charged.
+  // The resident size in bytes, which the cache is charged.
   size_t memory_bytes() const;
 
  private:

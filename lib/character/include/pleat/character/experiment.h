@@ -1,5 +1,5 @@
-// The paper's comparisons: one character learned in several ways, measured by one protocol (the
-// paper, section V, Figure 5; docs/method/evaluation.md#experiments-of-the-paper).
+// The comparisons of the paper (section V, Figure 5): one character is learned in several ways and
+// measured by one protocol (docs/method/evaluation.md#experiments-of-the-paper).
 #pragma once
 
 #include <optional>
@@ -13,14 +13,14 @@
 namespace pleat {
 
 enum class Experiment {
-  kFullVsFine,       // all deformation against details beyond skinning (Figure 5a)
-  kRepresentations,  // of rotations and of details (Figure 5b)
-  kResolutions,      // of the control mesh: 100, 75, 50, 25, 10, 5 % of the vertices (Figure 5c)
+  kFullVsFine,       // learning all deformation or only details beyond skinning (Figure 5a)
+  kRepresentations,  // representations of rotations and of details (Figure 5b)
+  kResolutions,      // control meshes of 100, 75, 50, 25, 10 and 5 % of the vertices (Figure 5c)
   kSkinnedVsHybrid,  // what the details add to skinning, for every learner (second experiment)
 };
 absl::StatusOr<Experiment> ParseExperiment(const std::string& name);
 const char* ExperimentName(Experiment experiment);
-// "full-vs-fine", ...
+// The names of all experiments: "full-vs-fine" and so on.
 std::vector<std::string> ExperimentNames();
 
 struct ExperimentVariant {
@@ -29,7 +29,8 @@ struct ExperimentVariant {
   TrainOptions options;
 };
 
-// What is compared, starting from `base`: only what is learned varies, never rig and poses.
+// Returns what is compared, starting from `base`. Only what is learned varies, never the rig or the
+// poses.
 std::vector<ExperimentVariant> ExperimentVariants(Experiment experiment, const TrainOptions& base);
 
 struct ExperimentRow {
@@ -42,9 +43,10 @@ struct ExperimentReport {
   std::vector<ExperimentRow> rows;  // in the order of ExperimentVariants
 };
 
-// Rig and poses are found once, on the training frames of the protocol; then every variant is
-// trained and measured as EvaluateCharacter does. Of `options`, learners and baselines are measured
-// in kSkinnedVsHybrid only; elsewhere the learner of `options.train` alone.
+// Finds rig and poses once, on the training frames of the protocol; then it trains and measures
+// every variant as EvaluateCharacter does, with the same errors. The learners and baselines of
+// `options` are measured in kSkinnedVsHybrid only; all other experiments measure the learner of
+// options.train.
 absl::StatusOr<ExperimentReport> RunExperiment(const MeshSequence& sequence,
                                                const std::optional<MeshSequence>& test_sequence,
                                                Experiment experiment,

@@ -1,4 +1,4 @@
-// The motion of a mesh sequence in terms of a trained character.
+// Finds the motion of a mesh sequence in terms of a trained character.
 #pragma once
 
 #include "absl/status/statusor.h"
@@ -10,9 +10,9 @@
 
 namespace pleat {
 
-// The poses of `model` in every frame of `sequence`, fitted exactly as its training fitted them: a
-// training clip gives its training poses again. kInvalidArgument when the connectivity is not the
-// model's; kCancelled.
+// Fits the poses of `model` to every frame of `sequence` exactly as its training did, so a training
+// clip gives its training poses again. kInvalidArgument when the connectivity is not the model's,
+// kCancelled when `progress` was cancelled.
 absl::StatusOr<PoseTrack> FitMotion(const CharacterModel& model, const MeshSequence& sequence,
                                     const TrainResources& resources = {},
                                     const Progress& progress = {});

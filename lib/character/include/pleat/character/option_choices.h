@@ -1,5 +1,5 @@
-// The one table of what training options are called: the names of their choices and what help says
-// about each. Text, model file, wire, flags and docs/options.md take the names from here.
+// The one table of what training options are called: the names of their choices, and what the help
+// says about each. Text, model files, the wire, flags and docs/options.md take the names from here.
 #pragma once
 
 #include <span>
@@ -15,27 +15,28 @@
 
 namespace pleat {
 
-// A learner as it is asked for. Not the enum `Learner` of a trained model, which does not know
-// "auto" and holds both forms of the shared GPLVM as one.
+// A learner as it is asked for. The enum `Learner` of a trained model is another one: it does not
+// know "auto", and both forms of the shared GPLVM are one value there.
 enum class LearnerChoice { kAuto, kRegional, kGp, kSgplvm, kBackConstrained, kRidge };
 
-// What of the rig is refined on the training frames.
+// Which part of the rig is refined on the training frames.
 enum class RigRefinement { kNone, kJoints, kFull };
 
-// The details of control vertices: as they are, or against the mean of their neighbors.
+// How the details of control vertices are written: as they are, or as differences from the mean of
+// their neighbors.
 enum class DetailCoordinates { kOffsets, kDifferential };
 
-// How the details of control vertices spread to all.
+// How the details of the control vertices spread to all vertices.
 enum class Upsampling { kRefined, kRbf };
 
 template <typename Choice>
 struct NamedChoice {
   Choice value;
-  const char* name;  // in text, model file, wire and flags: never changes
+  const char* name;  // never changes, since text, model files, the wire and flags contain it
   const char* help;  // a phrase
 };
 
-// Every value of an option's enum, in the order in which they are listed.
+// Returns every value of an option's enum, in the order in which they are listed.
 template <typename Choice>
 std::span<const NamedChoice<Choice>> ChoicesOf();
 
@@ -58,7 +59,7 @@ std::span<const NamedChoice<HistoryForm>> ChoicesOf();
 template <>
 std::span<const NamedChoice<Upsampling>> ChoicesOf();
 
-// Null for a number that is no value of the enum.
+// Returns the name of a value, or null for a number that is no value of the enum.
 template <typename Choice>
 const char* ChoiceNameOrNull(Choice value) {
   for (const NamedChoice<Choice>& choice : ChoicesOf<Choice>()) {
@@ -74,7 +75,7 @@ std::string ChoiceName(Choice value) {
   return name ? name : "unknown";
 }
 
-// kInvalidArgument names the option and lists the valid names.
+// Returns the value with this name. kInvalidArgument names the option and lists the valid names.
 template <typename Choice>
 absl::StatusOr<Choice> ParseChoice(absl::string_view option, absl::string_view name) {
   std::string names;
@@ -87,13 +88,13 @@ absl::StatusOr<Choice> ParseChoice(absl::string_view option, absl::string_view n
 }
 
 struct OptionText {
-  const char* name;   // of the member of TrainOptions
+  const char* name;   // the name of the member of TrainOptions
   const char* alias;  // a second, shorter flag, or null
-  const char* help;   // a phrase; of an option with choices, what is chosen
+  const char* help;   // a phrase; for an option with choices, it says what is chosen
 };
-// In the order of VisitTrainOptions.
+// The texts of all options, in the order of VisitTrainOptions.
 std::span<const OptionText> OptionTexts();
-// `name`: of an option; asserted.
+// Returns the texts of the option `name`, which must exist (asserted).
 const OptionText& TextOfOption(absl::string_view name);
 
 }  // namespace pleat

@@ -1,4 +1,5 @@
-// Runtime: pose (with history) -> full mesh. Milliseconds, no allocation after the first frame.
+// The runtime: turns a pose with its history into the full mesh. It takes milliseconds and
+// allocates nothing after the first frame (docs/method/prediction.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,14 +17,15 @@ namespace pleat {
 
 struct EvaluatedFrame {
   Eigen::Matrix3Xf positions;  // 3 x V, meters, world
-  // How near the pose is to what training has seen: 1 = seen, 0 = unknown, the mean detail shows.
+  // How near the pose is to what training has seen, from 1 (seen) to 0 (unknown: the mean detail
+  // shows).
   double confidence = 0;
 };
 
-// What shows a frame to somebody who has the model: hundreds of bytes in place of a mesh.
+// What somebody who has the model needs to show a frame: hundreds of bytes in place of a mesh.
 struct FrameParameters {
-  Pose pose;                     // normalized; rotations are float32 numbers, as they travel
-  Eigen::VectorXf coefficients;  // of the detail basis, or none: skinned only
+  Pose pose;                     // normalized, with rotations rounded to float32, as they travel
+  Eigen::VectorXf coefficients;  // r, of the detail basis; empty: skinned only
   double confidence = 0;
 };
 
@@ -32,18 +34,19 @@ class PoseEvaluator;
 // One of several queries that are answered together.
 struct PoseQuery {
   const std::vector<const Pose*>* poses = nullptr;   // as for PoseEvaluator::Evaluate
-  const std::vector<double>* bone_scales = nullptr;  // null: ones
-  bool skinned_only = false;                         // without the learned detail
+  const std::vector<double>* bone_scales = nullptr;  // null: all are 1
+  bool skinned_only = false;                         // leaves out the learned detail
   EvaluatedFrame* frame = nullptr;
-  FrameParameters* parameters = nullptr;  // where given: these are filled in place of the frame
-  // Whose scratch memory the query uses, of the same model and in no other query of the batch: a
-  // batch of sessions that have evaluated before then allocates nothing, whoever evaluates it.
-  // Null: memory that the evaluating one keeps.
+  FrameParameters* parameters = nullptr;  // when given, it is filled in place of the frame
+  // The evaluator whose scratch memory the query uses. It must be of the same model, serve no other
+  // query of the batch, and not be in use meanwhile. A batch of sessions that have evaluated before
+  // then allocates nothing, whichever of them evaluates it. Null: the evaluating one uses memory of
+  // its own.
   PoseEvaluator* scratch_of = nullptr;
-  absl::Status status{};  // set by the evaluation; when it is not OK the frame is untouched
+  absl::Status status{};  // set by the evaluation; when it is not OK, the frame is untouched
 };
 
-// One evaluator per thread: it owns the scratch memory, the model is shared.
+// One evaluator serves one thread: it owns the scratch memory. The model is shared.
 class PoseEvaluator {
  public:
   explicit PoseEvaluator(std::shared_ptr<const CharacterModel> model);
@@ -53,61 +56,68 @@ class PoseEvaluator {
 
   const CharacterModel& model() const;
 
-  // poses[0] is the pose to show, poses[h] the pose h training-frame intervals earlier; missing
-  // history repeats the oldest pose given. bone_scales: J factors on the bone lengths or empty
-  // (retargeting: new proportions, the paper's Figure 6d). kInvalidArgument names a wrong joint
-  // count, a rotation that is not finite or not of unit length, or a scale outside [0.05, 20].
+  // poses[0] is the pose to show, poses[h] the pose h training-frame intervals earlier. When there
+  // are fewer than the model looks at, the oldest one is repeated. bone_scales: J factors on the
+  // lengths of the bones, or empty; they retarget the character to new proportions (Figure 6d of
+  // the paper). kInvalidArgument names a wrong joint count, a rotation that is not finite or not of
+  // unit length, or a scale outside [0.05, 20].
   absl::Status Evaluate(const std::vector<const Pose*>& poses,
                         const std::vector<double>& bone_scales, EvaluatedFrame* frame);
 
-  // The same without the learned detail (skinned only).
+  // Does the same without the learned detail (skinned only).
   absl::Status EvaluateSkinned(const Pose& pose, const std::vector<double>& bone_scales,
                                EvaluatedFrame* frame);
 
-  // Queries together read the model once: cheaper per query, the same bits in every frame.
+  // Answers all queries. Together they read the model once, which makes each of them cheaper; every
+  // frame has the same bits as alone. Errors go into the queries: one does not stop the others.
   void EvaluateBatch(std::span<PoseQuery> queries);
 
-  // Evaluate in two halves, for two machines: what the poses give, then the mesh. `Show` gives the
-  // same bits wherever the library runs; they differ from Evaluate's by the rounding of the
-  // rotations, under two micrometers on a person.
+  // Predict and Show are the two halves of Evaluate, for two machines: the first turns poses into
+  // parameters, the second turns parameters into the mesh. Show gives the same bits wherever the
+  // library runs. They differ from Evaluate's by the rounding of the rotations, which is less than
+  // two micrometers on a person.
   absl::Status Predict(const std::vector<const Pose*>& poses, bool skinned_only,
                        FrameParameters* parameters);
-  // kInvalidArgument names what does not fit the model.
+  // kInvalidArgument names what does not fit the model. `frame` is then untouched.
   absl::Status Show(const FrameParameters& parameters, const std::vector<double>& bone_scales,
                     EvaluatedFrame* frame);
 
-  // Every frame of `track` in order, history taken from the track itself (interpolated
-  // where its frame rate differs from the model's). `consume` may stop the clip with an error.
+  // Evaluates every frame of `track` in order. The history comes from the track itself and is
+  // interpolated where its frame rate differs from the model's. `consume` may stop the clip with an
+  // error, which is returned; so does a cancelled `progress`.
   absl::Status EvaluateClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
       const Progress& progress = {});
-  // The same without the learned detail.
+  // Does the same without the learned detail.
   absl::Status EvaluateSkinnedClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
       const Progress& progress = {});
 
  private:
-  struct Scratch;  // of one query
-  // The one with this number, made when it is needed first.
+  struct Scratch;  // the memory of one query
+  // Returns the scratch memory with this number and makes it when it is needed first.
   Scratch* ScratchAt(size_t number);
-  size_t NumPosesOf(const PoseQuery& query) const;  // that are looked at, with their history
+  // The number of poses that the query looks at: one, or those of the model's history.
+  size_t NumPosesOf(const PoseQuery& query) const;
   absl::Status Check(const PoseQuery& query) const;
-  // EvaluateBatch of queries that are checked already; those with a status that is not OK are left.
+  // Does the same as EvaluateBatch for queries that were checked. It leaves those alone whose
+  // status is not OK.
   void EvaluateChecked(std::span<PoseQuery> queries);
-  // Computes what is predicted from.
+  // Copies the poses and computes the features.
   void Prepare(const PoseQuery& query, Scratch* scratch) const;
-  // The coefficients of those with details, which come first.
+  // Computes the coefficients of the queries with details, which must come first.
   void Predict(std::span<Scratch* const> scratches) const;
-  // The motions of the bones in history[0] and the expansion of the coefficients.
+  // Computes the motions of the bones for history[0], and makes the coefficients ready to expand.
   void Place(const std::vector<double>& bone_scales, Scratch* scratch) const;
   static void TakeParameters(const Scratch& scratch, FrameParameters* parameters);
+  // Expands the details and skins all vertices; scratches[i] belongs to frames[i].
   void FillFrames(std::span<Scratch* const> scratches, std::span<EvaluatedFrame* const> frames);
 
   std::shared_ptr<const CharacterModel> model_;
   std::vector<std::unique_ptr<Scratch>> scratches_;  // as many as were needed at once so far
-  std::vector<const Pose*> one_pose_;                // of EvaluateSkinned
+  std::vector<const Pose*> one_pose_;                // the list that EvaluateSkinned passes on
 };
 
 }  // namespace pleat

@@ -1,4 +1,5 @@
-// Offline: mesh sequences -> character model (steps 3 to 7 of the data's way, ARCHITECTURE.md).
+// Offline: turns mesh sequences into a character model (steps 3 to 7 of the data flow in
+// ARCHITECTURE.md).
 #pragma once
 
 #include <memory>
@@ -13,21 +14,21 @@
 
 namespace pleat {
 
-// Resources, not choices: they never change the result and are not stored.
+// Resources are not choices: they never change the result and are not stored.
 struct TrainResources {
   int num_threads = 0;  // 0 = one per core
 };
 
-// What a training run reports beside the model (the model's record holds the rest).
+// What a training run reports beside the model. The record of the model holds the rest.
 struct TrainSummary {
-  int num_components = 0;  // of the detail basis
+  int num_components = 0;  // components of the detail basis
   int num_control_vertices = 0;
 };
 
-// Trains one character from one or more clips of the same connectivity (checked against the first;
-// kInvalidArgument names clip and first differing face). The rest frame is a frame of the first
-// clip. Errors: kInvalidArgument for bad options or clips, kFailedPrecondition when no human-like
-// rig fits, kCancelled.
+// Trains one character from one or more clips with the same connectivity and frame rate. The rest
+// frame is a frame of the first clip. `summary` may be null. Errors: kInvalidArgument for bad
+// options or clips (it names the clip and the first face that differs), kFailedPrecondition when no
+// human-like rig fits, kCancelled when `progress` was cancelled.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
     const std::vector<MeshSequence>& clips, const TrainOptions& options,
     const TrainResources& resources = {}, TrainSummary* summary = nullptr,

@@ -12,22 +12,22 @@
 
 namespace pleat {
 
-// Names and help texts of the choices: option_choices.h.
+// The names and help texts of the choices are in option_choices.h.
 struct TrainOptions {
-  LearnerChoice learner = LearnerChoice::kAuto;  // auto: validated on held-out training frames
+  LearnerChoice learner = LearnerChoice::kAuto;  // auto: chosen on held-out training frames
   PoseFitMethod fit = PoseFitMethod::kAllJoints;
   RigRefinement refine = RigRefinement::kFull;
   // What is learned: what the mesh does beyond its skinned rig, or all deformation beyond the
-  // motion of the root (which the paper compares with).
+  // motion of the root, with which the paper compares.
   DetailBase deformation = DetailBase::kSkinned;
   DetailAxes detail_axes = DetailAxes::kLocal;
   DetailCoordinates detail_coordinates = DetailCoordinates::kOffsets;
   RotationRepresentation rotations = RotationRepresentation::kExponentialMap;  // pose features
   int history = 2;                                       // poses per feature row, 1..8 (paper: 2)
-  HistoryForm history_form = HistoryForm::kDifferences;  // of those poses
+  HistoryForm history_form = HistoryForm::kDifferences;  // how earlier poses enter the row
   double resolution_percent = 100;  // share of the vertices that learn, 1..100 (paper: 5)
   Upsampling upsampling = Upsampling::kRefined;
-  int rest_frame = -1;             // frame to rig, -1 = found automatically
+  int rest_frame = -1;             // the frame to rig, -1 = found automatically
   double yaw_degrees = -1;         // facing of the character about +y from +z, -1 = automatic
   double bend_stiffness = 0.0001;  // pose fit: pull of a bone to its parent, 0..1
   double smoothness = 0;           // pose fit: pull to the poses before and after, 0..1; 0 = none
@@ -36,29 +36,32 @@ struct TrainOptions {
   double dynamics_weight = 1;      // lambda on the GPDM term, 0..1e6 (paper: 1)
   double detail_energy = 0.99999;  // share of the details' energy that the PCA basis keeps, 0..1
   int max_components = 128;        // upper bound of the PCA basis, 1..1024
-  uint64_t seed = 1;               // of everything random
+  uint64_t seed = 1;               // for everything random
 
-  // The published settings: sgplvm on a 5 % control mesh, walk, world axes (paper, section IV).
+  // The published settings: the SGPLVM on a control mesh of 5 %, the pose fit "walk" and world axes
+  // (paper, section IV).
   static TrainOptions Paper();
 
   friend bool operator==(const TrainOptions&, const TrainOptions&) = default;
 };
 
-// The name of every learner but "auto".
+// Returns the name of every learner except "auto".
 const std::vector<std::string>& LearnerNames();
 
-// OK when every option is in the range above; else names option, value and range.
+// OK when every option is in the range above. kInvalidArgument names the option, its value and the
+// range.
 absl::Status ValidateTrainOptions(const TrainOptions& options);
 
-// One "name=value" line per option, in a fixed order; the exact inverse of ParseTrainOptions.
+// Returns one line "name=value" per option, in a fixed order. ParseTrainOptions restores exactly
+// the same options from it.
 std::string FormatTrainOptions(const TrainOptions& options);
 
-// Parses such lines; options that are not mentioned keep their default. kInvalidArgument names an
-// unknown option or a value that does not parse or is not known.
+// Parses such lines. Options that are not mentioned keep their defaults. kInvalidArgument names an
+// option that is unknown, or a value that does not parse or is not known.
 absl::StatusOr<TrainOptions> ParseTrainOptions(absl::string_view text);
 
-// Calls visit(name, member&) for every option: the one list that file, wire, report and flags
-// share. A member is an enum with ChoicesOf, an int, a double or a uint64_t.
+// Calls visit(name, member&) for every option. Files, the wire, reports and flags share this one
+// list. A member is an enum with ChoicesOf, an int, a double or a uint64_t.
 template <typename Options, typename Visitor>
 void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("learner", options.learner);

@@ -1,4 +1,4 @@
-// Training on a rig that the user brings.
+// Training with a rig that the user brings.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,11 @@
 
 namespace pleat {
 
-// TrainCharacter with `rig` in place of the automatic one: its joints and names, its weights or,
-// where it has none, heat weights on its rest frame. Everything after the rig is the same;
-// refinement leaves its locked joints alone. The model's record has residual 0. Further errors:
-// kInvalidArgument when weights or rest frame do not fit the first clip.
+// Does the same as TrainCharacter with `rig` in place of the automatic one: with its joints and
+// their names, and with its weights or, where it has none, heat weights on its rest frame.
+// Everything after the rig is the same, except that refinement leaves its locked joints alone. The
+// rig_residual of the record is 0. Another error is kInvalidArgument when weights or rest frame do
+// not fit the first clip.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacterWithRig(
     const std::vector<MeshSequence>& clips, const UserRig& rig, const TrainOptions& options,
     const TrainResources& resources = {}, TrainSummary* summary = nullptr,
