@@ -15,7 +15,8 @@ namespace {
 constexpr uint32_t kHasBias = 1, kHasLinear = 2;
 constexpr uint32_t kMaxStages = 2;
 
-// The floating-point fields in front of a stage's sizes, in the order of the file.
+// Returns the floating-point fields that stand before the sizes of a stage, in the order of the
+// file.
 std::array<double, 7> KernelNumbers(const GpRegressionParameters& stage) {
   const KernelLogs& logs = stage.kernel;
   return {stage.kernel_options.relative_noise_floor,
@@ -47,6 +48,8 @@ void WriteStage(const GpRegressionParameters& stage, ByteWriter* writer) {
   }
 }
 
+// The whitener is lower triangular, and the file holds only that half, row by row. The square is
+// twice the bytes that were checked to be there, hence the second limit.
 absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_unfolded_bytes,
                           Eigen::MatrixXf* whitener) {
   PLEAT_RETURN_IF_ERROR(reader->Require(num_rows * (num_rows + 1) / 2, sizeof(float), "whitener"));
@@ -66,7 +69,7 @@ absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_un
   return absl::OkStatus();
 }
 
-// Files before version 3 have one scale for all inputs, in front of everything else.
+// Files before version 3 have one scale for all inputs, which stands before the matrices.
 constexpr uint32_t kFirstWithInputScales = 3;
 
 absl::Status ReadOldInputScale(ByteReader* reader, uint32_t version, double* scale) {
@@ -220,6 +223,8 @@ absl::StatusOr<DetailBasisParameters> ReadBasis(ByteReader* reader) {
   return basis;
 }
 
+// Reads the basis of version 1, which was not quantized. A largest step of 0 asks for as many
+// planes as a component can have.
 absl::StatusOr<DetailBasisParameters> ReadFloatBasis(ByteReader* reader) {
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_details, reader->Read<uint32_t>("detail size"));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_components, reader->Read<uint32_t>("component count"));

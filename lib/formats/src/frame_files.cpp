@@ -12,7 +12,7 @@ namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// The digits at the front of `text` without leading zeros.
+// Returns the digits at the front of `text` without leading zeros. `num_read` counts these too.
 std::string_view LeadingNumber(std::string_view text, size_t* num_read) {
   size_t end = 0;
   while (end < text.size() && IsDigit(text[end])) ++end;
@@ -22,7 +22,7 @@ std::string_view LeadingNumber(std::string_view text, size_t* num_read) {
   return text.substr(begin, end - begin);
 }
 
-// <0, 0, >0; leading zeros do not count.
+// Returns a number below, equal to or above 0. Leading zeros do not count.
 int CompareNaturally(std::string_view a, std::string_view b) {
   while (!a.empty() && !b.empty()) {
     if (IsDigit(a[0]) && IsDigit(b[0])) {
@@ -41,7 +41,7 @@ int CompareNaturally(std::string_view a, std::string_view b) {
   return static_cast<int>(!a.empty()) - static_cast<int>(!b.empty());
 }
 
-// A path taken apart: "walk2/f_007.obj" -> pattern "walk#/f_#", numbers {2, 7}.
+// A path taken apart: "walk2/f_007.obj" has the pattern "walk#/f_#" and the numbers {2, 7}.
 struct NameParts {
   std::string path;
   std::string pattern;
@@ -70,7 +70,7 @@ std::string FileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-// The position of the one number in which the names differ, if there is exactly one.
+// Returns the position of the one number in which the names differ, if there is exactly one.
 std::optional<size_t> CountingPosition(const std::vector<NameParts>& names) {
   std::optional<size_t> position;
   for (size_t i = 0; i < names[0].numbers.size(); ++i) {
@@ -96,7 +96,8 @@ absl::Status CheckDoubled(const std::vector<NameParts>& names) {
 }
 
 absl::Status CheckMissing(const std::vector<NameParts>& names, size_t position) {
-  // The step is the smallest distance; with two files only neighbors are a series.
+  // The step is the smallest distance between two numbers. Two files alone say nothing about a
+  // step, so their numbers must follow each other.
   uint64_t step = names.size() == 2 ? 1 : ~uint64_t{0};
   for (size_t i = 1; i < names.size() && names.size() > 2; ++i) {
     step = std::min(step, names[i].numbers[position] - names[i - 1].numbers[position]);

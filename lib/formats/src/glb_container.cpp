@@ -1,4 +1,7 @@
-// Khronos, glTF 2.0 specification, sections 3.6 (buffers, accessors) and 4.4 (binary files).
+// Source: Khronos, glTF 2.0 specification, sections 3.6 (buffers, accessors) and 4.4 (binary
+// files). All offsets and counts of the file are hostile: an accessor is refused unless its last
+// element ends inside the buffer view, and the view inside the chunk, in arithmetic that cannot
+// overflow.
 #include "glb_container.h"
 
 #include <algorithm>
@@ -23,7 +26,7 @@ absl::Status Fault(const std::string& what) {
 
 uint32_t ReadU32(std::string_view bytes, size_t at) {
   uint32_t value;
-  std::memcpy(&value, bytes.data() + at, 4);  // little endian, as the file
+  std::memcpy(&value, bytes.data() + at, 4);  // the file is little-endian, as this machine is
   return value;
 }
 
@@ -50,8 +53,8 @@ size_t ComponentBytes(int type) {
   }
 }
 
-// A non-negative whole number of a JSON object, `fallback` when it is missing, nullopt-like -1 when
-// it is something else.
+// Returns a non-negative whole number of a JSON object, `fallback` when it is missing, and -1 when
+// it is anything else or above 2^40.
 int64_t Size(const json& object, const char* name, int64_t fallback) {
   const auto found = object.find(name);
   if (found == object.end()) return fallback;

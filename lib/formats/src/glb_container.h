@@ -9,33 +9,34 @@
 
 namespace pleat {
 
-// Elements of one accessor; all of them lie inside the file.
+// The elements of one accessor, all of which lie inside the file.
 class GlbAccessor {
  public:
   size_t count() const { return count_; }
-  // Component k of element i as a number; normalized integers become 0..1 or -1..1.
+  // Returns component k of element i as a number. Normalized integers become 0..1 or -1..1. Indices
+  // are not checked.
   double At(size_t i, int k) const;
 
  private:
   friend class GlbContainer;
   const char* data_ = nullptr;
   size_t count_ = 0, stride_ = 0;
-  int component_type_ = 0;  // glTF constant
+  int component_type_ = 0;  // a constant of glTF, such as 5126 for float
   bool is_normalized_ = false;
 };
 
-// The bytes must outlive this object.
+// A GLB file. Its bytes must outlive this object and its accessors.
 class GlbContainer {
  public:
-  // kInvalidArgument when the bytes are no GLB of version 2 with a JSON chunk.
+  // kInvalidArgument when the bytes are not a GLB of version 2 with a JSON chunk.
   static absl::StatusOr<GlbContainer> Open(std::string_view bytes);
 
-  // A top-level list, empty when it is missing.
+  // Returns a list of the top level, which is empty when it is missing.
   const nlohmann::json& List(const char* name) const;
-  // An entry of such a list; null when `index` is not one.
+  // Returns an entry of such a list, or null when `index` is not an index of it.
   const nlohmann::json& Entry(const char* name, const nlohmann::json& index) const;
-  // kInvalidArgument when the accessor is not of `type` ("VEC3", ...) or leaves the file;
-  // kUnimplemented for sparse accessors and other buffers than the file's own.
+  // Returns the accessor `index`. kInvalidArgument when it is not of `type` ("VEC3", ...) or
+  // reaches beyond the file, kUnimplemented when it is sparse or its buffer is not the file's own.
   absl::StatusOr<GlbAccessor> Access(const nlohmann::json& index, std::string_view type) const;
 
  private:

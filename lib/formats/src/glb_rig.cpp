@@ -1,6 +1,6 @@
-// The skin of a binary glTF 2.0 file (Khronos, glTF 2.0 specification, sections 3.6 to 3.8
-// and 4.4). Only what a rig needs is read, with own bounds checks: a general loader would also
-// follow paths and decode images of a file that may be hostile.
+// Reads the skin of a binary glTF 2.0 file (Khronos, glTF 2.0 specification, sections 3.6 to 3.8
+// and 4.4). Only what a rig needs is read, and every index is checked here. A general loader would
+// also follow paths and decode images of a file that may be hostile.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ absl::Status Fault(const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat("GLB: ", what));
 }
 
-// The transform of one node relative to its parent.
+// Returns the transform of one node relative to its parent.
 absl::StatusOr<Eigen::Matrix4d> LocalTransform(const json& node) {
   const auto numbers = [&node](const char* key, size_t count, double fallback,
                                std::vector<double>* values) {
@@ -87,7 +87,9 @@ class SkinReader {
         parents_[child.get<size_t>()] = static_cast<int>(n);
       }
     }
-    for (size_t n = 0; n < nodes.size(); ++n) {  // a cycle would never end
+    // Every node has at most one parent by now, but there may be cycles, on which the walks up to
+    // the root would never end.
+    for (size_t n = 0; n < nodes.size(); ++n) {
       size_t steps = 0;
       for (int a = parents_[n]; a >= 0; a = parents_[a]) {
         if (++steps > nodes.size()) return Fault(absl::StrCat("node ", n, " is its own ancestor"));
@@ -135,7 +137,7 @@ class SkinReader {
     return absl::OkStatus();
   }
 
-  // Index in the skin of the nearest ancestor that is a joint, -1 = none.
+  // Returns the index in the skin of the nearest ancestor that is a joint, or -1.
   int ParentJoint(int joint) const {
     for (int node = parents_[joint_nodes_[joint]]; node >= 0; node = parents_[node]) {
       const auto found = std::ranges::find(joint_nodes_, node);
@@ -144,7 +146,8 @@ class SkinReader {
     return -1;
   }
 
-  // Skin indices, every parent before its children, else as the skin lists them.
+  // Returns the indices of the skin with every parent before its children. Children of one parent
+  // stay in the order of the skin.
   absl::StatusOr<std::vector<int>> ParentsFirst() const {
     const int num_joints = static_cast<int>(joint_nodes_.size());
     std::vector<std::vector<int>> children(num_joints);
@@ -181,8 +184,8 @@ class SkinReader {
   absl::Status MakeSkeleton() {
     PLEAT_ASSIGN_OR_RETURN(const std::vector<int> order, ParentsFirst());
     new_index_.assign(joint_nodes_.size(), -1);
-    // The rest pose as the file shows it: armatures that are turned or scaled (centimeters) carry
-    // mesh and joints along.
+    // The rest pose is taken as the file shows it. An armature may be turned or scaled
+    // (centimeters), and then it carries mesh and joints along.
     PLEAT_ASSIGN_OR_RETURN(const Eigen::Matrix4d root, GlobalTransform(joint_nodes_[order[0]]));
     world_from_bind_ = root * inverse_binds_[order[0]];
     std::vector<Joint> joints;
@@ -258,10 +261,10 @@ class SkinReader {
 
   const GlbContainer& glb_;
   const MeshLimits& limits_;
-  std::vector<int> parents_;      // per node, -1 = none
-  std::vector<int> joint_nodes_;  // per joint of the skin
+  std::vector<int> parents_;      // the parent of every node, -1 = none
+  std::vector<int> joint_nodes_;  // the node of every joint of the skin
   std::vector<Eigen::Matrix4d> inverse_binds_;
-  std::vector<int> new_index_;  // skin index -> index in file_.skeleton
+  std::vector<int> new_index_;  // the index in file_.skeleton of every joint of the skin
   Eigen::Matrix4d world_from_bind_ = Eigen::Matrix4d::Identity();
   RigFile file_;
 };

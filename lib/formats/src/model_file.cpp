@@ -1,3 +1,11 @@
+// A model file is a header, a table of ten sections that follow each other without gaps, and a
+// checksum over everything before it. Reading trusts none of it: the checksum is verified first,
+// which finds accidents, but an attacker can compute it. So every section checks its counts against
+// the bytes that it has before it allocates, and it must use up all of them. What memory holds in a
+// larger form than the file (a whitener, a basis for all vertices) has a limit of its own.
+//
+// Sections are read in their order because later ones need the counts of earlier ones. Whether all
+// parts fit together is decided by CharacterModel::Create alone.
 #include "pleat/formats/model_file.h"
 
 #include <array>
@@ -22,7 +30,7 @@ constexpr uint32_t kNumSections = 10;
 constexpr uint64_t kTableEntryBytes = 24;
 constexpr uint64_t kFirstSectionOffset = kFileKindBytes + 4 + kNumSections * kTableEntryBytes;
 
-// A section's type is its place here, from 1.
+// The type of a section is its place in this list, counted from 1.
 constexpr std::array<const char*, kNumSections> kSectionNames = {
     "info",    "topology",      "appearance", "skeleton", "skin",
     "options", "pose features", "control",    "detail",   "record"};
@@ -78,7 +86,7 @@ absl::StatusOr<Sections> CutSections(std::string_view content) {
   return sections;
 }
 
-// Reads section `index` (from 0) with `read(reader)`; all of its bytes must be used.
+// Reads section `index` (counted from 0) with `read(reader)`, which must use all of its bytes.
 template <typename Read>
 absl::Status ReadSection(const Sections& sections, size_t index, Read&& read) {
   ByteReader reader(sections[index]);
@@ -89,7 +97,7 @@ absl::Status ReadSection(const Sections& sections, size_t index, Read&& read) {
   return WithContext(absl::StrCat("section '", kSectionNames[index], "'"), std::move(status));
 }
 
-// Moves a StatusOr's value into `target`.
+// Moves the value of a StatusOr into `target`.
 template <typename T, typename Target>
 absl::Status Assign(absl::StatusOr<T> value, Target* target) {
   if (!value.ok()) return value.status();
@@ -97,7 +105,8 @@ absl::Status Assign(absl::StatusOr<T> value, Target* target) {
   return absl::OkStatus();
 }
 
-// What CharacterModel::Create is going to allocate beyond what is already there.
+// Checks what CharacterModel::Create is going to allocate beyond what is there already: the basis
+// for all vertices, as floats.
 absl::Status CheckUnfoldedSize(const CharacterModel::Parts& parts, uint64_t num_components,
                                uint64_t max_bytes) {
   if (!parts.upsampler) return absl::OkStatus();

@@ -228,7 +228,7 @@ void WriteRecord(const TrainingRecord& record, ByteWriter* writer) {
 
 namespace {
 
-// The end of the record, which the first files of this version lack.
+// Reads the part of the record that the first files of this version lack.
 absl::Status ReadFitReport(ByteReader* reader, TrainingRecord* record) {
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_frames, reader->Read<uint32_t>("worst frame count"));
   for (uint32_t i = 0; i < num_frames; ++i) {
@@ -249,7 +249,7 @@ absl::Status ReadFitReport(ByteReader* reader, TrainingRecord* record) {
   return absl::OkStatus();
 }
 
-// What chose the learner; older files of this version lack it.
+// Reads what the learner was chosen by, which older files of this version lack.
 absl::Status ReadValidation(ByteReader* reader, LearnerValidation* validation) {
   PLEAT_ASSIGN_OR_RETURN(validation->num_held_out_frames,
                          reader->Read<int32_t>("held-out frame count"));

@@ -1,5 +1,6 @@
-// Sections 1 to 8 and 10 of the model file (docs/formats/model_file.md). Each Write... writes one
-// section, each Read... reads what it wrote and checks what it can alone.
+// Sections 1 to 8 and 10 of the model file (docs/formats/model_file.md). Each function Write...
+// writes one section. Each function Read... reads it from hostile bytes and checks what can be
+// checked without the other sections; errors are those of DecodeModel.
 #pragma once
 
 #include "absl/status/status.h"

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "pleat.motion/1";
 constexpr double kMaxFps = 1000;
-constexpr double kUnitTolerance = 0.01;  // beyond it, normalizing is worth a warning
+constexpr double kUnitTolerance = 0.01;  // normalizing by more than this is worth a warning
 
 absl::Status Fault(const std::string& what) { return absl::InvalidArgumentError(what); }
 
@@ -226,7 +226,7 @@ class MotionParser {
   const json& root_;
   const Skeleton& skeleton_;
   const MeshLimits& limits_;
-  std::vector<int> columns_;          // skeleton joint of every rotation in a frame
+  std::vector<int> columns_;          // the skeleton's joint for every rotation of a frame
   std::vector<std::string> resting_;  // joints that the file does not name
   int64_t num_rescaled_ = 0;
   PoseTrack::Parts track_;
@@ -243,7 +243,7 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
         "the motion file has ", text.size(), " bytes, the limit is ", limits.max_document_bytes));
   }
   json root;
-  try {  // the parser says line and column only through its exception
+  try {  // the parser gives line and column only in its exception
     root = json::parse(text.begin(), text.end());
   } catch (const json::exception& fault) {
     return Fault(absl::StrCat("the motion file is not JSON: ", fault.what()));

@@ -17,7 +17,9 @@ namespace {
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\\'; }
 
-// Reads one file front to back. A line may go on after a backslash; `line_` is its first number.
+// Reads one file from front to back. A line that ends with a backslash goes on in the next one;
+// line_ is then the number of its first line. No line is copied: a backslash counts as white space,
+// so the cursor walks over the break.
 class ObjParser {
  public:
   ObjParser(std::string_view text, const std::string& file, const MeshLimits& limits)
@@ -70,7 +72,7 @@ class ObjParser {
     while (end > cursor_ && IsSpace(end[-1])) --end;
     return {cursor_, end};
   }
-  // The word at the cursor, for messages.
+  // Returns the word at the cursor, for messages.
   std::string Found() {
     SkipSpace();
     const char* end = cursor_;
@@ -84,7 +86,8 @@ class ObjParser {
     const char* begin = cursor_ < line_end_ && *cursor_ == '+' ? cursor_ + 1 : cursor_;
     std::from_chars_result result = std::from_chars(begin, line_end_, *value);
     if (result.ec == std::errc::result_out_of_range) {
-      // Too small for float32 (a negative exponent) is zero, too large is an error.
+      // A number that is too small for float32 (its exponent is negative) is 0. One that is too
+      // large is an error.
       if (result.ptr - begin < 2 || std::find(begin + 1, result.ptr, '-') == result.ptr)
         return false;
       *value = 0;
@@ -140,7 +143,8 @@ class ObjParser {
     return absl::OkStatus();
   }
 
-  // An index into `count` items seen so far: 1-based, or negative = counted from the end.
+  // Reads an index into `count` items so far and makes it count from 0. In the file it counts from
+  // 1, or it is negative and counts from the end.
   absl::Status ParseIndex(absl::string_view kind, int64_t count, int32_t* index) {
     int32_t value = 0;
     const std::from_chars_result result = std::from_chars(cursor_, line_end_, value);
@@ -172,7 +176,7 @@ class ObjParser {
         const auto count = static_cast<int64_t>(mesh_.appearance.texcoords.size());
         PLEAT_RETURN_IF_ERROR(ParseIndex("texture coordinate", count, &texcoord));
       }
-      // Normals are recomputed, never kept: any number will do.
+      // Normals are not kept, so any number will do.
       if (Consume('/') && !AtCornerEnd()) {
         PLEAT_RETURN_IF_ERROR(ParseIndex("normal", std::numeric_limits<int32_t>::max(), &normal));
       }
@@ -205,7 +209,7 @@ class ObjParser {
 
   int64_t num_vertices() const { return static_cast<int64_t>(coordinates_.size() / 3); }
 
-  // A face may name a vertex that a later line defines, so ranges are known only at the end.
+  // A face may name a vertex that a later line defines, so the ranges are known only at the end.
   absl::Status CheckIndices() const {
     const auto num_texcoords = static_cast<int64_t>(mesh_.appearance.texcoords.size());
     size_t corner = 0;
@@ -243,9 +247,9 @@ class ObjParser {
     return std::move(mesh_);
   }
 
-  const char* next_;  // first byte of the next line
+  const char* next_;  // the first byte of the next line
   const char* text_end_;
-  const char* cursor_ = nullptr;  // in the current line
+  const char* cursor_ = nullptr;  // a place in the current line
   const char* line_end_ = nullptr;
   int32_t line_ = 0;
   int32_t continued_lines_ = 0;

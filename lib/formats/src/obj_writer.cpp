@@ -24,7 +24,7 @@ void AppendCorner(int32_t vertex, int32_t texcoord, std::string* text) {
   AppendNumber(texcoord + int64_t{1}, text);
 }
 
-// Everything after the vertices, which all frames of a sequence share.
+// Returns everything that follows the vertices.
 std::string EncodeFaces(const Topology& topology, const MeshAppearance& appearance) {
   std::string text;
   for (const Eigen::Vector2f& texcoord : appearance.texcoords) {
@@ -38,7 +38,7 @@ std::string EncodeFaces(const Topology& topology, const MeshAppearance& appearan
   for (int f = 0; f < topology.num_faces(); ++f) {
     if (!appearance.face_materials.empty() && appearance.face_materials[f] != material) {
       material = appearance.face_materials[f];
-      // OBJ cannot go back to "no material": an empty name stands for it.
+      // OBJ cannot go back to "no material", so an empty name stands for it.
       absl::StrAppend(&text, "usemtl ", material < 0 ? "" : appearance.material_names[material],
                       "\n");
     }

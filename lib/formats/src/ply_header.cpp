@@ -11,7 +11,7 @@ namespace pleat {
 namespace {
 
 constexpr int kMaxHeaderLines = 10'000;
-constexpr size_t kMaxProperties = 1'000;  // per element
+constexpr size_t kMaxProperties = 1'000;  // of one element
 
 std::optional<PlyScalar> ScalarFromName(std::string_view name) {
   constexpr std::pair<std::string_view, PlyScalar> kNames[] = {
@@ -47,7 +47,7 @@ std::optional<int64_t> CountFromText(std::string_view text) {
   return count;
 }
 
-// Each Parse... returns what is wrong with the line, or an empty string.
+// Each function Parse... returns what is wrong with the line, or an empty string.
 std::string ParseFormat(const std::vector<std::string_view>& words, PlyHeader* header) {
   if (words.size() >= 2 && words[1] == "ascii") {
     header->encoding = PlyEncoding::kAscii;

@@ -19,7 +19,7 @@ struct PlyProperty {
   std::string name;
   PlyScalar type = PlyScalar::kFloat32;
   bool is_list = false;
-  PlyScalar size_type = PlyScalar::kUint8;  // of a list's length
+  PlyScalar size_type = PlyScalar::kUint8;  // the type of the length of a list
 };
 
 struct PlyElement {
@@ -32,11 +32,12 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  size_t body_offset = 0;  // first byte after the header
-  int64_t num_lines = 0;   // of the header
+  size_t body_offset = 0;  // the first byte after the header
+  int64_t num_lines = 0;   // the number of lines in the header
 };
 
-// kInvalidArgument with "file:line" when the header is not one.
+// kInvalidArgument says "file:line" and what is wrong with the header. `file` is the name used in
+// messages.
 absl::StatusOr<PlyHeader> ParsePlyHeader(std::string_view bytes, const std::string& file);
 
 }  // namespace pleat

@@ -18,7 +18,8 @@
 namespace pleat {
 namespace {
 
-// The values of the body, one after the other, whatever the encoding.
+// Reads the values of the body one after the other, whatever the encoding. They all become double,
+// which holds every scalar type of PLY exactly.
 class PlyBody {
  public:
   PlyBody(std::string_view bytes, const PlyHeader& header)
@@ -28,16 +29,16 @@ class PlyBody {
         encoding_(header.encoding),
         first_line_(header.num_lines + 1) {}
 
-  // False when the value is not there or not a number.
+  // Returns false when the value is not there or not a number.
   bool Read(PlyScalar type, double* value) {
     return encoding_ == PlyEncoding::kAscii ? ReadText(value) : ReadBinary(type, value);
   }
   size_t remaining() const { return static_cast<size_t>(end_ - cursor_); }
-  // Fewest bytes that one value takes.
+  // Returns the smallest number of bytes that one value takes.
   size_t MinBytes(PlyScalar type) const {
     return encoding_ == PlyEncoding::kAscii ? 1 : static_cast<size_t>(PlyScalarBytes(type));
   }
-  // Where the cursor stands, for messages.
+  // Returns where the cursor stands, for messages.
   std::string Place() const {
     if (encoding_ != PlyEncoding::kAscii) return absl::StrCat("byte ", cursor_ - begin_);
     const auto body_lines = std::count(body_begin_, cursor_, '\n');
@@ -133,7 +134,8 @@ class PlyParser {
                               property, ": the file is cut off or the value is no number"));
   }
 
-  // The body must be long enough for the declared count before anything is allocated for it.
+  // Checks that the body is long enough for the declared count, before anything is allocated for
+  // it.
   absl::Status CheckSize(const PlyElement& element) const {
     const bool is_mesh = element.name == "vertex" || element.name == "face";
     const int64_t limit = element.name == "vertex" ? limits_.max_vertices : limits_.max_faces;
@@ -153,7 +155,7 @@ class PlyParser {
                               " bytes follow; the file is cut off"));
   }
 
-  // Reads property p of one item; `values` receives its scalars.
+  // Reads one property of one item. `values` receives its scalars.
   absl::Status ReadProperty(const PlyElement& element, int64_t item, const PlyProperty& property,
                             std::vector<double>* values) {
     double count = 1;
@@ -201,7 +203,7 @@ class PlyParser {
     return absl::OkStatus();
   }
 
-  // Property indices of u and v, or -1.
+  // Returns the indices of the properties u and v, or -1 for both.
   static std::array<int, 2> FindTexcoord(const PlyElement& element) {
     constexpr std::array<std::string_view, 2> kNames[] = {
         {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
@@ -215,7 +217,7 @@ class PlyParser {
     return {-1, -1};
   }
 
-  // Faces, or an element that is only skipped.
+  // Reads the faces, or skips another element, whose values must be read to find its end.
   absl::Status ParseLists(const PlyElement& element) {
     const bool is_face = element.name == "face";
     int corners = element.FindProperty("vertex_indices");

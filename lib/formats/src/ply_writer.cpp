@@ -9,7 +9,7 @@
 namespace pleat {
 namespace {
 
-// Writes faces; list lengths are uint8 unless a polygon is too large for that.
+// Writes the faces. The lengths of lists are uint8 unless a polygon is too large for that.
 class FaceWriter {
  public:
   FaceWriter(const Topology& topology, const MeshAppearance& appearance)

@@ -1,4 +1,4 @@
-// From a rig file to the rig of a clip's own vertices.
+// Turns a rig file into the rig of a clip's own vertices.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,9 +16,11 @@
 namespace pleat {
 namespace {
 
-constexpr int kVerticesPerLeaf = 10;        // of the search tree
-constexpr double kMaxVertexDistance = .01;  // of the diagonal: another mesh, pose or unit
-constexpr double kMaxJointDistance = 1;     // of the diagonal, from the mesh's center
+constexpr int kVerticesPerLeaf = 10;  // in the search tree
+// In diagonals of the clip's rest frame. A vertex that is farther from the file's mesh, or a joint
+// that is farther from the center, belongs to another mesh, pose or unit.
+constexpr double kMaxVertexDistance = .01;
+constexpr double kMaxJointDistance = 1;
 
 absl::Status CheckJoints(const Skeleton& skeleton, const Eigen::Matrix3Xd& rest, double diagonal) {
   const Eigen::Vector3d center = ComputeBounds(rest).center();
@@ -33,7 +35,7 @@ absl::Status CheckJoints(const Skeleton& skeleton, const Eigen::Matrix3Xd& rest,
   return absl::OkStatus();
 }
 
-// The file's influences, carried to the clip's vertices by place.
+// Carries the file's influences to the clip's vertices by place.
 absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigFile& file,
                                                                       const Eigen::Matrix3Xd& rest,
                                                                       double diagonal) {
@@ -53,8 +55,8 @@ absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigF
   return influences;
 }
 
-// Weights that are Pleat's own already, untouched: falling, of different bones, together 1. Empty
-// when they are not.
+// Returns the weights without a change when they have the form of Pleat's own already: they fall,
+// belong to different bones and add up to 1. Then a rig that Pleat wrote comes back bit for bit.
 std::optional<SkinWeights> OwnWeights(const RigFile& file) {
   std::vector<VertexInfluences> vertices(file.influences.size());
   for (size_t v = 0; v < vertices.size(); ++v) {

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr const char* kSchema = "pleat.rig_file/1";
 constexpr int kMaxFrame = 100'000;
 constexpr int kMaxListed = 64;  // influences of one vertex
-constexpr int kMaxDepth = 16;   // of JSON
+constexpr int kMaxDepth = 16;   // nested brackets in the JSON
 
 absl::Status Fault(const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat("rig: ", what));
@@ -148,7 +148,7 @@ class RigParser {
     return absl::OkStatus();
   }
 
-  // [joint, weight, joint, weight, ...]
+  // Reads the list of one vertex: [joint, weight, joint, weight, ...].
   absl::StatusOr<std::vector<JointInfluence>> ParseVertex(const json& vertex) const {
     const size_t v = file_.influences.size();
     if (!vertex.is_array() || vertex.size() % 2 != 0 || vertex.size() > 2 * kMaxListed) {
@@ -176,7 +176,8 @@ class RigParser {
   RigFile file_;
 };
 
-// True when brackets nest deeper than a rig file needs: every level costs the parser memory.
+// Says whether brackets nest deeper than a rig file needs. Every level costs the parser memory, so
+// this is found out before it runs.
 bool NestsTooDeep(std::string_view text) {
   int depth = 0;
   bool in_string = false;
@@ -196,8 +197,8 @@ bool NestsTooDeep(std::string_view text) {
   return false;
 }
 
-// The double whose shortest decimal text is that of the float: half as many digits in the file, and
-// the same float when read back.
+// Returns the double whose shortest decimal text is that of the float. The file then has half as
+// many digits, and reading it gives the same float.
 double ShortDecimal(float value) {
   char text[32];
   const auto written = std::to_chars(text, text + sizeof(text), value);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr FileKind kKind = {"PLEATSEQ", 1, 1, "sequence file"};
 
-// Fields 3 to 11.
+// Fields 3 to 11 of the file, without padding, so that they can be read at once.
 struct Header {
   uint32_t num_vertices = 0, num_faces = 0, num_corners = 0, num_frames = 0;
   uint32_t rate_numerator = 0, rate_denominator = 0;

@@ -51,7 +51,7 @@ absl::StatusOr<MeshSequence> CreateSequence(MeshFile mesh, std::vector<Eigen::Ma
       input, MeshSequence::Create(std::move(mesh.topology), std::move(frames), std::move(options)));
 }
 
-// The folder's own name, also for "." and "dir/".
+// Returns the folder's own name, also for "." and "dir/".
 std::string FolderName(const std::string& folder) {
   std::error_code error;
   const fs::path absolute = fs::weakly_canonical(folder.empty() ? "." : folder, error);
@@ -97,7 +97,7 @@ class FrameFileReader {
     frames_.resize(paths_.size());
     faults_.resize(paths_.size());
     frames_[0] = first_.positions;
-    // In batches: between them progress is told and cancellation noticed.
+    // Frames are read in batches. Between them progress is reported and a cancellation is noticed.
     constexpr int kBatch = 16;
     const int num_frames = static_cast<int>(paths_.size());
     for (int begin = 1; begin < num_frames; begin += kBatch) {
@@ -172,7 +172,7 @@ std::vector<std::string> MeshesBeside(const fs::path& cache_path) {
   return paths;
 }
 
-// The mesh whose vertices the cache moves (see ReadSequence).
+// Finds the mesh whose vertices the cache moves (see ReadSequence).
 absl::StatusOr<MeshFile> FindMesh(const fs::path& cache_path, Eigen::Index num_vertices,
                                   const ReadSequenceOptions& options) {
   const fs::path folder = cache_path.parent_path();

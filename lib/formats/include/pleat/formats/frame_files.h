@@ -9,13 +9,14 @@
 
 namespace pleat {
 
-// Natural order: runs of digits compare as numbers, so "frame2" comes before "frame10".
+// Compares in natural order: runs of digits count as numbers, so "frame2" comes before "frame10".
 bool NaturalLess(std::string_view a, std::string_view b);
 
-// Sorts `paths` naturally and checks file names that form a numbered series (equal but for one
-// number): kInvalidArgument names a missing number, a doubled one ("f2" beside "f02"), or a name
-// that does not belong to the series. A constant step (0, 5, 10, ...) is a series too. Names that
-// form no series are taken as they sort.
+// Sorts `paths` in natural order and checks file names that form a numbered series, which means
+// that they differ in one number only. kInvalidArgument names a number that is missing or that is
+// there twice ("f2" beside "f02"), or a name that does not belong to the series. Numbers may have a
+// constant step (0, 5, 10, ...). Names that form no series are taken in the order in which they
+// sort.
 absl::Status SortFrameFiles(std::vector<std::string>* paths);
 
 }  // namespace pleat

@@ -8,9 +8,9 @@
 
 namespace pleat {
 
-// One frame as its file lists it: vertex order and count, polygons, texture corners and materials
-// are those of the file. Positions may hold NaN or infinity when the file does: MeshSequence
-// refuses them with frame and vertex.
+// One frame as its file lists it. Vertex order and count, polygons, texture corners and materials
+// are those of the file. Positions hold NaN or infinity when the file does; MeshSequence refuses
+// them and names frame and vertex.
 struct MeshFile {
   Topology topology;
   Eigen::Matrix3Xf positions;  // 3 x V, in the file's units and axes

@@ -14,19 +14,21 @@
 namespace pleat {
 
 struct Motion {
-  PoseTrack track;                    // all joints of the skeleton
+  PoseTrack track;                    // with all joints of the skeleton
   std::vector<double> bone_scales;    // J, or empty when the file has none
   std::vector<std::string> warnings;  // joints left at rest, ignored fields, rescaled quaternions
 };
 
-// Matches the file's joints to those of `skeleton` by name. kInvalidArgument names frame and joint
-// and what is wrong there; an unknown joint comes with the list of known ones.
+// Reads a motion and matches its joints to those of `skeleton` by name. kInvalidArgument names the
+// frame and the joint and says what is wrong there; for an unknown joint it lists the known ones.
+// kResourceExhausted names the limit that the file exceeds.
 absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skeleton,
                                     const MeshLimits& limits = {});
 absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
                                   const MeshLimits& limits = {});
 
-// bone_scales: J entries or empty. `track` has skeleton.num_joints() joints.
+// Writes a motion. `track` must have skeleton.num_joints() joints (asserted). bone_scales: J
+// entries or empty.
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales = {});
 absl::Status WriteMotion(const std::string& path, const Skeleton& skeleton, const PoseTrack& track,

@@ -9,9 +9,10 @@
 
 namespace pleat {
 
-// Reads v, vt, f (a, a/b, a//c, a/b/c, negative indices, polygons of any size), usemtl and mtllib;
-// every other statement is skipped, normals included. kInvalidArgument says "file:line" and why.
-// `file` is the name used in messages.
+// Reads the statements v, vt, f (a, a/b, a//c, a/b/c, negative indices, polygons of any size),
+// usemtl and mtllib. All others are skipped, normals included. kInvalidArgument says "file:line"
+// and why, kResourceExhausted names the limit that is exceeded. `file` is the name used in
+// messages.
 absl::StatusOr<MeshFile> DecodeObj(std::string_view text, const std::string& file,
                                    const MeshLimits& limits = {});
 absl::StatusOr<MeshFile> ReadObj(const std::string& path, const MeshLimits& limits = {});

@@ -1,4 +1,4 @@
-// Writing frames as Wavefront OBJ.
+// Writes frames as Wavefront OBJ.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace pleat {
 
-// The text of one frame; numbers are the shortest that read back to the same float32.
+// Returns the text of one frame. Numbers are the shortest that read back as the same float32.
 // positions: 3 x V.
 std::string EncodeObj(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                       const MeshAppearance& appearance = {});

@@ -1,4 +1,5 @@
-// Stanford PLY (ascii, binary little- and big-endian), vertex order and count untouched.
+// Stanford PLY (ASCII, binary little-endian and big-endian), read without changing the order or the
+// number of its vertices.
 #pragma once
 
 #include <string>
@@ -9,10 +10,11 @@
 
 namespace pleat {
 
-// Needs an element "vertex" with scalar properties x, y, z and an element "face" with a list
-// vertex_indices or vertex_index. Texture coordinates are taken from a face list "texcoord" (u, v
-// per corner) or from vertex properties s, t / u, v / texture_u, texture_v. All other elements and
-// properties are skipped. kInvalidArgument says file, line or byte, and why.
+// The file must have an element "vertex" with scalar properties x, y, z and an element "face" with
+// a list vertex_indices or vertex_index. Texture coordinates are taken from a list "texcoord" of
+// the face (u, v per corner), or from the vertex properties s and t, u and v, or texture_u and
+// texture_v. All other elements and properties are skipped. kInvalidArgument names the file and the
+// line or byte and says why, kResourceExhausted names the limit that is exceeded.
 absl::StatusOr<MeshFile> DecodePly(std::string_view bytes, const std::string& file,
                                    const MeshLimits& limits = {});
 absl::StatusOr<MeshFile> ReadPly(const std::string& path, const MeshLimits& limits = {});

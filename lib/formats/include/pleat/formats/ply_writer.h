@@ -1,4 +1,4 @@
-// Writing frames as Stanford PLY (binary little-endian).
+// Writes frames as Stanford PLY (binary, little-endian).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,9 +9,9 @@
 
 namespace pleat {
 
-// float32 x, y, z; polygons as vertex_indices; texture coordinates, when there are any, as the list
-// "texcoord" of u, v per corner (empty for a face with a corner that has none). Materials have no
-// place in PLY. positions: 3 x V.
+// Returns the bytes of one frame: x, y, z as float32 and polygons as the list vertex_indices.
+// Texture coordinates, if there are any, are the list "texcoord" with u, v per corner, which is
+// empty for a face with a corner that has none. Materials have no place in PLY. positions: 3 x V.
 std::string EncodePly(const Topology& topology, const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                       const MeshAppearance& appearance = {});
 absl::Status WritePly(const std::string& path, const Topology& topology,

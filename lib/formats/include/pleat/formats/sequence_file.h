@@ -14,15 +14,18 @@ namespace pleat {
 // The same sequence always gives the same bytes.
 std::string EncodeSequence(const MeshSequence& sequence);
 
-// kInvalidArgument: not a sequence file, another version, or values that are no valid sequence.
-// kDataLoss: cut off or corrupt. kResourceExhausted: above a limit.
+// Reads a sequence from hostile bytes. kInvalidArgument says that they are no sequence file or of
+// another version, or which values make no valid sequence; kDataLoss that they are cut off or
+// corrupt; kResourceExhausted names the limit that they exceed.
 absl::StatusOr<MeshSequence> DecodeSequence(std::string_view bytes, const MeshLimits& limits = {});
 
+// Do the same with files; the errors name them.
 absl::StatusOr<MeshSequence> ReadSequenceFile(const std::string& path,
                                               const MeshLimits& limits = {});
 absl::Status WriteSequenceFile(const std::string& path, const MeshSequence& sequence);
 
-// Content id of a sequence file: SHA-256 of its bytes, 64 lower-case hexadecimal digits.
+// Returns the content id of a sequence file: the SHA-256 of its bytes as 64 lower-case hexadecimal
+// digits.
 std::string SequenceId(std::string_view bytes);
 
 }  // namespace pleat

@@ -1,4 +1,5 @@
-// The one door for mesh sequences: a folder, a glob, a single mesh, a point cache, or Pleat's own.
+// The one way in for mesh sequences: a folder, a glob, a single mesh, a point cache, or Pleat's own
+// file.
 #pragma once
 
 #include <functional>
@@ -14,27 +15,29 @@
 namespace pleat {
 
 struct ReadSequenceOptions {
-  // Unset: what the input says (.pseq), else 30 fps. A point cache's "rate" is samples per frame of
-  // its host's timeline, not a frame rate, and is not used.
+  // Unset: the rate of the input where it has one (.pseq), otherwise 30 fps. The "rate" of a point
+  // cache is not a frame rate and is not used.
   std::optional<FrameRate> frame_rate{};
   MeshLimits limits{};
-  int num_threads =
-      0;  // for folders and globs; 0 = one per core. The result does not depend on it.
-  // Reads .drc files, from several threads; without it they are refused: Draco's decoder needs a
-  // process of its own, which a library does not start.
+  // The threads that read folders and globs, 0 = one per core. The result does not depend on it.
+  int num_threads = 0;
+  // Reads .drc files and is called by several threads at once. Without it they are refused, because
+  // Draco's decoder needs a process of its own, which a library does not start.
   std::function<absl::StatusOr<MeshFile>(const std::string& path)> read_draco{};
 };
 
-// `input` is one of
-// - a folder of .obj, .ply or .drc files (or with one .pc2 and its mesh), or a glob
-// ("dir/frame_*.obj")
-// - one .obj, .ply or .drc: a sequence of one frame
-// - a .pc2, whose mesh is the .obj or .ply of the same stem, else template.obj, else the only .obj
-//   of the folder with the right number of vertices
+// Reads `input`, which is one of
+// - a folder of .obj, .ply or .drc files, or a folder with one .pc2 and its mesh
+// - a glob of such files ("dir/frame_*.obj")
+// - one .obj, .ply or .drc, which is a sequence of one frame
+// - a .pc2, whose mesh is the .obj or .ply of the same stem, or template.obj or template.ply, or
+// the
+//   only mesh of the folder with the right number of vertices, in this order
 // - a Pleat sequence file (.pseq).
-// Topology and appearance are those of the first frame. Each fault is named with its file: the
-// first frame whose connectivity differs and its first differing face, missing or doubled numbers,
-// NaN with frame and vertex, wrong counts, empty files, unknown extensions.
+//
+// Topology and appearance are those of the first frame. The errors name the file and the fault: the
+// first frame whose connectivity differs and its first face that differs, numbers that are missing
+// or there twice, the frame and vertex of a NaN, wrong counts, empty files, unknown extensions.
 absl::StatusOr<MeshSequence> ReadSequence(const std::string& input,
                                           const ReadSequenceOptions& options = {},
                                           const Progress& progress = {});
