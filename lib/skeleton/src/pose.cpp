@@ -59,7 +59,7 @@ void ComputeBoneTransforms(const Skeleton& skeleton, const Pose& pose,
     transforms->rotation[b] = transforms->rotation[parent] * pose.rotations[b].toRotationMatrix();
     transforms->linear[b] = transforms->rotation[b];
     const double length_squared = bone.squaredNorm();
-    if (!bone_scales.empty() && length_squared > 0) {  // stretch along the bone's axis
+    if (!bone_scales.empty() && length_squared > 0) {  // stretches along the axis of the bone only
       transforms->linear[b] += (bone_scales[b] - 1) / length_squared *
                                (transforms->rotation[b] * bone) * bone.transpose();
     }

@@ -11,7 +11,7 @@
 namespace pleat {
 namespace {
 
-// The coordinates of `rotation` on the branch nearest to `reference` (3 or 4 values).
+// Writes the coordinates of `rotation` (3 or 4 values) on the branch nearest to `reference`.
 void ToCoordinates(RotationRepresentation representation, const Eigen::Quaterniond& rotation,
                    const Eigen::Ref<const Eigen::VectorXd>& reference,
                    Eigen::Ref<Eigen::VectorXd> out) {
@@ -35,7 +35,7 @@ void ToCoordinates(RotationRepresentation representation, const Eigen::Quaternio
   }
 }
 
-// A reference that any rotation may be compared with before a track is known.
+// Returns a reference that any rotation may be compared with before a track is known: no rotation.
 Eigen::VectorXd NeutralReference(RotationRepresentation representation, int num_joints) {
   const int k = NumCoordinates(representation);
   Eigen::VectorXd reference = Eigen::VectorXd::Zero((num_joints - 1) * k);
@@ -84,7 +84,8 @@ void PoseFeatures::ComputeRow(const std::vector<const Pose*>& poses,
     }
   }
   if (options_.history_form == HistoryForm::kPoses) return;
-  for (int h = options_.history - 1; h > 0; --h) {  // oldest first: each still needs its successor
+  // From the oldest on, because each pose still needs its successor as it is.
+  for (int h = options_.history - 1; h > 0; --h) {
     row.segment(h * block, block) =
         row.segment((h - 1) * block, block) - row.segment(h * block, block);
   }

@@ -8,7 +8,7 @@
 namespace pleat {
 namespace {
 
-// a at fraction 0, b at fraction 1; fractions outside [0, 1] extrapolate.
+// Returns a at fraction 0 and b at fraction 1. Fractions outside [0, 1] extrapolate.
 Pose Interpolate(const Pose& a, const Pose& b, double fraction) {
   Pose pose;
   pose.root_position = a.root_position + fraction * (b.root_position - a.root_position);
@@ -64,7 +64,7 @@ void PoseHistory::At(int t, std::vector<const Pose*>* poses) {
     const double position = t - static_cast<double>(h) * frames_per_interval_;
     const double nearest = std::round(position);
     if (std::abs(position - nearest) < 1e-6 && nearest >= clip.begin) {
-      (*poses)[h] = &track_.pose(static_cast<int>(nearest));  // no rounding by interpolation
+      (*poses)[h] = &track_.pose(static_cast<int>(nearest));  // the very pose, without rounding
     } else {
       sampled_[h] = SamplePose(track_, clip.begin, clip.end, position);
       (*poses)[h] = &sampled_[h];

@@ -56,6 +56,7 @@ PoseTrack PoseTrack::Subset(const std::vector<int>& frame_indices) const {
 }
 
 absl::Status CheckJointCount(const PoseTrack& track, int num_joints) {
+  // All poses of a track have the same number of joints, so the first one stands for all.
   if (track.num_frames() == 0) return absl::OkStatus();
   absl::Status status = CheckJointCount(track.pose(0), num_joints);
   return status.ok() ? status : InFrame(0, status);

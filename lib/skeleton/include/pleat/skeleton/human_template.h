@@ -9,7 +9,7 @@ namespace pleat {
 
 inline constexpr int kNumHumanJoints = 18;
 
-// Joint indices of the template; names are those of the Unity / VRM humanoid.
+// The joint indices of the template. The names are those of the Unity and VRM humanoid.
 enum HumanJoint : int {
   kHips,
   kSpine,
@@ -31,10 +31,12 @@ enum HumanJoint : int {
   kRightHand,
 };
 
-// Rest positions in fractions of body height: +x to the character's left, facing +z, floor y = 0.
+// Returns the template. Rest positions are fractions of the body height: the character faces +z,
+// its left side is at +x, and the floor is y = 0.
 const Skeleton& HumanTemplate();
 
-// Left/right counterpart of every joint; a joint of the middle is its own.
+// Returns the joint on the other side of the body for every joint. A joint in the middle is its own
+// counterpart.
 const std::array<int, kNumHumanJoints>& HumanMirror();
 
 }  // namespace pleat

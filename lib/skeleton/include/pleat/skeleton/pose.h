@@ -14,30 +14,32 @@ namespace pleat {
 // One pose of a skeleton with J joints.
 struct Pose {
   Eigen::Vector3d root_position = Eigen::Vector3d::Zero();  // joint 0 in the world, meters
-  // rotations[0]: root, world. rotations[b]: bone b relative to bone parent(b), in the axes of the
-  // rest pose (all identity = rest pose). Unit quaternions.
+  // J unit quaternions. rotations[0] turns the root in the world, rotations[b] turns bone b
+  // relative to bone parent(b). Both are written in the axes of the rest pose, where all are the
+  // identity.
   std::vector<Eigen::Quaterniond> rotations;
 
   static Pose Rest(const Skeleton& skeleton);
 };
 
-// OK when the root position is finite and the rotations are unit quaternions (to 1 %, which their
-// use normalizes away); kInvalidArgument names the joint.
+// OK when the root position is finite and every rotation is a unit quaternion to within 1 %, which
+// normalizing corrects later. kInvalidArgument names the joint.
 absl::Status CheckPose(const Pose& pose);
-// OK when the pose has one rotation for each joint; kInvalidArgument names both counts.
+// OK when the pose has one rotation for each joint. kInvalidArgument names both counts.
 absl::Status CheckJointCount(const Pose& pose, int num_joints);
 
-// World motion of every bone: x_world = bone_transforms[b] * x_rest. Entry 0 is the root's own
-// frame (rotation R_0 about the rest root position, moved to root_position).
+// The motion of every bone in the world: x_world = linear[b] x_rest + translation[b]. Entry 0 is
+// the root's own frame: it turns by R_0 about the root's rest position and moves to root_position.
 struct BoneTransforms {
-  std::vector<Eigen::Matrix3d> linear;       // J: R_b, or R_b S_b with scaled bone lengths
+  std::vector<Eigen::Matrix3d> linear;       // J: R_b, or R_b S_b when bone b is stretched by S_b
   std::vector<Eigen::Vector3d> translation;  // J
   std::vector<Eigen::Matrix3d> rotation;     // J: R_b without the stretch
   Eigen::Matrix3Xd joint_positions;          // 3 x J, posed, meters
 };
 
-// Fills `transforms`, reusing its memory: no allocation once it has the right size.
-// bone_scales: J entries (entry 0 ignored) or empty for ones.
+// Fills `transforms` and allocates nothing once it has the right size. `pose` must have the joints
+// of `skeleton` (asserted). bone_scales: J factors on the lengths of the bones, of which entry 0 is
+// ignored; or empty, when all are 1.
 void ComputeBoneTransforms(const Skeleton& skeleton, const Pose& pose,
                            const std::vector<double>& bone_scales, BoneTransforms* transforms);
 

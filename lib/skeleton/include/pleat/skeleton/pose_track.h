@@ -1,4 +1,4 @@
-// Poses over time. Valid by construction.
+// Poses over time, valid by construction.
 #pragma once
 
 #include <utility>
@@ -12,24 +12,26 @@
 namespace pleat {
 
 // A track that was created has at least one pose, the same number of joints in all of them, finite
-// root positions, unit rotations, a positive frame rate and clip starts inside its frames; nobody
-// downstream checks again. A clip is a run of consecutive frames of one recording; history and
-// dynamics never reach across a clip boundary.
+// root positions, unit rotations, a positive frame rate and clip starts inside its frames. Nobody
+// downstream checks this again. A clip is a run of consecutive frames of one recording. History and
+// dynamics never reach across the boundary of a clip.
 class PoseTrack {
  public:
-  // A track in the making: anything may be set, Create checks all of it.
+  // A track in the making. Anything may be set; Create checks all of it.
   struct Parts {
     double fps = 30;
     std::vector<Pose> poses{};        // T
-    std::vector<int> clip_starts{0};  // first frame of every clip, ascending, first is 0
+    std::vector<int> clip_starts{0};  // the first frame of every clip, ascending from 0
   };
 
-  // No frames: the place of a track that is not there yet. Whoever needs frames asks num_frames().
+  // Makes a track without frames, for a place where the track is not there yet. Code that needs
+  // frames asks num_frames().
   PoseTrack() : parts_{.clip_starts = {}} {}
 
-  // kInvalidArgument names the first faulty frame and joint, or the entry of the clip starts.
+  // kInvalidArgument names the first frame and joint that are wrong, or the entry of the clip
+  // starts.
   static absl::StatusOr<PoseTrack> Create(Parts parts);
-  // The same by code that made the parts itself and knows that they are valid (asserted).
+  // Does the same for code that made the parts itself and knows that they are valid (asserted).
   static PoseTrack FromValid(Parts parts);
 
   double fps() const { return parts_.fps; }
@@ -43,12 +45,12 @@ class PoseTrack {
   ClipRange ClipOf(int t) const { return ClipOfFrame(parts_.clip_starts, num_frames(), t); }
   bool StartsClip(int t) const { return ClipOf(t).begin == t; }
 
-  // What the track is made of, to make another one.
+  // The parts of the track, from which another one can be made.
   const Parts& parts() const { return parts_; }
   Parts Take() && { return std::exchange(parts_, Parts{.clip_starts = {}}); }
 
-  // The poses of `frame_indices`, in that order, as one clip. Indices must be in range and the list
-  // not empty.
+  // Returns the poses of `frame_indices`, in that order, as one clip. The indices must be in range,
+  // and the list must not be empty (asserted).
   PoseTrack Subset(const std::vector<int>& frame_indices) const;
 
  private:
@@ -56,7 +58,7 @@ class PoseTrack {
   Parts parts_;
 };
 
-// OK when the poses have `num_joints` rotations each; kInvalidArgument names both counts.
+// OK when every pose has `num_joints` rotations. kInvalidArgument names both counts.
 absl::Status CheckJointCount(const PoseTrack& track, int num_joints);
 
 }  // namespace pleat
