@@ -1,4 +1,5 @@
-// What the messages of stored sequences share, compressed or not: id, name, counts, rate, size.
+// What the messages of stored sequences have in common, compressed or not: id, name, counts, frame
+// rate and size.
 #pragma once
 
 #include <string>
@@ -23,7 +24,7 @@ void ClipInfoToProto(const Info& info, Message* message) {
   message->set_size_bytes(info.size_bytes);
 }
 
-// `what` names the message in errors: "sequence".
+// what: how errors call the message, such as "sequence".
 template <typename Info, typename Message>
 absl::Status ClipInfoFromProto(const Message& message, const std::string& what, Info* info) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), absl::StrCat(what, ".id")));

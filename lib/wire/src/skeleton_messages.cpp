@@ -25,7 +25,8 @@ absl::StatusOr<Eigen::Vector3d> FromProto(const v1::Vector3& message, absl::stri
   return vector;
 }
 
-// The pose as it is: whoever keeps it checks its numbers.
+// Reads the pose and checks only its number of rotations. The caller checks the values: CheckPose
+// for a single pose, PoseTrack::Create for a track.
 absl::StatusOr<Pose> ReadPose(const v1::Pose& message) {
   if (message.rotations_size() < 1 || message.rotations_size() > kMaxWireJoints) {
     return absl::InvalidArgumentError(absl::StrCat("pose.rotations has ", message.rotations_size(),
@@ -136,7 +137,7 @@ v1::PoseTrack ToProto(const PoseTrack& track) {
 }
 
 absl::StatusOr<PoseTrack> FromProto(const v1::PoseTrack& message) {
-  // The limits of the wire; the rest is what every track must be.
+  // Only limits of the wire are checked here; PoseTrack::Create checks what holds for every track.
   if (!(message.fps() >= .01 && message.fps() <= 10000)) {
     return absl::InvalidArgumentError(
         absl::StrCat("track.fps is ", message.fps(), ", allowed are .01 to 10000"));

@@ -12,8 +12,9 @@
 
 namespace pleat {
 
-// A message has the fields of TrainOptions under the same names, choices as strings (tested): the
-// one list of options is the list of the wire, too.
+// The message has the fields of TrainOptions under the same names, with choices as strings, so that
+// VisitTrainOptions is the list of options on the wire as well. A test compares the two, because
+// FindFieldByName returns null for a field that is missing.
 
 v1::TrainOptions ToProto(const TrainOptions& options) {
   v1::TrainOptions message;

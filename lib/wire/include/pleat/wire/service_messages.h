@@ -1,5 +1,5 @@
-// Sequences, jobs, models and compressed sequences on the wire. FromProto: kInvalidArgument names
-// the field.
+// Sequences, jobs, models and compressed sequences on the wire. Messages come from outside: each
+// FromProto checks them, and kInvalidArgument names the field that is wrong.
 #pragma once
 
 #include "absl/status/statusor.h"
@@ -27,7 +27,7 @@ v1::Model ToProto(const ModelInfo& info);
 absl::StatusOr<ModelInfo> FromProto(const v1::Model& message);
 
 v1::CompressOptions ToProto(const CompressOptions& options);
-// kInvalidArgument when no goal is set or a number is out of range.
+// Returns kInvalidArgument when no goal is set or a number is out of range.
 absl::StatusOr<CompressOptions> FromProto(const v1::CompressOptions& message);
 
 v1::CompressedSequence ToProto(const CompressedSequenceInfo& info);

@@ -1,5 +1,5 @@
-// Frame rates, skeletons, poses and errors on the wire. FromProto: kInvalidArgument names the
-// field.
+// Frame rates, skeletons, poses and errors on the wire. Messages come from outside: each FromProto
+// that returns a status checks them, and kInvalidArgument names the field that is wrong.
 #pragma once
 
 #include <google/protobuf/repeated_ptr_field.h>
@@ -19,7 +19,7 @@ namespace pleat {
 inline constexpr int kMaxWireJoints = 1024;
 inline constexpr int kMaxWireNameBytes = 256;
 
-// OK when `name` is at most kMaxWireNameBytes bytes.
+// OK when `name` has at most kMaxWireNameBytes bytes. kInvalidArgument calls it `what`.
 absl::Status CheckName(const std::string& name, absl::string_view what);
 
 v1::FrameRate ToProto(const FrameRate& frame_rate);
@@ -29,16 +29,16 @@ v1::Skeleton ToProto(const Skeleton& skeleton);
 absl::StatusOr<Skeleton> FromProto(const v1::Skeleton& message);
 
 v1::Pose ToProto(const Pose& pose);
-// Any number of joints up to kMaxWireJoints; the evaluator compares it with its skeleton.
+// Takes any number of joints up to kMaxWireJoints; the evaluator compares it with its skeleton.
 absl::StatusOr<Pose> FromProto(const v1::Pose& message);
-// Message i of `what` is named in errors as "what[i]".
+// Errors name message i as "what[i]".
 absl::StatusOr<std::vector<Pose>> FromProto(
     const google::protobuf::RepeatedPtrField<v1::Pose>& messages, absl::string_view what);
 
 v1::PoseTrack ToProto(const PoseTrack& track);
 absl::StatusOr<PoseTrack> FromProto(const v1::PoseTrack& message);
 
-v1::ErrorSummary ToProto(const ErrorSummary& summary);  // without frame_mean_percent
+v1::ErrorSummary ToProto(const ErrorSummary& summary);  // leaves out frame_mean_percent
 ErrorSummary FromProto(const v1::ErrorSummary& message);
 
 }  // namespace pleat

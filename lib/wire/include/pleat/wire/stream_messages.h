@@ -1,4 +1,5 @@
-// Frame streams on the wire. FromProto: kInvalidArgument names the field.
+// Frame streams on the wire. Messages come from outside: each FromProto checks them, and
+// kInvalidArgument names the field that is wrong.
 #pragma once
 
 #include <string>
@@ -29,17 +30,18 @@ absl::StatusOr<FrameEncoding> FromProto(v1::FrameEncoding encoding);  // unspeci
 v1::StreamContent ToProto(StreamContent content);
 absl::StatusOr<StreamContent> FromProto(v1::StreamContent content);  // unspecified: the mesh
 
-v1::FrameParameters ToProto(const FrameParameters& parameters);  // without confidence
-// Checks numbers only: PoseEvaluator::Show compares them with its model.
+v1::FrameParameters ToProto(const FrameParameters& parameters);  // leaves out the confidence
+// Checks the counts alone; PoseEvaluator::Show compares the values with its model.
 absl::StatusOr<FrameParameters> FromProto(const v1::FrameParameters& message);
 
-v1::StreamOptions ToProto(const FrameEncoderOptions& options);  // box_margin is the server's own
+v1::StreamOptions ToProto(const FrameEncoderOptions& options);  // the server chooses box_margin
 absl::StatusOr<FrameEncoderOptions> FromProto(const v1::StreamOptions& message);
 
 FrameMark MarkOf(const v1::Frame& frame);
 
 v1::StreamHeader ToProto(const StreamHeader& header);
-// Checks numbers only: FrameDecoder::Create checks the rest against its limits.
+// Checks the encoding, the content and the box; FrameDecoder::Create checks the rest against its
+// limits.
 absl::StatusOr<StreamHeader> FromProto(const v1::StreamHeader& message);
 
 }  // namespace pleat

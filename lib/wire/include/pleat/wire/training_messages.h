@@ -8,8 +8,9 @@
 
 namespace pleat {
 
-v1::TrainOptions ToProto(const TrainOptions& options);  // every field set
-// Fields that are not set keep their default; kInvalidArgument names an option out of range.
+v1::TrainOptions ToProto(const TrainOptions& options);  // sets every field
+// Fields that are not set keep their defaults. kInvalidArgument names an option that is out of
+// range.
 absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message);
 
 v1::TrainingRecord ToProto(const TrainingRecord& record);
