@@ -1,9 +1,26 @@
 // pleat-draco: decodes one Draco file under limits, for `pleat`, which never runs Draco's decoder
-// on foreign bytes in its own process. Draco comes on standard input, DracoGeometry leaves on
-// standard output (cli/draco_process.cpp reads it), a message on standard error. The exit code is
-// the status code.
+// on foreign bytes in its own process.
 //
 //   pleat-draco MEMORY_BYTES CPU_SECONDS MAX_VERTICES MAX_TRIANGLES
+//
+// The Draco file comes on standard input. The geometry leaves on standard output, in the form of
+// cli/io/draco_process_protocol.h; cli/io/draco_process.cpp reads it. When decoding fails, a
+// message leaves on standard error and the exit code is that of the status.
+//
+// Why a process: Draco's decoder keeps to the bytes that it is given, but a few dozen of them can
+// make it allocate gigabytes and work for a minute, in places that no check of ours reaches. A
+// limit for a whole process is the one that always holds, and a crash ends this process only.
+//
+//   RLIMIT_AS      bounds the addresses, so that an allocation beyond it fails with std::bad_alloc.
+//                  Running out of memory is then an ordinary error, kResourceExhausted, and not a
+//                  matter for the kernel, which might end another process in its place.
+//   RLIMIT_CPU     ends a decoder that does not come to an end. The parent counts elapsed time too.
+//   RLIMIT_CORE    keeps a crash from leaving a core file of foreign bytes.
+//   RLIMIT_FSIZE   lets the process write to pipes only. It has no other use for files.
+//
+// The limits are set before the first byte is read, and output begins when decoding has succeeded.
+// The parent gives no environment, and it checks what comes back as if this process were hostile,
+// since bytes that found a fault in Draco could have taken it over.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -20,16 +37,18 @@ namespace pleat {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCanLimitMemory = false;  // sanitizers reserve terabytes of addresses
+constexpr bool kCanLimitMemory = false;  // sanitizers reserve terabytes of addresses for themselves
 #else
 constexpr bool kCanLimitMemory = true;
 #endif
 
+// Sets the soft and the hard limit, so that nothing in this process can raise it again.
 bool Limit(int resource, rlim_t value) {
   const struct rlimit limit = {value, value};
   return setrlimit(resource, &limit) == 0;
 }
 
+// Hands the status to the parent and returns the exit code.
 int Fail(const absl::Status& status) {
   std::fprintf(stderr, "%s", std::string(status.message()).c_str());
   return static_cast<int>(status.code());
@@ -96,7 +115,7 @@ int main(int argc, char** argv) {
   }
   try {
     return pleat::Run(argv);
-  } catch (const std::bad_alloc&) {
+  } catch (const std::bad_alloc&) {  // while reading the file; decoding catches its own
     return pleat::Fail(
         absl::ResourceExhaustedError("the Draco file needs more memory than it is allowed"));
   }

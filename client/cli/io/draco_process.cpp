@@ -1,3 +1,12 @@
+// The parent of pleat-draco, which explains the limits (client/draco_child/main.cpp). The file is
+// the child's standard input, so its bytes never come here. Its answer comes through one pipe and
+// its error message through another one. The message is short enough for the buffer of a pipe: the
+// child can write it although nobody reads it yet, and it is read when the child has closed its
+// output.
+//
+// Nothing waits longer than kPollMs without looking at the deadline and at the cancellation.
+// However a run ends, the child is gone and its exit status taken when the Child object is
+// destroyed.
 #include "cli/io/draco_process.h"
 
 #include <fcntl.h>
@@ -23,16 +32,17 @@
 namespace pleat {
 namespace {
 
-constexpr int kPollMs = 50;  // how soon a cancellation or the end of time is noticed
+constexpr int kPollMs = 50;  // how soon a cancellation or the deadline is noticed
 constexpr size_t kMaxMessageBytes = 2000;
 
-// The program beside this one.
+// Returns the path of pleat-draco, which lies beside this program.
 std::string ChildPath() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   return (self.parent_path() / "pleat-draco").string();
 }
 
+// Owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int fd = -1) : fd_(fd) {}
@@ -64,7 +74,7 @@ struct Pipe {
   }
 };
 
-// One run of pleat-draco. The destructor kills what still runs.
+// One run of pleat-draco. The destructor kills it when it still runs.
 class Child {
  public:
   Child(const Progress& progress, const DracoProcessOptions& options)
@@ -98,6 +108,8 @@ class Child {
     const int error =
         posix_spawn(&pid_, program.c_str(), &actions, nullptr, arguments.data(), no_environment);
     posix_spawn_file_actions_destroy(&actions);
+    // Only the child may hold the write ends, or its end would not be seen as the end of its
+    // output.
     output_.write_end.Close();
     messages_.write_end.Close();
     if (error == 0) return absl::OkStatus();
@@ -106,7 +118,7 @@ class Child {
         error, absl::StrCat("cannot start '", program, "', which reads Draco files"));
   }
 
-  // Reads `size` bytes, fewer only when the child has closed its output.
+  // Reads `size` bytes, or fewer when the child has closed its output.
   absl::StatusOr<size_t> Read(void* data, size_t size) {
     size_t done = 0;
     while (done < size) {
@@ -125,7 +137,8 @@ class Child {
     return count == size ? absl::OkStatus() : Outcome();
   }
 
-  // Waits for the end and says how it ended; an error when it did not succeed.
+  // Waits for the end of a child that closed its output too early, and returns the reason. It is an
+  // error in any case.
   absl::Status Outcome() {
     char message[kMaxMessageBytes];
     const ssize_t length = read(messages_.read_end.get(), message, sizeof message);
@@ -145,7 +158,7 @@ class Child {
     return absl::Status(static_cast<absl::StatusCode>(code), text);
   }
 
-  // When all output has been read.
+  // Checks that the child ends well and wrote nothing more. Call it when all output has been read.
   absl::Status Finish() {
     char more = 0;
     PLEAT_ASSIGN_OR_RETURN(const size_t count, Read(&more, 1));
@@ -193,7 +206,8 @@ class Child {
 absl::StatusOr<DracoGeometry> ReadGeometry(const MeshLimits& limits, Child* child) {
   DracoReplyHeader header;
   PLEAT_RETURN_IF_ERROR(child->ReadAll(&header, sizeof header));
-  // Points of edgebreaker meshes may be split, so there are up to twice as many.
+  // Edgebreaker may split vertices, so there can be more positions than vertices. The limits are
+  // those of DecodeDracoFile.
   if (header.magic != kDracoReplyMagic ||
       header.num_positions > 2 * static_cast<uint64_t>(limits.max_vertices) ||
       header.num_triangles > static_cast<uint64_t>(limits.max_faces) || header.has_numbers > 1) {

@@ -1,5 +1,6 @@
-// What pleat-draco writes: this header, positions (3 x N float32), triangles (3 x F int32), vertex
-// numbers (N int32, where has_numbers is 1). Both ends are one build on one machine.
+// What pleat-draco writes: this header, positions (3 x N float32), triangles (3 x F int32), and
+// vertex numbers (N int32) when has_numbers is 1. Both ends belong to one build on one machine, so
+// there is neither a version nor an order of bytes.
 #pragma once
 
 #include <cstdint>
