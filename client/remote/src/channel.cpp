@@ -15,15 +15,16 @@
 namespace pleat {
 namespace {
 
-// The header of a large character (vertex order, topology) is more than the default 4 MiB.
+// The header of a large character, with its vertex order and topology, exceeds the default of 4
+// MiB.
 constexpr int kMaxReceiveBytes = 64 << 20;
 constexpr int kKeepaliveMs = 120'000;
 constexpr int kLiveLookaheadBytes = 65536;
 constexpr auto kProbeTime = std::chrono::seconds(1);
 constexpr auto kPoll = std::chrono::milliseconds(50);
 
-// Calls that may be repeated without harm are, when the server was not reached. A job is created at
-// most once.
+// When the server cannot be reached, gRPC repeats the calls that may be repeated without harm.
+// Creating a job is not one of them.
 constexpr char kServiceConfig[] = R"({"methodConfig":[{"name":[
   {"service":"pleat.v1.SequenceService"},{"service":"pleat.v1.ModelService"},
   {"service":"pleat.v1.PoseService"},{"service":"pleat.v1.CompressedSequenceService"},
@@ -41,7 +42,8 @@ std::shared_ptr<grpc::ChannelCredentials> MakeCredentials(const RemoteOptions& o
   return grpc::SslCredentials(tls);
 }
 
-// Why a call fails now, in gRPC's words: of the standard health service, which every server has.
+// Returns the reason, in gRPC's words, for which a call fails now. It calls the standard health
+// service, which every server has.
 std::string ReasonOfFailure(const std::shared_ptr<grpc::Channel>& channel) {
   grpc::GenericStub stub(channel);
   grpc::CompletionQueue queue;
@@ -100,8 +102,11 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const Rem
   arguments.SetServiceConfigJSON(kServiceConfig);
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2000);
-  // Channels with equal arguments would share one connection and its windows.
+  // Otherwise channels with equal arguments would share one connection and its flow-control
+  // windows.
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  // Without the probe, windows do not grow with the bandwidth, and small ones keep the transport
+  // from buffering many frames that nobody has read.
   if (use == ChannelUse::kLive) {
     arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
     arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kLiveLookaheadBytes);

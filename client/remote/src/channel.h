@@ -1,4 +1,4 @@
-// Channels and contexts: how calls go over the network.
+// Channels, retries and cancellation: how calls go over the network.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -17,25 +17,27 @@ namespace pleat {
 
 enum class ChannelUse {
   kCalls,  // everything with a known end
-  kLive,   // small windows: an edited pose must not queue behind frames that nobody has read
+  kLive,   // small windows, so that an edit does not wait behind frames that nobody has read
 };
 
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const RemoteOptions& options,
                                            ChannelUse use);
 
-// Waits until the channel is connected, at most so long. kUnavailable says why it is not; that both
-// sides do not agree on encryption is said at once.
+// Waits until the channel is connected, for at most options.connect_seconds. kUnavailable says why
+// it is not. When the two sides do not agree on encryption, it returns at once.
 absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
                                const std::string& address, const RemoteOptions& options);
 
 absl::Status FromGrpcStatus(const grpc::Status& status);
 
-// True for errors after which the same call may succeed a little later.
+// Says whether the same call may succeed a little later after this error.
 bool IsTransient(const absl::Status& status);
-// Sleeps before attempt `attempt` (1, 2, ...); false when `progress` was cancelled meanwhile.
+// Sleeps before the next attempt, longer for a larger number of attempts so far, up to 4 s. Returns
+// false when `progress` was cancelled meanwhile.
 bool BackOff(int attempt, const Progress& progress);
 
-// Cancels the call of `context` as soon as `progress` is cancelled.
+// Cancels the call of `context` as soon as `progress` is cancelled, from a thread of its own.
+// `context` must outlive it.
 class CancelWatcher {
  public:
   CancelWatcher(grpc::ClientContext* context, const Progress& progress);

@@ -11,6 +11,10 @@
 namespace pleat {
 namespace {
 
+// Follows one job by a thread of its own, which reads one watch after the other. Listeners are
+// called on this thread, without the mutex, so they may ask for the state. The destructor cancels
+// the watch that is being read and waits for the thread; a listener must not destroy the
+// subscription.
 class RemoteSubscription final : public JobSubscription {
  public:
   RemoteSubscription(const RemoteState* state, const std::string& id,
@@ -27,7 +31,7 @@ class RemoteSubscription final : public JobSubscription {
     thread_.join();
   }
 
-  // Until the first state is there, or none will come: then the reason.
+  // Waits until the first state is there. When none will come, it returns the reason.
   absl::Status WaitForFirst() {
     std::unique_lock lock(mutex_);
     first_.wait(lock, [this] { return update_.revision > 0 || !status_.ok(); });
@@ -44,7 +48,7 @@ class RemoteSubscription final : public JobSubscription {
   }
 
  private:
-  // One watch after the other, until one ends for good.
+  // Reads one watch after the other until the job has ended or there is no hope.
   void Follow() {
     for (int attempt = 1;; ++attempt) {
       bool final = false;
@@ -64,7 +68,8 @@ class RemoteSubscription final : public JobSubscription {
     }
   }
 
-  // Reads one watch to its end.
+  // Reads one watch to its end. Every state that arrives sets *attempt back to 1, since a server
+  // that answers deserves all attempts again.
   absl::Status ReadWatch(int* attempt, bool* final) {
     grpc::ClientContext context;
     {
@@ -105,10 +110,10 @@ class RemoteSubscription final : public JobSubscription {
 
   mutable std::mutex mutex_;  // guards the next three
   std::condition_variable first_;
-  grpc::ClientContext* context_ = nullptr;  // of the watch that is being read
+  grpc::ClientContext* context_ = nullptr;  // that of the watch that is being read, or null
   JobUpdate update_;                        // revision 0: nothing has come yet
   absl::Status status_;
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // declared last, because it uses all of the above
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A job of a server as one observer follows it.
+// Follows a job of a server.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,8 @@
 
 namespace pleat {
 
-// Waits for the first state of the job. Watches again when the connection breaks.
+// Opens a watch, waits for the first state of the job and returns, or says why there is none. It
+// watches again when the connection breaks. `state` must outlive the subscription.
 absl::StatusOr<std::unique_ptr<JobSubscription>> OpenRemoteSubscription(
     const RemoteState* state, const std::string& id, std::function<void()> listener);
 

@@ -1,4 +1,4 @@
-// Lists that come in pages.
+// Reads lists that come in pages.
 #pragma once
 
 #include <utility>
@@ -10,8 +10,8 @@
 
 namespace pleat {
 
-// All items of a list. call: asks for one page. messages_of: its items, each of which FromProto
-// turns into an Info.
+// Returns all items of a list. call: asks for one page. messages_of: returns the items of a page,
+// each of which FromProto turns into an Info.
 template <typename Info, typename Request, typename Response, typename Call, typename MessagesOf>
 absl::StatusOr<std::vector<Info>> ReadPages(Call call, MessagesOf messages_of) {
   std::vector<Info> infos;
@@ -23,7 +23,7 @@ absl::StatusOr<std::vector<Info>> ReadPages(Call call, MessagesOf messages_of) {
       PLEAT_ASSIGN_OR_RETURN(Info info, FromProto(message));
       infos.push_back(std::move(info));
     }
-    if (response.next_page_token() == request.page_token()) break;  // a server that repeats itself
+    if (response.next_page_token() == request.page_token()) break;  // or it would never end
     request.set_page_token(response.next_page_token());
   } while (!request.page_token().empty());
   return infos;

@@ -21,8 +21,10 @@ absl::Status BrokenStream(absl::string_view why) {
   return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
 }
 
-// Puts the parts of a stream together. Every part is read as late as possible, except that the
-// first positions say that the shape is complete.
+// Puts the parts of a stream together: first those of the shape, then those of the positions, frame
+// by frame. Parts are read when they are needed, except for the first positions, which say that the
+// shape is complete; they wait in part_ for the first call of Next. The server is not trusted:
+// every part must be the one that follows.
 class RemoteDecodeSession final : public DecodeSession {
  public:
   RemoteDecodeSession(v1::CompressedSequenceService::Stub* stub, const std::string& id,
@@ -82,7 +84,7 @@ class RemoteDecodeSession final : public DecodeSession {
  private:
   bool Complete() const { return next_ > range_.begin && (range_.end == 0 || next_ == range_.end); }
 
-  // False at the end of the stream, or why it broke off.
+  // Reads the next part. Returns false at the end of the stream, or the reason why it broke off.
   absl::StatusOr<bool> Read() {
     if (ended_) return false;
     if (stream_->Read(&part_)) return true;
@@ -91,7 +93,7 @@ class RemoteDecodeSession final : public DecodeSession {
     return false;
   }
 
-  // Puts part_ behind the first *next_vertex vertices of the frame.
+  // Copies part_ behind the first *next_vertex vertices of the frame.
   absl::Status TakePositions(int64_t* next_vertex) {
     if (part_.part_case() == v1::DecodeFramesResponse::kShape)
       return BrokenStream("a second shape");
@@ -110,11 +112,11 @@ class RemoteDecodeSession final : public DecodeSession {
   }
 
   const FrameRange range_;
-  int next_;  // the frame that Next gives
+  int next_;  // the frame that Next gives next
   grpc::ClientContext context_;
   std::unique_ptr<grpc::ClientReader<v1::DecodeFramesResponse>> stream_;
   v1::DecodeFramesResponse part_;
-  bool has_part_ = false;  // part_ was read and not used
+  bool has_part_ = false;  // part_ was read and has not been used
   bool ended_ = false;
   std::optional<MeshSequence> shape_;
   Eigen::Matrix3Xf positions_;  // 3 x V, meters

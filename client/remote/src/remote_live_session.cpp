@@ -1,3 +1,26 @@
+// The client's half of a live session. Two threads of the caller meet here: one sends, one
+// receives. There is no thread of our own. The receiving one therefore also notices the end of a
+// connection, connects again, and acknowledges when half of the credits are used.
+//
+// gRPC allows one writer and one reader of a stream at a time. The reader is the receiving thread,
+// which alone replaces the stream and therefore reads it without a lock. Writers take write_mutex_;
+// Resume holds it from the end of the old stream until all poses have been sent on the new one. So
+// a sender waits while the session reconnects and cannot come between the poses that are sent
+// again. mutex_ guards the books: which poses have no answer, and how many replies came. Nobody
+// writes to a stream or waits for one under mutex_, except Resume, whose new stream has no other
+// writer.
+//
+// A pose enters Unanswered before it is written. When the write fails, nothing else has to be done:
+// the same failure ends the read, and Resume sends the pose with all others. Poses are answered in
+// order, so an answer takes the first one out of the list. It becomes history, as on the server,
+// because a new session must be told the poses before its first one.
+//
+// A new stream counts its replies from 0, so acknowledgements begin again as well. Its header must
+// agree with the old one, since the caller holds a decoder and buffers of this shape. The first
+// frame of a difference stream is then a key frame by itself.
+//
+// A session ends once: by an error that does not pass, by too many failures in a row, or by the end
+// of the stream after SendDone. end_ is written before ended_, which tells the sender.
 #include "remote_live_session.h"
 
 #include <algorithm>
@@ -21,7 +44,7 @@
 namespace pleat {
 namespace {
 
-constexpr size_t kMaxEarlierPoses = kMaxPosesPerQuery - 1;  // history of one pose
+constexpr size_t kMaxEarlierPoses = kMaxPosesPerQuery - 1;  // the longest history of one pose
 constexpr auto kConnectTime = std::chrono::seconds(2);
 
 using Stream = grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>;
@@ -31,7 +54,9 @@ absl::Status BrokenStream(absl::string_view why) {
   return absl::DataLossError(absl::StrCat("the server's live session is wrong: ", why));
 }
 
-// Poses that were sent and have no answer yet, and what a new connection must be told of them.
+// The poses that were sent and have no answer yet, and the poses before them, of which a new
+// session must be told. Its size is bounded by max_in_flight, or with latest_wins by the longest
+// history.
 class Unanswered {
  public:
   explicit Unanswered(bool latest_wins) : latest_wins_(latest_wins) {}
@@ -40,14 +65,16 @@ class Unanswered {
 
   void Add(LivePoseMessage pose) {
     poses_.push_back(std::move(pose));
-    // Where the newest wins, older ones only matter as its history.
+    // With latest_wins, poses that are older than the history of the newest one are of no use to a
+    // new session. They may still get an answer from this one.
     if (latest_wins_ && poses_.size() > kMaxEarlierPoses + 1) {
       Remember(PopFront());
       ++num_dropped_;
     }
   }
 
-  // The reply to a pose and the `num_superseded` before it has come. A rejected pose is no history.
+  // Notes that a reply has come, which also counts for the `num_superseded` poses before its own. A
+  // pose that was rejected does not become history; those that it superseded do.
   void Answered(int num_superseded, bool rejected) {
     num_dropped_ -= num_superseded + 1;
     for (; num_dropped_ < 0 && !poses_.empty(); ++num_dropped_) {
@@ -57,7 +84,8 @@ class Unanswered {
     num_dropped_ = std::max(num_dropped_, 0);
   }
 
-  // All that a session that begins anew must get: the first pose brings its history along.
+  // Returns everything that must be sent to a session that begins anew. The first pose brings its
+  // history along.
   std::vector<LivePoseMessage> ForNewSession() {
     num_dropped_ = 0;
     std::vector<LivePoseMessage> messages(poses_.begin(), poses_.end());
@@ -85,8 +113,8 @@ class Unanswered {
 
   const bool latest_wins_;
   std::deque<LivePoseMessage> poses_;  // oldest first
-  std::deque<v1::Pose> earlier_;       // poses before the first of poses_, newest first
-  int num_dropped_ = 0;                // poses before the first of poses_ that have no answer
+  std::deque<v1::Pose> earlier_;       // the poses before the first of poses_, newest first
+  int num_dropped_ = 0;                // how many poses before poses_ have no answer yet
 };
 
 class RemoteLiveSession final : public LiveSession {
@@ -106,13 +134,14 @@ class RemoteLiveSession final : public LiveSession {
     if (stream_ != nullptr) FinishStream().IgnoreError();
   }
 
-  // Starts a stream and reads its header. With write_mutex_ or before there is a second thread.
+  // Starts a stream and reads its header. Call it with write_mutex_ held, or before there is a
+  // second thread.
   absl::Status Connect() {
     stream_.reset();
     finished_ = false;
     context_ = std::make_unique<grpc::ClientContext>();
     stream_ = stub_->LiveSession(context_.get());
-    stream_->Write(start_);  // a failure shows in the read
+    stream_->Write(start_);  // when it fails, so does the read that follows
     v1::LiveSessionResponse response;
     if (!stream_->Read(&response)) return FinishStream();
     if (!response.has_header()) return BrokenStream("no header");
@@ -201,6 +230,7 @@ class RemoteLiveSession final : public LiveSession {
   }
 
  private:
+  // Returns how the stream ended. It may be called twice, which gRPC's own Finish does not allow.
   absl::Status FinishStream() {
     if (!finished_) finish_status_ = FromGrpcStatus(stream_->Finish());
     finished_ = true;
@@ -218,7 +248,8 @@ class RemoteLiveSession final : public LiveSession {
     return absl::OkStatus();
   }
 
-  // Only the server can have cancelled a session that somebody still reads.
+  // Says whether a new attempt makes sense. A session that is cancelled while somebody still reads
+  // it was cancelled by the server, which may be starting again.
   static bool MayPass(const absl::Status& status) {
     return IsTransient(status) || status.code() == absl::StatusCode::kCancelled;
   }
@@ -233,7 +264,8 @@ class RemoteLiveSession final : public LiveSession {
       std::lock_guard lock(mutex_);
       unanswered_.Answered(frame->num_superseded, rejected);
       ++num_received_;
-      // Poses acknowledge on their way; alone only when the credits run out.
+      // Poses carry acknowledgements with them. One is sent alone only when half of the credits are
+      // used and no pose has come by.
       acknowledge = options_.latest_wins && 2 * (num_received_ - num_acknowledged_) >=
                                                 static_cast<uint64_t>(options_.max_in_flight);
     }
@@ -253,7 +285,8 @@ class RemoteLiveSession final : public LiveSession {
     stream_->Write(request);
   }
 
-  // After the stream has ended: connects again, or says why not.
+  // Call it when the stream has ended. Connects again and sends the poses without an answer, or
+  // says why not.
   absl::Status Resume() {
     std::lock_guard write_lock(write_mutex_);
     absl::Status status = FinishStream();
@@ -284,27 +317,27 @@ class RemoteLiveSession final : public LiveSession {
   const std::unique_ptr<v1::PoseService::Stub> stub_;
   const v1::LiveSessionRequest start_;
   const LiveSessionOptions options_;
-  std::vector<double> bone_scales_;      // of the character
-  std::optional<StreamHeader> header_;   // after the first Connect
-  std::optional<FrameDecoder> decoder_;  // not of streams of parameters
+  std::vector<double> bone_scales_;
+  std::optional<StreamHeader> header_;   // set by the first Connect
+  std::optional<FrameDecoder> decoder_;  // empty in streams of parameters
   std::optional<PoseEvaluator> evaluator_;
   EvaluatedFrame evaluated_;
 
-  std::mutex write_mutex_;  // one writer at a time, none while the stream is replaced
+  std::mutex write_mutex_;  // one writer at a time, and none while the stream is replaced
   std::unique_ptr<grpc::ClientContext> context_;
   std::unique_ptr<Stream> stream_;
-  bool finished_ = false;  // stream_ is, with the next as its end
+  bool finished_ = false;  // Finish was called on stream_ and gave finish_status_
   absl::Status finish_status_;
   bool done_ = false;  // SendDone was called; guarded by write_mutex_
 
   std::mutex mutex_;  // taken after write_mutex_; guards the next four
   std::condition_variable answered_;
   Unanswered unanswered_;
-  uint64_t num_received_ = 0, num_acknowledged_ = 0;  // of this stream
+  uint64_t num_received_ = 0, num_acknowledged_ = 0;  // replies of this stream
 
   std::atomic<bool> ended_ = false;
-  absl::Status end_;      // of Receive's thread
-  int num_failures_ = 0;  // in a row; of Receive's thread
+  absl::Status end_;      // why the session ended; used by the receiving thread alone
+  int num_failures_ = 0;  // attempts in a row without an answer; used by the receiving thread alone
 };
 
 }  // namespace

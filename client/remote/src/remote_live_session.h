@@ -11,8 +11,8 @@
 
 namespace pleat {
 
-// Opens a session and reads its header. kInvalidArgument for credits out of range, else the
-// server's error.
+// Opens a session and reads its header. kInvalidArgument when max_in_flight is out of range,
+// otherwise the error of the server.
 absl::StatusOr<std::unique_ptr<LiveSession>> OpenRemoteLiveSession(
     std::shared_ptr<grpc::Channel> channel, v1::Character character,
     const LiveSessionOptions& options);

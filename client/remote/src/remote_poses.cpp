@@ -99,7 +99,7 @@ class RemoteClipSession final : public ClipSession {
   }
 
  private:
-  // The next message, or why there is none.
+  // Reads the next message into response_, or returns the reason why there is none.
   absl::Status Read() {
     if (ended_) return BrokenStream("it has ended");
     if (stream_->Read(&response_)) return absl::OkStatus();
@@ -107,7 +107,7 @@ class RemoteClipSession final : public ClipSession {
     PLEAT_RETURN_IF_ERROR(FromGrpcStatus(stream_->Finish()));
     return BrokenStream("it ended too early");
   }
-  // What the server says after the last frame.
+  // Reads what follows the last frame, which must be the end, and returns the server's status.
   absl::Status ReadEnd() {
     v1::EvaluateClipResponse response;
     if (stream_->Read(&response)) return BrokenStream("it has more frames than the clip");
@@ -122,7 +122,7 @@ class RemoteClipSession final : public ClipSession {
   v1::EvaluateClipResponse response_;
   StreamHeader header_;
   int next_ = 0;
-  bool ended_ = false;  // and finished
+  bool ended_ = false;  // Finish was called on stream_
 };
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace pleat {
 
-// `state` must outlive what they make.
+// `state` must outlive the services.
 std::unique_ptr<SequenceService> MakeRemoteSequences(RemoteState* state);
 std::unique_ptr<JobService> MakeRemoteJobs(RemoteState* state);
 std::unique_ptr<ModelService> MakeRemoteModels(RemoteState* state);

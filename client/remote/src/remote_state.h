@@ -1,4 +1,4 @@
-// What the remote services share: one connection, its stubs and options.
+// What the remote services share: one connection, its stubs and the options.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 namespace pleat {
 
 struct RemoteState {
-  std::string address;  // empty over a given channel
+  std::string address;  // empty when the channel was given
   RemoteOptions options;
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::SequenceService::Stub> sequences;
@@ -37,7 +37,7 @@ struct RemoteState {
         compressed(v1::CompressedSequenceService::NewStub(channel)),
         poses(v1::PoseService::NewStub(channel)) {}
 
-  // Makes one unary call.
+  // Makes one call that is no stream, with the deadline of the options.
   template <typename Stub, typename Request, typename Response>
   absl::Status Call(Stub* stub,
                     grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),

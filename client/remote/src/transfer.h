@@ -1,4 +1,7 @@
-// Files in chunks, to a server and from it. Whole transfers go on where a broken call stopped.
+// Transfers files in chunks, to a server and from it. UploadFile and DownloadFile are whole
+// transfers: when a call breaks off, they continue where it stopped. They give up after
+// max_attempts attempts in a row that brought nothing, so a slow network with many interruptions
+// still gets the file across.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +24,7 @@ namespace pleat {
 
 inline constexpr size_t kUploadChunkBytes = 512 << 10;
 
-// Where an upload goes: `start` opens the call, `info_of` reads its answer.
+// How an upload of one kind is made: `start` opens the call, `info_of` reads its answer.
 template <typename Info, typename Response>
 struct UploadCalls {
   std::function<std::unique_ptr<grpc::ClientWriter<v1::UploadSequenceRequest>>(grpc::ClientContext*,
@@ -30,12 +33,12 @@ struct UploadCalls {
   std::function<absl::StatusOr<Info>(const Response&)> info_of;
 };
 
-// One call of an upload. The server may end it early, when it has the file or refuses it; what is
-// appended after that goes nowhere, and Finish says how it ended.
+// One call of an upload. The server may end it early, when it has the file already or refuses it.
+// What is appended after that goes nowhere, and Finish says how the call ended.
 template <typename Info, typename Response>
 class RemoteUpload final : public ContentUpload<Info> {
  public:
-  // progress: cancels the call.
+  // progress: its cancellation cancels the call.
   RemoteUpload(const UploadCalls<Info, Response>& calls, const std::string& id, uint64_t size_bytes,
                uint64_t offset_bytes, const Progress& progress)
       : info_of_(calls.info_of),
@@ -85,10 +88,10 @@ class RemoteUpload final : public ContentUpload<Info> {
   Response response_;
   std::unique_ptr<grpc::ClientWriter<v1::UploadSequenceRequest>> writer_;
   bool open_ = false;
-  std::optional<absl::Status> end_;  // of the call
+  std::optional<absl::Status> end_;  // how the call ended
 };
 
-// One attempt to send the rest of `bytes` from `offset`.
+// Makes one attempt to send the rest of `bytes` from `offset` on.
 template <typename Info, typename Response>
 absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const std::string& id,
                               std::string_view bytes, uint64_t offset, const Progress& progress) {
@@ -103,7 +106,8 @@ absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const st
   return upload.Finish();
 }
 
-// Uploads `bytes`, whose content id is `id`.
+// Uploads `bytes`, whose content id is `id`. Before each attempt it asks the server how much is
+// there, because a call that broke off does not say what has arrived.
 template <typename Info, typename Response>
 absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info, Response>& calls,
                                 const std::string& id, const std::string& bytes,
@@ -119,13 +123,14 @@ absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info
         !asked.ok()) {
       result = asked;
     } else {
-      if (known.received_bytes() > farthest) attempt = 1;  // it moves: do not give up
+      if (known.received_bytes() > farthest) attempt = 1;  // progress was made
       farthest = std::max<uint64_t>(farthest, known.received_bytes());
       const uint64_t offset = known.received_bytes() <= bytes.size() ? known.received_bytes() : 0;
       result = SendRest(calls, id, bytes, offset, progress);
     }
     PLEAT_RETURN_IF_ERROR(progress.Report(result.ok() ? 1 : 0));  // says that it was cancelled
     if (result.ok()) return result;
+    // kOutOfRange means that what the server holds has changed since it was asked.
     const bool again =
         IsTransient(result.status()) || result.status().code() == absl::StatusCode::kOutOfRange;
     if (!again || attempt >= state.options.max_attempts) return result;
@@ -133,13 +138,13 @@ absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info
   }
 }
 
-// Opens a download from the request's offset.
+// Opens a download from the offset in the request.
 template <typename Request, typename Response>
 using StartDownload = std::function<std::unique_ptr<grpc::ClientReader<Response>>(
     grpc::ClientContext*, const Request&)>;
 
-// Adds the file `id`, from `offset` and the `bytes` that are there already, to `bytes`, until its
-// end or until `more`, which is asked after every part, says no or fails.
+// Appends the file `id` to `bytes`, which hold the part from `offset` on that is there already. It
+// stops at the end of the file, or when `more`, which is asked after every part, says no or fails.
 template <typename Request, typename Response>
 absl::Status ReadParts(const StartDownload<Request, Response>& start, const std::string& id,
                        uint64_t offset, const Progress& progress, std::string* bytes,
@@ -170,7 +175,7 @@ absl::Status ReadParts(const StartDownload<Request, Response>& start, const std:
   return wanted ? end : absl::OkStatus();
 }
 
-// The whole file, whose SHA-256 is `id`.
+// Downloads the whole file, whose SHA-256 is `id`. kDataLoss when the bytes do not have it.
 template <typename Request, typename Response>
 absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::string& id,
                                          const Progress& progress,
@@ -196,7 +201,8 @@ absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::st
   return bytes;
 }
 
-// `count` bytes of it from `offset`, fewer at its end.
+// Downloads `count` bytes of the file from `offset` on, fewer at its end. Their hash is not
+// checked.
 template <typename Request, typename Response>
 absl::StatusOr<std::string> ReadFileBytes(const std::string& id, uint64_t offset, uint64_t count,
                                           const StartDownload<Request, Response>& start) {

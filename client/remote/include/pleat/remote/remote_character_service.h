@@ -1,4 +1,4 @@
-// Pleat over the network: the services of a server somewhere else.
+// Pleat over the network: the services of a server.
 #pragma once
 
 #include <memory>
@@ -17,14 +17,14 @@ class Channel;
 namespace pleat {
 
 // Owns the connection and the five services over it. Thread-safe. Errors of the connection are
-// kUnavailable (nobody answers) or kDeadlineExceeded; all others are the server's own. Uploads,
-// downloads and watches that break off go on where they stopped.
+// kUnavailable, when nobody answers, and kDeadlineExceeded; all others are the server's own.
+// Uploads, downloads and watches that break off continue where they stopped.
 class RemoteCharacterService final : public CharacterService {
  public:
-  // address: HOST:PORT, or unix:PATH.
+  // address: HOST:PORT, or unix:PATH. kUnavailable when no server answers in time, with the reason.
   static absl::StatusOr<std::unique_ptr<RemoteCharacterService>> Connect(
       const std::string& address, RemoteOptions options = {});
-  // Over a channel that exists (in-process servers, tests).
+  // Uses a channel that exists, for servers in this process and for tests.
   static std::unique_ptr<RemoteCharacterService> OverChannel(std::shared_ptr<grpc::Channel> channel,
                                                              RemoteOptions options = {});
   ~RemoteCharacterService() override;
@@ -38,7 +38,7 @@ class RemoteCharacterService final : public CharacterService {
  private:
   explicit RemoteCharacterService(std::unique_ptr<RemoteState> state);
 
-  const std::unique_ptr<RemoteState> state_;  // first: the services use it
+  const std::unique_ptr<RemoteState> state_;  // declared first, because the services use it
   const std::unique_ptr<SequenceService> sequences_;
   const std::unique_ptr<JobService> jobs_;
   const std::unique_ptr<ModelService> models_;

@@ -1,4 +1,4 @@
-// Frames of the models of a server.
+// Frames of the models that a server keeps.
 #pragma once
 
 #include <functional>
@@ -21,9 +21,10 @@ class RemotePoses final : public PoseService {
   // `state` and `models`, which a stream of parameters downloads from, must outlive it.
   RemotePoses(RemoteState* state, ModelService* models) : state_(state), models_(models) {}
 
-  // Frames are decoded from RemoteOptions::stream, so positions differ from a local evaluation by
-  // up to half a step of its grid. A stream of parameters downloads the model once and evaluates it
-  // here; one of the control mesh gives its vertices only.
+  // Frames come as RemoteOptions::stream says and are decoded, so positions differ from those of a
+  // local evaluation by up to half a step of the grid. With a stream of parameters, the model is
+  // downloaded once and evaluated here. A stream of the control mesh gives the control vertices
+  // only.
   absl::Status EvaluateClip(
       const ClipQuery& query,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume) override;
@@ -32,17 +33,18 @@ class RemotePoses final : public PoseService {
   absl::StatusOr<std::unique_ptr<ClipSession>> OpenClip(const std::string& model_id,
                                                         PoseTrack track,
                                                         PoseSessionOptions options) override;
-  // kUnimplemented: see OpenLiveSession.
+  // Returns kUnimplemented; OpenLiveSession takes its place.
   absl::StatusOr<std::unique_ptr<PoseStream>> OpenStream(const std::string& model_id,
                                                          PoseSessionOptions options,
                                                          LiveRules rules,
                                                          LiveListener* listener) override;
 
-  // One pose -> one frame of RemoteOptions::stream, decoded. poses[h]: h training-frame intervals
-  // earlier.
+  // Evaluates one pose; the frame comes as RemoteOptions::stream says and is decoded. poses[0] is
+  // the pose to show, poses[h] the pose h training-frame intervals earlier.
   absl::StatusOr<EvaluatedFrame> EvaluatePose(const ClipQuery& character,
                                               const std::vector<Pose>& poses);
-  // Poses in, frames out, as they happen. character.track is not used.
+  // Opens a session in which poses go out and frames come back as they happen. character.track is
+  // not used.
   absl::StatusOr<std::unique_ptr<LiveSession>> OpenLiveSession(
       const ClipQuery& character, const LiveSessionOptions& options = {});
 
@@ -51,7 +53,7 @@ class RemotePoses final : public PoseService {
 
   RemoteState* const state_;
   ModelService* const models_;
-  // The model downloaded last, for streams of parameters.
+  // The model that was downloaded last, for streams of parameters.
   std::mutex model_mutex_;
   std::string model_id_;                         // guarded by model_mutex_
   std::shared_ptr<const CharacterModel> model_;  // guarded by model_mutex_
