@@ -39,7 +39,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   return app;
 }
 
-// The verb that the arguments name, for messages of the parser.
+// Returns "pleat" with the verb that the arguments name, for messages of the parser.
 std::string Prefix(const std::vector<std::string>& arguments, const CLI::App& app) {
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (!arguments.empty() && verb->get_name() == arguments[0]) return "pleat " + arguments[0];

@@ -1,4 +1,4 @@
-// The whole program but for the process around it.
+// The whole program except for the process around it.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace pleat {
 
-// Parses `arguments` (without the program's name), runs the chosen verb and reports its error on
-// session.err as "pleat VERB: message".
+// Parses `arguments`, which do not include the program's name, and runs the chosen verb. Reports
+// its error on session.err as "pleat VERB: message".
 ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& session);
 
 }  // namespace pleat

@@ -3,12 +3,12 @@
 
 namespace pleat {
 
-// The first signal sets the flag, a second one ends the process at once.
+// From now on the first signal sets the flag, and a second one ends the process at once.
 void InstallInterruptHandler();
 bool Interrupted();
 
-// For verbs that only look (`jobs watch`): the signal ends the process at once with
-// ExitCode::kCancelled.
+// For verbs that only look, such as `jobs watch`: from now on the signal ends the process at once
+// with ExitCode::kCancelled.
 void ExitOnInterrupt();
 
 }  // namespace pleat

@@ -14,13 +14,14 @@ namespace {
 
 constexpr auto kInterruptInterval = std::chrono::milliseconds(50);
 
-// What the watching thread saw last.
+// What the watching thread saw last. The main thread is the one that looks at Ctrl-C, so the job is
+// watched on a thread of its own.
 struct Watched {
   std::mutex mutex;
   JobInfo job;
 };
 
-// How a job has ended, or why nobody could tell.
+// Returns how a job has ended, or why that is not known.
 absl::Status EndOf(const absl::Status& watch, const JobInfo& job) {
   if (absl::IsUnavailable(watch)) {
     return absl::UnavailableError(absl::StrCat(watch.message(), "; job ", job.id,
@@ -63,7 +64,8 @@ absl::StatusOr<JobInfo> WatchJobToEnd(JobService& jobs, const std::string& id,
   while (watching.wait_for(kInterruptInterval) != std::future_status::ready) {
     if (!cancel_on_interrupt || cancelled || !Interrupted()) continue;
     cancelled = true;
-    // The watch ends by itself when the job is cancelled; when it cannot be, its error says so.
+    // The watch ends by itself when the job is cancelled. When it cannot be cancelled, the error
+    // says why.
     if (absl::Status status = jobs.Cancel(id); !status.ok()) {
       *session.err << "cannot cancel job " << id << ": " << status.message() << std::endl;
     }

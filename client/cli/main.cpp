@@ -1,4 +1,4 @@
-// `pleat`, the command line (client/README.md).
+// The command line `pleat` (client/README.md).
 #include <unistd.h>
 
 #include <csignal>

@@ -14,21 +14,21 @@ namespace pleat {
 
 class RemoteCharacterService;
 
-// The server of --server (or PLEAT_SERVER, or the default address), or with --local the service in
-// this process over the data folder.
+// Connects to the server of --server, of PLEAT_SERVER, or at the default address. With --local it
+// opens the service of this process over the data folder.
 absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& session);
 
-// The same server, for verbs that need more than the services: live sessions are a matter of the
-// network. A usage error that names `verb` with --local.
+// Connects to the same server, for verbs that need live sessions, which only the remote service
+// has. With --local it returns a usage error that names `verb`.
 absl::StatusOr<std::unique_ptr<RemoteCharacterService>> OpenRemoteService(const Session& session,
                                                                           const std::string& verb);
 
-// The one id among `ids` that begins with `prefix`: people copy the first digits. kNotFound names
-// `kind`; a usage error when several begin so.
+// Returns the one id among `ids` that begins with `prefix`, since people copy the first digits
+// only. kNotFound names `kind`. It is a usage error when several ids begin like this.
 absl::StatusOr<std::string> CompleteId(const std::vector<std::string>& ids,
                                        const std::string& prefix, const std::string& kind);
 
-// The same among things that have an id.
+// Does the same for things that have an id.
 template <typename Info>
 absl::StatusOr<std::string> CompleteId(const std::vector<Info>& infos, const std::string& prefix,
                                        const std::string& kind) {
@@ -37,16 +37,17 @@ absl::StatusOr<std::string> CompleteId(const std::vector<Info>& infos, const std
   return CompleteId(ids, prefix, kind);
 }
 
-// The id of the only model whose id begins with `prefix`.
+// Returns the id of the only model whose id begins with `prefix`.
 absl::StatusOr<std::string> FindModel(ModelService& models, const std::string& prefix);
 
-// Uploads with progress; Ctrl-C stops it.
+// Uploads a sequence, shows the progress and stops on Ctrl-C.
 absl::StatusOr<SequenceInfo> UploadWithProgress(SequenceService& sequences,
                                                 const MeshSequence& sequence,
                                                 const Session& session);
 
-// Watches a job with progress until it is final. On Ctrl-C the job is cancelled when
-// `cancel_on_interrupt`. A job that failed gives its own error.
+// Watches a job until its state is final and shows its progress. On Ctrl-C it cancels the job if
+// `cancel_on_interrupt` says so. A job that failed gives its own error. stage_seconds receives the
+// seconds of every stage; it may be null.
 absl::StatusOr<JobInfo> WatchJobToEnd(JobService& jobs, const std::string& id,
                                       const Session& session, bool cancel_on_interrupt,
                                       std::map<std::string, double>* stage_seconds);

@@ -12,37 +12,37 @@ namespace pleat {
 struct Session {
   std::ostream* out = nullptr;     // results
   std::ostream* err = nullptr;     // progress and errors
-  bool err_is_terminal = false;    // a progress bar instead of lines
+  bool err_is_terminal = false;    // progress is a bar instead of lines
   std::string environment_server;  // PLEAT_SERVER, empty when unset
   std::string environment_data;    // PLEAT_DATA, empty when unset
   std::string environment_home;    // HOME, empty when unset
 
-  // Flags of all verbs.
+  // The flags that verbs share.
   std::string server;    // --server
   std::string data_dir;  // --data-dir
   bool local = false;
   bool tls = false;             // --tls, or one of the files below
-  std::string tls_ca;           // --tls-ca: PEM file, empty = the authorities of the system
+  std::string tls_ca;           // --tls-ca: a PEM file, empty = the authorities of the system
   std::string tls_certificate;  // --tls-cert and --tls-key: PEM files of the client
   std::string tls_key;
   bool json = false;
   bool quiet = false;
 
-  // Set by the parser's callback of the chosen verb.
+  // The callback of the chosen verb in the parser sets these two.
   std::string verb;
   std::function<absl::Status()> run;
 
-  // The address that remote verbs talk to.
+  // Returns the address that remote verbs talk to.
   std::string ServerAddress() const;
-  // The folder of the local store.
+  // Returns the folder of the local store.
   std::string DataFolder() const;
-  // Progress and notes are printed at all.
+  // Says whether progress and notes are printed at all.
   bool talkative() const { return !quiet && !json; }
 };
 
 inline constexpr char kDefaultServer[] = "127.0.0.1:7320";
 
-// Seconds of a monotonic clock, for durations.
+// Returns the seconds of a monotonic clock, for durations.
 double MonotonicSeconds();
 
 }  // namespace pleat

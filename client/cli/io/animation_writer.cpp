@@ -80,7 +80,7 @@ class MeshFolderWriter : public AnimationWriter {
     if (ply_) return WritePly(path, topology_, positions, options_.appearance);
     return WriteObj(path, topology_, positions, options_.appearance);
   }
-  // Removes what a longer animation left in the folder: readers take every file there.
+  // Removes the frames that a longer animation left in the folder, since readers take every file.
   absl::Status Finish() override {
     if (num_frames_ == 0) return NoFrames();
     std::error_code ignored;

@@ -1,4 +1,4 @@
-// Writing an animation frame by frame, in the form that the name of OUT asks for.
+// Writes an animation frame by frame, in the form that the name of OUT asks for.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,13 +16,13 @@ namespace pleat {
 enum class AnimationFormat {
   kPc2,    // OUT.pc2 and OUT.obj with its topology
   kPseq,   // OUT.pseq, Pleat's own sequence file
-  kObj,    // folder OUT with frame_0000.obj, ...
-  kPly,    // folder OUT with frame_0000.ply, ...
-  kDraco,  // folder OUT with frame_0000.drc, ... (draco_folder.h)
+  kObj,    // a folder OUT with frame_0000.obj and so on
+  kPly,    // a folder OUT with frame_0000.ply and so on
+  kDraco,  // a folder OUT with frame_0000.drc and so on (draco_folder.h)
 };
 
-// name: "auto" (by the ending of `path`: .pc2, .pseq, else a folder of `folder_format`), "pc2",
-// "pseq", "obj", "ply" or "drc".
+// Returns the format with this name: "pc2", "pseq", "obj", "ply", "drc", or "auto". "auto" goes by
+// the ending of `path`, .pc2 or .pseq; any other path is a folder of `folder_format`.
 absl::StatusOr<AnimationFormat> ChooseAnimationFormat(
     const std::string& name, const std::string& path,
     AnimationFormat folder_format = AnimationFormat::kDraco);
@@ -30,16 +30,17 @@ absl::StatusOr<AnimationFormat> ChooseAnimationFormat(
 struct AnimationOptions {
   FrameRate frame_rate;
   MeshAppearance appearance;
-  std::string name;  // of the sequence, .pseq only
-  FrameEncoderOptions encoder{.encoding = FrameEncoding::kDracoMesh};  // kDraco only
-  Eigen::Matrix3Xf reference;  // kDraco only: 3 x V, rest pose, meters; empty = the first frame
+  std::string name;  // the name of the sequence, for .pseq only
+  // Both are for kDraco only. reference: 3 x V, the rest pose, meters; empty: the first frame.
+  FrameEncoderOptions encoder{.encoding = FrameEncoding::kDracoMesh};
+  Eigen::Matrix3Xf reference;
 };
 
 class AnimationWriter {
  public:
   virtual ~AnimationWriter() = default;
   virtual absl::Status AddFrame(const Eigen::Matrix3Xf& positions) = 0;  // 3 x V, meters
-  // Completes the files; kInvalidArgument when no frame was added.
+  // Completes the files. kInvalidArgument when no frame was added.
   virtual absl::Status Finish() = 0;
 };
 

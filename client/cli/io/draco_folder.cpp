@@ -94,7 +94,7 @@ absl::StatusOr<DracoFolder> ParseHeader(const std::string& text, const std::stri
   return folder;
 }
 
-// Decodes one file of the stream; it must have `num_positions` positions.
+// Decodes one file of the stream, which must have `num_positions` positions.
 absl::StatusOr<DracoGeometry> ReadGeometry(const StreamHeader& header, int num_positions,
                                            const std::string& path, const Progress& progress) {
   DracoProcessOptions options;
@@ -106,7 +106,7 @@ absl::StatusOr<DracoGeometry> ReadGeometry(const StreamHeader& header, int num_p
                                           " positions, the stream declared ", num_positions));
 }
 
-// Vertex numbers of all positions, each vertex at least once.
+// Checks that all vertex numbers exist and that every vertex is there at least once.
 absl::Status CheckNumbers(const DracoGeometry& geometry, int num_vertices,
                           const std::string& path) {
   std::vector<bool> seen(num_vertices, false);
@@ -141,7 +141,7 @@ absl::StatusOr<Topology> ReadTopology(const DracoFolder& stream, const std::stri
   return Topology::FromTriangles(stream.header.num_vertices, geometry.triangles);
 }
 
-// 3 x V, meters, in the character's vertex order.
+// Returns one frame: 3 x V, meters, in the character's vertex order.
 absl::StatusOr<Eigen::Matrix3Xf> ReadFrame(const DracoFolder& stream, const std::string& path,
                                            const Progress& progress) {
   const StreamHeader& header = stream.header;
@@ -160,7 +160,7 @@ absl::StatusOr<Eigen::Matrix3Xf> ReadFrame(const DracoFolder& stream, const std:
 }  // namespace
 
 absl::Status DracoFolderWriter::AddFrame(std::string_view draco_bytes) {
-  // What an earlier animation left here must not look complete meanwhile.
+  // An earlier animation in this folder must not look complete while its frames are replaced.
   if (num_frames_ == 0) RemoveIfThere(folder_ + "/stream.json");
   return WriteFile(FramePath(folder_, num_frames_++), draco_bytes);
 }

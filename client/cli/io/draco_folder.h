@@ -1,5 +1,5 @@
-// A folder of Draco frames: stream.json (what a stream says once), topology.drc, frame_0000.drc...
-// Layout in client/README.md.
+// A folder of Draco frames: stream.json with what a stream says once, topology.drc, frame_0000.drc
+// and so on. client/README.md describes the layout.
 #pragma once
 
 #include <string>
@@ -13,14 +13,14 @@
 
 namespace pleat {
 
-// Writes a stream as it comes, whoever encoded it.
+// Writes a stream as it comes, whatever has encoded it.
 class DracoFolderWriter {
  public:
   DracoFolderWriter(std::string folder, FrameRate frame_rate)
       : folder_(std::move(folder)), frame_rate_(frame_rate) {}
 
   absl::Status AddFrame(std::string_view draco_bytes);
-  // Writes topology.drc and, last of all, stream.json: a folder with it is complete.
+  // Writes topology.drc and, last of all, stream.json, so that a folder with it is complete.
   absl::Status Finish(const StreamHeader& header);
 
  private:
@@ -31,7 +31,8 @@ class DracoFolderWriter {
 
 bool IsDracoFolder(const std::string& path);
 
-// Decodes such a folder; vertices in the character's order, triangles as the stream has them.
+// Decodes such a folder. Vertices are in the character's order, triangles are those of the stream.
+// kInvalidArgument and kDataLoss name the file that is wrong.
 absl::StatusOr<MeshSequence> ReadDracoFolder(const std::string& folder,
                                              const Progress& progress = {});
 

@@ -8,13 +8,15 @@
 
 namespace pleat {
 
-// "30", "29.97" (up to three decimals, kept exact) or "30000/1001"; a usage error otherwise.
+// Reads "30", "29.97" (up to three decimals, which are kept exactly) or "30000/1001". Everything
+// else is a usage error.
 absl::StatusOr<FrameRate> ParseFrameRate(const std::string& text);
 
-// "30", "23.976" or "30000/1001": the exact inverse.
+// Writes "30", "23.976" or "30000/1001". ParseFrameRate restores the same rate exactly.
 std::string FormatFrameRate(FrameRate rate);
 
-// The fraction that people mean by `fps`: 29.97003 is 30000/1001. fps: above 0, at most 10000.
+// Returns the fraction that people mean by `fps`: 29.97003 is 30000/1001. fps: above 0, at most
+// 10000.
 FrameRate FrameRateFromFps(double fps);
 
 }  // namespace pleat

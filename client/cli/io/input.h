@@ -1,4 +1,4 @@
-// Reading INPUT arguments, with progress and Ctrl-C.
+// Reads INPUT arguments, with progress and Ctrl-C.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace pleat {
 
-// What ReadSequence reads, and folders of Draco frames (draco_folder.h). fps: text of --fps, empty
-// when it was not given.
+// Reads what ReadSequence reads, and folders of Draco frames (draco_folder.h). fps: the text of
+// --fps, empty when it was not given.
 absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string& input,
                                        const std::string& fps = "");
 

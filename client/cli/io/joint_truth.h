@@ -1,4 +1,4 @@
-// Known joint positions of a sequence, to score a rig with.
+// The known joint positions of a sequence, with which a rig is scored.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,23 +19,24 @@ struct JointTruth {
   Eigen::Matrix3Xd positions;  // 3 x N, meters
 };
 
-// A JSON object {"joints": [{"name", "position_m": [x, y, z]}, ...], "frame": 0}; other members are
-// ignored, so the truth.json of a generated performer is one. kInvalidArgument names what is wrong.
+// Reads a JSON object {"joints": [{"name", "position_m": [x, y, z]}, ...], "frame": 0}. Other
+// members are ignored, so the truth.json of a generated performer will do. kInvalidArgument says
+// what is wrong.
 absl::StatusOr<JointTruth> DecodeJointTruth(std::string_view text);
 absl::StatusOr<JointTruth> ReadJointTruth(const std::string& path);
 
-// The truth that lies beside `input`: <stem>_truth.json or truth.json in its folder. Empty when
-// there is none.
+// Returns the path of the truth that lies beside `input`: <stem>_truth.json or truth.json in its
+// folder. Returns an empty path when there is none.
 std::string FindJointTruth(const std::string& input);
 
 struct JointErrors {
-  std::vector<std::string> names;  // of the joints that truth and skeleton share
+  std::vector<std::string> names;  // the joints that truth and skeleton have in common
   std::vector<double> errors_m;
   double mean_m = 0, max_m = 0;
 };
 
-// Distances between equally named joints; joints: 3 x J, in the truth's frame. kInvalidArgument
-// when the two share no name.
+// Measures the distances between joints of the same name. joints: 3 x J, meters, those of
+// `skeleton` in the truth's frame. kInvalidArgument when the two have no name in common.
 absl::StatusOr<JointErrors> CompareJoints(const JointTruth& truth, const Skeleton& skeleton,
                                           const Eigen::Matrix3Xd& joints);
 

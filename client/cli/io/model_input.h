@@ -1,4 +1,4 @@
-// Models named on the command line: a .pleat file here, or the id of one on a service.
+// Models that are named on the command line: a .pleat file here, or the id of a model on a service.
 #pragma once
 
 #include <memory>
@@ -15,24 +15,24 @@
 
 namespace pleat {
 
-// True when `model` names a file on this machine (exists, or ends in .pleat).
+// Says whether `model` names a file on this machine: one that exists, or whose name ends in .pleat.
 bool IsModelFile(const std::string& model);
 
 // Reads a model file, or downloads the model whose id begins with `model`.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LoadModel(const Session& session,
                                                                 const std::string& model);
 
-// FitMotion with progress; Ctrl-C stops it.
+// Does the same as FitMotion, shows its progress and stops on Ctrl-C.
 absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
                                                 const MeshSequence& sequence,
                                                 const Session& session);
 
-// The poses of `source` (a motion file, else a mesh sequence, whose poses are fitted). fps: where a
-// sequence does not say, may be empty.
+// Returns the poses of `source`: a motion file, or else a mesh sequence, to which poses are fitted.
+// fps: the frame rate of a sequence that does not have one; may be empty.
 absl::StatusOr<Motion> LoadMotion(const std::string& source, const std::string& fps,
                                   const CharacterModel& model, const Session& session);
 
-// The names of all joints, in order.
+// Returns the names of all joints, in order.
 std::vector<std::string> JointNames(const Skeleton& skeleton);
 
 }  // namespace pleat

@@ -69,7 +69,8 @@ absl::Status ScaleRotations(const std::vector<std::string>& joint_names,
     for (const int j : given.joints) {
       Eigen::Vector3d previous = Eigen::Vector3d::Zero();
       for (Pose& pose : *poses) {
-        // Unwrapped along time, or a turn past 180 degrees would jump when it is scaled.
+        // Rotations are unwrapped along time. Otherwise a turn past 180 degrees would jump when it
+        // is scaled.
         previous = UnwrapExponentialMap(ExponentialMapFromQuaternion(pose.rotations[j]), previous);
         pose.rotations[j] = QuaternionFromExponentialMap(factor * previous);
       }
@@ -93,7 +94,7 @@ absl::Status OffsetRotations(const std::vector<std::string>& joint_names,
   return absl::OkStatus();
 }
 
-// Resamples every clip on its own, so that history still never crosses a boundary.
+// Resamples every clip on its own, so that history still does not cross a boundary.
 absl::StatusOr<PoseTrack> ScaleTime(const PoseTrack& track, double time_scale) {
   if (!(time_scale >= 0.01 && time_scale <= 100)) {
     return UsageError(absl::StrCat("--time-scale ", time_scale, " is outside 0.01 to 100"));

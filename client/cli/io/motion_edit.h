@@ -1,4 +1,4 @@
-// Small edits of a motion, for trying out a character with poses it was not trained on.
+// Small edits of a motion, which try out a character with poses that it was not trained on.
 #pragma once
 
 #include <string>
@@ -10,14 +10,15 @@
 
 namespace pleat {
 
-// As given on the command line; a joint name of "all" means every joint but the root.
+// Edits as they are given on the command line. The joint name "all" means every joint except the
+// root.
 struct MotionEdits {
-  std::vector<std::string> scale_rotation;  // "joint=factor": angle times factor
+  std::vector<std::string> scale_rotation;  // "joint=factor": the angle times the factor
   // "joint=x,y,z": intrinsic X-Y-Z angles in degrees, turned after the motion's own rotation about
   // the axes of the rest pose as the parent bone carries them.
   std::vector<std::string> offset_rotation;
-  std::vector<std::string> offset_root;  // "x,y,z": meters, world
-  double time_scale = 1;                 // duration times this, same frame rate
+  std::vector<std::string> offset_root;  // "x,y,z": meters, in the world
+  double time_scale = 1;                 // the duration times this, at the same frame rate
 };
 
 // Applies the edits in the order of the members. A usage error names a joint that is not in
@@ -25,8 +26,8 @@ struct MotionEdits {
 absl::StatusOr<PoseTrack> EditMotion(const std::vector<std::string>& joint_names, PoseTrack track,
                                      const MotionEdits& edits);
 
-// "joint=factor" texts -> one factor per joint, 1 where none is given (J entries, or empty when
-// `texts` is empty).
+// Turns texts "joint=factor" into one factor per joint, which is 1 where none is given. Returns J
+// entries, or none when `texts` is empty.
 absl::StatusOr<std::vector<double>> ParseJointFactors(const std::vector<std::string>& joint_names,
                                                       const std::vector<std::string>& texts);
 

@@ -19,7 +19,7 @@
 namespace pleat {
 namespace {
 
-// As training fits poses by default.
+// Returns the options with which training fits poses by default.
 PoseFitOptions FitOptions(const RigMeasurementOptions& options) {
   PoseFitOptions fit;
   fit.bend_stiffness = TrainOptions().bend_stiffness;
@@ -27,7 +27,7 @@ PoseFitOptions FitOptions(const RigMeasurementOptions& options) {
   return fit;
 }
 
-// Joints of `rig` in frame `frame` of `sequence`, 3 x J.
+// Returns the joints of `rig` in frame `frame` of `sequence`, 3 x J, meters.
 absl::StatusOr<Eigen::Matrix3Xd> JointsInFrame(const MeshSequence& sequence, const Rig& rig,
                                                int frame, const PoseFitOptions& options) {
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track,
@@ -37,7 +37,7 @@ absl::StatusOr<Eigen::Matrix3Xd> JointsInFrame(const MeshSequence& sequence, con
   return transforms.joint_positions;
 }
 
-// Scores the rig in the truth's frame of the whole sequence.
+// Scores the rig in the frame of the truth, which counts from the start of the whole sequence.
 absl::StatusOr<JointErrors> ScoreJoints(const MeshSequence& sequence, const Rig& rig,
                                         const JointTruth& truth,
                                         const RigMeasurementOptions& options, int rest_frame) {
@@ -65,7 +65,7 @@ absl::Status MeasureFit(const MeshSequence& sequence, const MeshSequence& used,
   measurement->fit_seconds = MonotonicSeconds() - start;
   measurement->fit_rms_percent = fit.rms_m * percent;
 
-  RigRefinementOptions refinement;  // all of it, as training's --refine full
+  RigRefinementOptions refinement;  // refines everything, as --refine full does in training
   refinement.bend_stiffness = TrainOptions().bend_stiffness;
   refinement.num_threads = options.rig.num_threads;
   start = MonotonicSeconds();

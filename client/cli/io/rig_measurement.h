@@ -17,30 +17,30 @@ namespace pleat {
 struct RigMeasurementOptions {
   AutoRigOptions rig;
   int first_frame = 0;  // earlier frames are left out
-  bool fit = true;      // measure the pose fit of sequences of two frames or more
+  bool fit = true;      // also measures the pose fit of sequences with two frames or more
 };
 
 struct RigMeasurement {
   std::string input;
   int num_frames = 0, num_vertices = 0;
-  double diagonal_m = 0;  // of the first frame used
-  double height_m = 0;    // extent of that frame along y
-  MeshReport mesh;        // of the first frame used
-  // What went wrong where there is no rig; OK otherwise.
+  double diagonal_m = 0;  // bounding-box diagonal of the first frame that is used
+  double height_m = 0;    // the extent of that frame along y
+  MeshReport mesh;        // the report on that frame
+  // What went wrong when there is no rig; OK otherwise.
   absl::Status status;
   std::optional<Rig> rig;
   AutoRigSummary summary;
-  std::optional<JointErrors> joint_errors;     // where the truth is known
-  std::optional<double> fit_rms_percent;       // of the diagonal, with the rig as it was found
+  std::optional<JointErrors> joint_errors;     // when the truth is known
+  std::optional<double> fit_rms_percent;       // % of the diagonal, with the rig as it was found
   std::optional<double> refined_rms_percent;   // the same with the refined rig
-  std::optional<double> refined_joint_mean_m;  // mean joint error of the refined rig
-  double rig_cpu_seconds = 0;                  // of all threads
+  std::optional<double> refined_joint_mean_m;  // the mean joint error of the refined rig
+  double rig_cpu_seconds = 0;                  // the processor time of all threads
   double rig_seconds = 0, fit_seconds = 0, refine_seconds = 0;  // wall time
 };
 
-// Rigs `sequence` and measures the result. A refusal is a row like any other (`status`); the call
-// itself fails only when it is cancelled, an option is out of range or `truth` (may be null) does
-// not fit.
+// Rigs `sequence` and measures the result. A refusal is a row like any other, with its reason in
+// `status`. The call itself fails only when it is cancelled, when an option is out of range, or
+// when `truth`, which may be null, does not fit.
 absl::StatusOr<RigMeasurement> MeasureRig(const std::string& input, const MeshSequence& sequence,
                                           const JointTruth* truth,
                                           const RigMeasurementOptions& options,

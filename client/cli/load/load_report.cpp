@@ -29,7 +29,7 @@ double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// "delta", "control delta", "parameters".
+// Returns "delta", "control delta", "parameters" and so on.
 std::string ContentAndEncoding(const LoadReport& report) {
   const StreamContent content = report.options.session.stream.content;
   if (content == StreamContent::kMesh) return report.encoding;
@@ -49,7 +49,7 @@ nlohmann::ordered_json TimesJson(const std::vector<double>& sorted) {
 }  // namespace
 
 double Percentile(const std::vector<double>& sorted, double percent) {
-  // 99.9 % of 1000 values are 999, whatever float64 says.
+  // The small number undoes the rounding of float64: 99.9 % of 1000 values are 999.
   const double rank = std::ceil(percent / 100 * static_cast<double>(sorted.size()) - 1e-9);
   const auto index = static_cast<size_t>(std::max(rank, 1.0)) - 1;
   return sorted[std::min(index, sorted.size() - 1)];

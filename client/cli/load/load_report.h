@@ -1,4 +1,4 @@
-// What a load run found: percentiles, rates, JSON, text and a plot.
+// What a load run found, as percentiles and rates, in JSON, text and a plot.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,10 +12,11 @@
 
 namespace pleat {
 
-// The smallest value that at least `percent` of `sorted` (ascending, not empty) do not exceed.
+// Returns the smallest value that at least `percent` % of `sorted` do not exceed. `sorted` ascends
+// and is not empty.
 double Percentile(const std::vector<double>& sorted, double percent);
 
-// Draco's own encoder on frames of the run, on one core.
+// The speed of Draco's own encoder on frames of the run, on one core.
 struct DracoSpeed {
   double encode_ms = 0;  // processor time per frame
   int num_frames = 0;
@@ -28,21 +29,21 @@ struct LoadReport {
   LoadResult result;
   DracoSpeed draco;
 
-  // Measured parts of all frames, milliseconds, ascending.
+  // The parts of the time that each frame took, in milliseconds, over all frames and ascending.
   std::vector<double> latency_ms, queue_ms, evaluate_ms, encode_ms;
   int num_frames = 0;
   double bytes_per_frame = 0;
-  std::vector<double> achieved_fps;  // per client
+  std::vector<double> achieved_fps;  // one per client
 
-  // Fills the last seven from `result`.
+  // Fills in the seven members above from `result`.
   void Summarize();
-  double frames_per_cpu_second() const;  // of the server
+  double frames_per_cpu_second() const;  // frames per second of the server's processor time
   double draco_frames_per_cpu_second() const;
 };
 
 nlohmann::ordered_json LoadReportJson(const LoadReport& report);  // "pleat.bench/1"
 void PrintLoadReport(const LoadReport& report, std::ostream& out);
-// Milliseconds over the percentile of the frames.
+// Plots milliseconds over the percentile of the frames.
 absl::StatusOr<Image> PlotLoad(const LoadReport& report);
 
 }  // namespace pleat

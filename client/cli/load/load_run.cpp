@@ -20,22 +20,25 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long after the end of the schedule poses that are late are still sent.
+// Poses that are late are still sent for this long after the end of the schedule.
 constexpr double kGraceSeconds = 1;
-constexpr auto kNap = std::chrono::milliseconds(50);  // longest sleep without looking up
+constexpr auto kNap = std::chrono::milliseconds(50);  // the longest sleep without a look at `stop`
 
 Clock::duration Seconds(double seconds) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Pose `index` of an endless walk from the first to the last and back: no cuts.
+// Returns pose `index` of an endless walk from the first pose to the last one and back, which has
+// no cuts.
 const Pose& PoseToAndFro(const std::vector<Pose>& poses, size_t index) {
   if (poses.size() == 1) return poses[0];
   const size_t k = index % (2 * poses.size() - 2);
   return poses[k < poses.size() ? k : 2 * poses.size() - 2 - k];
 }
 
-// One client: a session, a sender and a receiver.
+// One client: a session, a sender and a receiver. In an open loop the sender has a thread of its
+// own, which keeps to the schedule whatever the server does. In a closed loop one thread does both.
+// Each member is written by one of the two threads; the results are read when both have ended.
 class Client {
  public:
   Client(std::unique_ptr<LiveSession> session, const std::vector<Pose>& poses,
@@ -81,7 +84,7 @@ class Client {
 
  private:
   void SendAll(Clock::time_point start, double end_s) {
-    prctl(PR_SET_TIMERSLACK, 1UL);  // or every pose is 50 us late
+    prctl(PR_SET_TIMERSLACK, 1UL);  // the default of the kernel makes every pose 50 us late
     const Clock::time_point end = start + Seconds(end_s + kGraceSeconds);
     for (size_t k = 0; k < send_times_.size() && !*stop_; ++k) {
       const Clock::time_point due = start + Seconds(send_times_[k]);
@@ -95,7 +98,7 @@ class Client {
     session_->SendDone();
   }
 
-  // Notes one answer; false at the end of the session.
+  // Notes one answer. Returns false at the end of the session.
   bool Take(const absl::Status& status, const LiveFrame& frame, Clock::time_point start) {
     if (session_->ended()) {
       if (status.code() != absl::StatusCode::kOutOfRange) status_ = status;
@@ -138,7 +141,7 @@ std::vector<double> SendTimes(const LoadOptions& options, int client) {
   std::vector<double> times;
   if (options.arrivals == Arrivals::kClosed) return times;
   Random random(options.seed + static_cast<uint64_t>(client));
-  // Clients that began at the same moment would all send at the same moment for ever.
+  // Clients start at different times. Otherwise all of them would send at the same moments forever.
   double time = client / (options.rate_fps * options.num_clients);
   if (options.arrivals == Arrivals::kFixed) {
     const auto count = static_cast<int>(std::floor(options.seconds * options.rate_fps + 1e-9));

@@ -79,7 +79,7 @@ absl::StatusOr<std::string> RenderErrorSheet(const MeshSequence& truth,
       tile.positions = column.sequence.FrameAsDouble(t);
       tile.triangles = &truth.topology().triangles();
       tile.vertex_colors = ErrorColors(scale, tile.positions, expected);
-      tile.shading = 0;  // what is drawn is the legend's color
+      tile.shading = 0;  // so that colors are exactly those of the legend
       const Eigen::VectorXd distances = Distances_mm(tile.positions, expected);
       tile.label =
           absl::StrFormat("mean %.1f mm, largest %.0f mm", distances.mean(), distances.maxCoeff());

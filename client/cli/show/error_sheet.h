@@ -13,7 +13,7 @@ namespace pleat {
 // One animation against the truth.
 struct ErrorColumn {
   std::string label;
-  MeshSequence sequence;  // the frames of the truth, in its order
+  MeshSequence sequence;  // the same frames as the truth, in its order
 };
 
 struct ErrorSheetOptions {
@@ -22,17 +22,18 @@ struct ErrorSheetOptions {
   int tile_width = 260, tile_height = 340;  // pixels
 };
 
-// 0 .. scale_mm, the same for every picture made with it.
+// Returns the scale from 0 to scale_mm, which is the same for every picture that is made with it.
 ColorScale ErrorScale(double scale_mm);
 
-// The distance of every vertex from its place in the truth, as colors. Both 3 x V, meters.
+// Returns the distance of every vertex from its place in the truth, as a color. Both are 3 x V,
+// meters.
 std::vector<Rgb> ErrorColors(const ColorScale& scale,
                              const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                              const Eigen::Ref<const Eigen::Matrix3Xd>& truth);
 
-// PNG bytes: a row for each frame, a column for each of `columns` with its mean and largest error
-// in every tile, and the truth last, uncolored. `frame_numbers` names the frames of `truth`.
-// kInvalidArgument when sizes differ.
+// Returns a PNG with a row for each frame and a column for each of `columns`, whose tiles name the
+// mean and the largest error. The last column is the truth, without colors. frame_numbers: how the
+// frames of `truth` are called. kInvalidArgument when sizes differ.
 absl::StatusOr<std::string> RenderErrorSheet(const MeshSequence& truth,
                                              const std::vector<int>& frame_numbers,
                                              const std::vector<ErrorColumn>& columns,

@@ -38,7 +38,7 @@ std::string HybridName(const ExperimentRow& row) {
                                       : row.variant.name;
 }
 
-// Error over frame numbers, with gaps where nothing was tested.
+// Returns the error over the frame numbers, with gaps where nothing was tested.
 PlotSeries SeriesOf(const std::string& name, const ErrorSummary& error,
                     const std::vector<int>& test_frames) {
   PlotSeries series{absl::StrFormat("%s: %.3f", name, error.mean_percent), {}};
@@ -96,7 +96,7 @@ std::vector<std::string> ExperimentTableHeader() {
 std::vector<std::vector<std::string>> ExperimentTableRows(const ExperimentReport& report) {
   std::vector<std::vector<std::string>> rows;
   const EvaluateReport& first = report.rows.front().report;
-  ErrorSummary truth;  // shakes as much as it shakes
+  ErrorSummary truth;  // the truth has no error, but it has a jitter of its own
   truth.num_motion_frames = first.skinned.num_motion_frames;
   truth.num_jitter_frames = first.skinned.num_jitter_frames;
   truth.jitter_mm = first.skinned.truth_jitter_mm;

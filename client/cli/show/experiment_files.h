@@ -11,25 +11,26 @@
 
 namespace pleat {
 
-// What is measured on what, for titles.
+// What was measured, for titles.
 struct ExperimentSubject {
-  std::string input;  // of the sequence; "walk_a -> walk_b" with protocol cross
+  std::string input;  // the sequence; "walk_a -> walk_b" with the protocol "cross"
   std::string preset;
 };
 
-// The table's cells, without its header: what was compared, and what that is compared with.
+// Returns the cells of the table without its header: what was compared, and what that is compared
+// with.
 std::vector<std::vector<std::string>> ExperimentTableRows(const ExperimentReport& report);
 std::vector<std::string> ExperimentTableHeader();
 
-// "pleat.experiment/1"
+// Returns the report in the schema "pleat.experiment/1".
 nlohmann::ordered_json ExperimentJson(const ExperimentReport& report,
                                       const ExperimentSubject& subject);
 
-// Table, what it means and the plots by name.
+// Returns the table, what it means, and links to the plots.
 std::string ExperimentMarkdown(const ExperimentReport& report, const ExperimentSubject& subject);
 
-// PNG bytes by file name, one plot for each group of variants: mean vertex error of every test
-// frame, gaps where frames were trained on.
+// Returns PNG bytes by file name, one plot for each group of variants: the mean vertex error of
+// every test frame, with gaps where frames were trained on.
 absl::StatusOr<std::map<std::string, std::string>> ExperimentPlots(
     const ExperimentReport& report, const ExperimentSubject& subject);
 

@@ -8,7 +8,7 @@
 namespace pleat {
 
 nlohmann::ordered_json SequenceJson(const SequenceInfo& info);
-// "training" or "compression".
+// Returns "training" or "compression".
 const char* JobKindName(const JobInfo& info);
 nlohmann::ordered_json JobJson(const JobInfo& info);
 nlohmann::ordered_json ModelJson(const ModelInfo& info);

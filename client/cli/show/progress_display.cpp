@@ -16,11 +16,11 @@ constexpr int kStageColumns = 10;
 constexpr int kTerminalColumns = 79;
 constexpr double kRedrawSeconds = 0.1;
 constexpr double kLineSeconds = 5;
-constexpr double kNewStageSeconds = 1;  // stages of a moment would only fill a log
-constexpr double kQuietSeconds = 0.5;   // what is over by then is not worth a word
+constexpr double kNewStageSeconds = 1;  // stages that last for a moment would only fill the log
+constexpr double kQuietSeconds = 0.5;   // work that is done by then shows no progress
 
 std::string TimeText(double fraction, double elapsed_seconds, std::optional<double> eta_seconds) {
-  // An extrapolation from the first moments would only jump about.
+  // An extrapolation from the first moments would only jump around.
   if (!eta_seconds && fraction > 0.03 && fraction < 1 && elapsed_seconds > 2) {
     eta_seconds = elapsed_seconds * (1 - fraction) / fraction;
   }

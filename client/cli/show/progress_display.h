@@ -1,4 +1,4 @@
-// Progress on a terminal (one line that is redrawn) or in a log (plain lines, few of them).
+// Shows progress on a terminal, as one line that is redrawn, or in a log, as a few plain lines.
 #pragma once
 
 #include <functional>
@@ -14,13 +14,13 @@ namespace pleat {
 
 struct Session;
 
-// "fit   [############------------]  50 %  12 s, 12 s left"; never longer than `width` columns.
+// Returns "fit   [############------------]  50 %  12 s, 12 s left", in at most `width` columns.
 std::string FormatProgressBar(const ProgressUpdate& update, double elapsed_seconds,
                               std::optional<double> eta_seconds, int width);
-// "fit: 50 %, 12 s, 12 s left"
+// Returns "fit: 50 %, 12 s, 12 s left".
 std::string FormatProgressLine(const ProgressUpdate& update, double elapsed_seconds,
                                std::optional<double> eta_seconds);
-// "8 s", "3 min 20 s", "2 h 5 min"
+// Returns "8 s", "3 min 20 s" or "2 h 5 min".
 std::string FormatDuration(double seconds);
 
 enum class ProgressStyle { kSilent, kLines, kBar };
@@ -31,22 +31,23 @@ class ProgressDisplay {
   ProgressDisplay(std::ostream& out, ProgressStyle style, std::function<double()> clock_seconds);
   ~ProgressDisplay() { Finish(); }
 
-  // eta_seconds: what is left, when somebody else knows it; else extrapolated.
+  // eta_seconds: the time that is left, when somebody else knows it; otherwise it is extrapolated.
   void Update(const ProgressUpdate& update, std::optional<double> eta_seconds = std::nullopt);
-  // Ends the bar's line and the running stage. Harmless when called twice.
+  // Ends the line of the bar and the running stage. It may be called twice.
   void Finish();
 
-  // Stage name -> seconds between its first update and the next stage's first.
+  // Returns, by the name of a stage, the seconds from its first update to that of the next stage.
   std::map<std::string, double> stage_seconds() const;
 
  private:
-  bool Due(const ProgressUpdate& update, double now) const;  // needs mutex_
+  // Says whether this update is to be drawn. Call it with mutex_ held.
+  bool Due(const ProgressUpdate& update, double now) const;
 
   std::ostream& out_;
   const ProgressStyle style_;
   const std::function<double()> clock_seconds_;
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards everything below
   const double start_seconds_;
   double stage_start_seconds_;
   double last_drawn_seconds_;
@@ -55,10 +56,10 @@ class ProgressDisplay {
   bool line_open_ = false;
 };
 
-// Bar, lines or nothing, as the session's flags and terminal say.
+// Returns a bar, lines or nothing, as the flags and the terminal of the session say.
 ProgressStyle ChooseProgressStyle(const Session& session);
 
-// A token that draws on `display` and is cancelled by Ctrl-C.
+// Returns a token that draws on `display` and is cancelled by Ctrl-C. `display` must outlive it.
 Progress InterruptibleProgress(ProgressDisplay* display);
 
 }  // namespace pleat

@@ -17,9 +17,9 @@ ordered_json ErrorsJson(const std::map<std::string, ErrorSummary>& errors,
   return json;
 }
 
-// All bones, named by their joints, largest error first.
+// Returns all bones, each named by its joint, with the largest error first.
 ordered_json WorstJointsJson(const Skeleton& skeleton, const std::vector<double>& percent) {
-  std::vector<int> order;  // models of older files have none
+  std::vector<int> order;  // stays empty for models of older files
   for (int j = 1; j < std::min<int>(skeleton.num_joints(), static_cast<int>(percent.size())); ++j) {
     order.push_back(j);
   }

@@ -25,7 +25,7 @@ bool BeginsWithLetter(const std::string& name, char letter) {
   return name.size() >= 2 && name[0] == letter && std::ispunct(name[1]) != 0;
 }
 
-// The character turned to face the viewer's +z and scaled to height 1, its feet at y = 0.
+// The character, turned to face the viewer at +z and scaled to height 1, with its feet at y = 0.
 struct Turned {
   Eigen::Matrix3Xd positions, joints;
 };

@@ -12,8 +12,8 @@
 
 namespace pleat {
 
-// Which side of the body each joint belongs to, by its name: "left..." or "...Left...", "L_hip",
-// "hand.L", "hand_l" and the same for right; the middle where the name says nothing.
+// Returns the side of the body that each joint belongs to, by its name: "left..." or "...Left...",
+// "L_hip", "hand.L", "hand_l", and the same for right. It is the middle when the name says nothing.
 std::vector<BodySide> SidesOfJoints(const Skeleton& skeleton);
 
 // One row of the sheet: some frames of one character, two pictures each.
@@ -26,7 +26,7 @@ struct RigSheetRow {
   std::string label;
   Topology topology;
   Skeleton skeleton;
-  double yaw_degrees = 0;  // facing about +y from +z
+  double yaw_degrees = 0;  // the facing about +y, from +z
   std::vector<View> views;
 };
 
@@ -34,8 +34,8 @@ struct RigSheetOptions {
   int tile_width = 260, tile_height = 360;  // pixels
 };
 
-// PNG bytes: pale mesh, bones drawn through it (left blue, right red, middle dark). Every character
-// is shown at the same height, a front and a side view of each of its frames.
+// Returns a PNG with pale meshes and their bones drawn through them (left blue, right red, middle
+// dark). Every character is shown at the same height, with a front and a side view of each frame.
 absl::StatusOr<std::string> RenderRigSheet(const std::vector<RigSheetRow>& rows,
                                            const RigSheetOptions& options);
 

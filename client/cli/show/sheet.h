@@ -15,19 +15,19 @@ struct SheetRow {
 };
 
 struct SheetOptions {
-  std::vector<int> frames;  // shown frames; empty = `count` evenly spaced ones
+  std::vector<int> frames;  // the frames that are shown; empty = `count` evenly spaced ones
   int count = 8;
-  double azimuth_degrees = 0;               // 0 looks at the side that faces +z
+  double azimuth_degrees = 0;               // 0 shows the side that faces +z
   int tile_width = 200, tile_height = 300;  // pixels
 };
 
-// `count` evenly spaced frames of `num_frames`, first and last included.
+// Returns `count` evenly spaced frames of `num_frames`, including the first and the last.
 std::vector<int> SpacedFrames(int num_frames, int count);
 
-// "0,5,9" -> {0, 5, 9}; a usage error otherwise.
+// Turns "0,5,9" into {0, 5, 9}. Everything else is a usage error.
 absl::StatusOr<std::vector<int>> ParseFrameList(const std::string& text);
 
-// PNG bytes. The frames of rows that are shorter are taken from those that all rows have.
+// Returns the sheet as a PNG. Evenly spaced frames are taken from those that all rows have.
 // kInvalidArgument names a frame that a row does not have.
 absl::StatusOr<std::string> RenderSheet(const std::vector<SheetRow>& rows,
                                         const SheetOptions& options);

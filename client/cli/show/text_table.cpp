@@ -10,7 +10,7 @@
 namespace pleat {
 namespace {
 
-// Columns that `text` takes on a terminal: UTF-8 continuation bytes take none.
+// Returns how many columns `text` takes on a terminal. Continuation bytes of UTF-8 take none.
 int DisplayWidth(const std::string& text) {
   return static_cast<int>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));

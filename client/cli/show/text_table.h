@@ -1,4 +1,4 @@
-// Columns of text for people; machines use --json.
+// Columns of text for people. Machines use --json.
 #pragma once
 
 #include <string>
@@ -6,15 +6,16 @@
 
 namespace pleat {
 
-// The first column is aligned left, all others right; every row has as many cells as `header`.
+// Returns the table with its first column aligned left and all others right. Every row has as many
+// cells as `header`.
 std::string FormatTable(const std::vector<std::string>& header,
                         const std::vector<std::vector<std::string>>& rows);
 
-// The same as a Markdown table.
+// Returns the same as a Markdown table.
 std::string FormatMarkdownTable(const std::vector<std::string>& header,
                                 const std::vector<std::vector<std::string>>& rows);
 
-// "1.5 MB"
+// Returns "1.5 MB" and the like.
 std::string FormatBytes(double bytes);
 
 }  // namespace pleat

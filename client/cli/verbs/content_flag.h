@@ -1,4 +1,4 @@
-// --content: what the frames of a server's stream hold.
+// The flag --content: what the frames of a server's stream hold.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -9,7 +9,7 @@ namespace pleat {
 
 const char* StreamContentName(StreamContent content);  // "mesh", "control", "parameters"
 
-// The flag of `verb` that sets `content`, which outlives the parser.
+// Adds the flag to `verb`. It sets `content`, which must outlive the parser.
 void AddContentFlag(CLI::App* verb, StreamContent* content);
 
 }  // namespace pleat

@@ -1,4 +1,4 @@
-// The verbs over what a service stores: list, show, delete, download.
+// The verbs for what a service stores: list, show, delete, download.
 #pragma once
 
 #include <functional>
@@ -19,14 +19,14 @@
 
 namespace pleat {
 
-// One kind of stored things; Info has an id.
+// One kind of stored things. Info must have an id.
 template <typename Info>
 struct StoredThings {
   std::string verb, description;
-  std::string kind;  // "model": for messages and --help
+  std::string kind;  // how messages and --help call one of them, such as "model"
   absl::StatusOr<std::vector<Info>> (*list)(CharacterService& service);
   absl::Status (*remove)(CharacterService& service, const std::string& id);
-  // Null where there is none.
+  // Null when they cannot be downloaded.
   absl::StatusOr<std::string> (*download)(CharacterService& service, const std::string& id,
                                           const Progress& progress);
   nlohmann::ordered_json (*json)(const Info&);

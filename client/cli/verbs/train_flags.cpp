@@ -17,7 +17,7 @@ std::string FlagNames(const std::string& option) {
   return names;
 }
 
-// What the option is, its choices with what they mean, and the default.
+// Returns what the option is, its choices and what they mean, and its default.
 template <typename T>
 std::string HelpOf(const char* option, const T& default_value) {
   std::string help = TextOfOption(option).help;

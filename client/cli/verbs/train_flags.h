@@ -1,4 +1,4 @@
-// TrainOptions on the command line: one flag per option, from the one list of options.
+// TrainOptions on the command line: one flag for each option, made from the one list of options.
 #pragma once
 
 #include <map>
@@ -11,14 +11,15 @@
 namespace pleat {
 
 struct TrainFlags {
-  std::string preset;                         // "default" or "paper"; empty = not given: default
-  std::map<std::string, std::string> values;  // option name -> text, only those that were given
+  std::string preset;                         // "default" or "paper"; empty means "default"
+  std::map<std::string, std::string> values;  // the texts that were given, by the option's name
 };
 
 // Adds --preset and a flag for every option ("detail_axes" is --detail-axes, or --axes for short).
 void AddTrainFlags(CLI::App* verb, TrainFlags* flags);
 
-// The preset with the given values over it; a usage error names option, value and range.
+// Returns the preset with the given values in place of its own. A usage error names the option, its
+// value and the range.
 absl::StatusOr<TrainOptions> ResolveTrainFlags(const TrainFlags& flags);
 
 }  // namespace pleat

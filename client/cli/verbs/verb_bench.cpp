@@ -1,4 +1,4 @@
-// bench MODEL: load on a server by many live sessions, and what their frames cost.
+// bench MODEL: puts load on a server by many live sessions and measures what their frames cost.
 #include <time.h>
 
 #include <cmath>
@@ -22,9 +22,9 @@
 namespace pleat {
 namespace {
 
-constexpr int kSwayFrames = 60;        // of the made-up motion
-constexpr size_t kDracoFrames = 60;    // for the speed of Draco's encoder
-constexpr double kDracoSeconds = 0.7;  // of processor time
+constexpr int kSwayFrames = 60;        // the length of the motion that is made up
+constexpr size_t kDracoFrames = 60;    // the frames that Draco's own encoder is measured on
+constexpr double kDracoSeconds = 0.7;  // the processor time for that
 
 struct BenchVerbOptions {
   std::string model, motion, fps, encoding = "delta", arrivals = "fixed", report, plot;
@@ -40,7 +40,7 @@ const std::map<std::string, FrameEncoding>& Encodings() {
   return encodings;
 }
 
-// Every joint sways a little, each in its own time.
+// Makes a motion in which every joint sways a little, each in its own time.
 std::vector<Pose> Sway(const Skeleton& skeleton) {
   std::vector<Pose> poses;
   for (int t = 0; t < kSwayFrames; ++t) {
@@ -63,7 +63,7 @@ double ThreadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Frames of `poses` as a client sees them.
+// Returns frames of `poses` as a client sees them.
 absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SomeFrames(RemotePoses& remote,
                                                          const ClipQuery& character,
                                                          const std::vector<Pose>& poses,
@@ -82,7 +82,8 @@ absl::StatusOr<std::vector<Eigen::Matrix3Xf>> SomeFrames(RemotePoses& remote,
   return frames;
 }
 
-// Draco's own encoder: point clouds in a good order, the fastest that it offers for such frames.
+// Measures Draco's own encoder on point clouds in a good order, the fastest form that it offers for
+// such frames.
 absl::StatusOr<DracoSpeed> MeasureDraco(const std::vector<Eigen::Matrix3Xf>& frames,
                                         const Topology& topology, FrameEncoderOptions stream) {
   stream.encoding = FrameEncoding::kDracoPointCloud;
@@ -129,7 +130,7 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
   if (poses.empty()) return absl::InvalidArgumentError("the motion has no frames");
 
   InstallInterruptHandler();
-  // Draco's encoder would have whole meshes, whatever the sessions ask for.
+  // Draco's encoder is measured on whole meshes, whatever the sessions ask for.
   FrameEncoderOptions stream = report.options.session.stream;
   stream.content = StreamContent::kMesh;
   Topology topology;

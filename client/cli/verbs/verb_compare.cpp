@@ -1,4 +1,4 @@
-// compare A B: the error between two animations of one connectivity.
+// compare A B: measures the error between two animations of one connectivity.
 #include <memory>
 #include <nlohmann/json.hpp>
 

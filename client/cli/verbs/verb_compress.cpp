@@ -1,4 +1,4 @@
-// compress INPUT -o x.plt: a mesh sequence as a small file with a promised error.
+// compress INPUT -o x.plt: writes a mesh sequence as a small file with a promised error.
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>

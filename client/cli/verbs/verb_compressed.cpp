@@ -1,4 +1,4 @@
-// compressed: compressed sequences of a service.
+// compressed: the compressed sequences of a service.
 #include "absl/strings/str_format.h"
 #include "cli/show/info_json.h"
 #include "cli/verbs/stored_verb.h"

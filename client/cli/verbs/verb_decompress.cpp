@@ -1,4 +1,4 @@
-// decompress x.plt -o OUT: the frames of a compressed sequence, or a range of them.
+// decompress x.plt -o OUT: writes the frames of a compressed sequence, or a range of them.
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -23,7 +23,7 @@ struct DecompressVerbOptions {
   std::string input, output, format = "auto", frames;
 };
 
-// "a:b" -> [a, b), either end may be missing; "" -> all.
+// Turns "a:b" into [a, b), where either end may be missing, and "" into all frames.
 absl::StatusOr<FrameRange> ParseRange(const std::string& text) {
   if (text.empty()) return FrameRange{};
   const size_t colon = text.find(':');
@@ -44,13 +44,13 @@ absl::StatusOr<FrameRange> ParseRange(const std::string& text) {
   return range;
 }
 
-// Writes frames as they come.
+// Writes frames as they come. The writer is made when the shape is known, which comes first.
 class Output {
  public:
   Output(const DecompressVerbOptions& flags, AnimationFormat format, Progress progress)
       : flags_(flags), format_(format), progress_(std::move(progress)) {}
 
-  // num_frames: of the range.
+  // num_frames: the length of the range.
   DecodedFramesSink Sink(int num_frames) {
     return {.on_shape =
                 [this](const MeshSequence& shape) {
@@ -97,7 +97,7 @@ absl::Status DecodeHere(const std::string& input, FrameRange range, Output* outp
   return DecodeInto(*decode, range, output->Sink(NumFrames(range, num_frames)));
 }
 
-// input: a file, which is uploaded, or the id of a stored compressed sequence.
+// Decodes on a service. input: a file, which is uploaded first, or the id of a stored sequence.
 absl::Status DecodeOnService(const std::string& input, FrameRange range, const Session& session,
                              Output* output) {
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));

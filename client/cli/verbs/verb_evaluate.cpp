@@ -1,4 +1,5 @@
-// evaluate INPUT --protocol P: held-out errors of the whole pipeline, always in this process.
+// evaluate INPUT --protocol P: measures the held-out errors of the whole pipeline, always in this
+// process.
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -27,7 +28,7 @@ namespace {
 struct EvaluateVerbOptions {
   std::vector<std::string> inputs;
   std::string test_input, protocol, report, fps, experiment, out;
-  std::vector<std::string> measured;  // learners
+  std::vector<std::string> measured;  // the names of the learners to measure
   TrainFlags flags;
   EvaluateOptions evaluate;
 };
@@ -51,13 +52,13 @@ void PrintText(const EvaluateReport& report, std::ostream& out) {
   out << ValidationText(report.validation);
 }
 
-// Clips of an evaluation.
+// The clips of an evaluation.
 struct Clips {
   MeshSequence sequence;
   std::optional<MeshSequence> test;
 };
 
-// Checks the combination of flags; fills protocol and training options.
+// Checks the combination of flags, and fills in the protocol and the training options.
 absl::Status ResolveFlags(EvaluateVerbOptions* options) {
   const bool is_experiment = !options->experiment.empty();
   if (options->protocol.empty()) options->protocol = is_experiment ? "reconstruct" : "blocks10";
@@ -101,7 +102,7 @@ absl::StatusOr<Clips> ReadClips(const Session& session, EvaluateVerbOptions* opt
   return clips;
 }
 
-// JSON, Markdown and plots in the folder; the table or the JSON on stdout.
+// Writes JSON, Markdown and plots into the folder, and the table or the JSON to standard output.
 absl::Status RunExperimentVerb(EvaluateVerbOptions options, const Session& session) {
   absl::StatusOr<Experiment> experiment = ParseExperiment(options.experiment);
   if (!experiment.ok()) return UsageError(std::string(experiment.status().message()));

@@ -1,4 +1,4 @@
-// generate performer -o DIR: a made-up sequence with known truth, for a machine without captures.
+// generate performer -o DIR: makes up a sequence with known truth, for a machine without captures.
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -35,7 +35,7 @@ nlohmann::ordered_json TruthJson(const PerformerOptions& options, const Performe
   return json;
 }
 
-// Where the frames go: beside truth.json as one file, or in a folder of their own.
+// Returns where the frames go: one file beside truth.json, or a folder of their own.
 std::string FramesPath(const std::string& folder, AnimationFormat format) {
   switch (format) {
     case AnimationFormat::kPc2:

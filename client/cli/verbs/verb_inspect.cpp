@@ -1,4 +1,4 @@
-// inspect INPUT: what a sequence holds, before anything is computed.
+// inspect INPUT: shows what a sequence holds, before anything is computed.
 #include <Eigen/Geometry>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,11 +30,11 @@ Eigen::AlignedBox3d BoundsOfAllFrames(const MeshSequence& sequence) {
 
 nlohmann::ordered_json VectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-// What the verb finds out, in the words of both forms of output.
+// What the verb finds out, for both forms of output.
 struct Findings {
-  Eigen::AlignedBox3d bounds;  // of all frames, meters
-  double diagonal_m = 0;       // of frame 0
-  MeshReport report;           // of frame 0
+  Eigen::AlignedBox3d bounds;  // the bounds of all frames, meters
+  double diagonal_m = 0;       // the diagonal of frame 0
+  MeshReport report;           // the report on frame 0
 };
 
 void PrintJson(const MeshSequence& sequence, const Findings& findings, std::ostream& out) {

@@ -1,4 +1,4 @@
-// jobs: training and compression jobs of a service.
+// jobs: the training and compression jobs of a service.
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -30,7 +30,7 @@ void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
 }
 
 absl::Status RunWatch(JobService& jobs, const std::string& id, const Session& session) {
-  ExitOnInterrupt();  // watching stops, the job goes on
+  ExitOnInterrupt();  // Ctrl-C ends the watching, and the job goes on
   PLEAT_ASSIGN_OR_RETURN(const JobInfo job, WatchJobToEnd(jobs, id, session, false, nullptr));
   *session.out << (session.json ? JobJson(job).dump(2) : job.result_id) << "\n";
   return absl::OkStatus();

@@ -1,4 +1,4 @@
-// models: trained characters of a service.
+// models: the trained characters of a service.
 #include "absl/strings/str_format.h"
 #include "cli/show/info_json.h"
 #include "cli/verbs/stored_verb.h"

@@ -1,4 +1,5 @@
-// motion MODEL SOURCE -o motion.json: poses of a mesh sequence, or of a motion file, with edits.
+// motion MODEL SOURCE -o motion.json: writes the poses of a mesh sequence, or of a motion file,
+// with edits.
 #include <memory>
 
 #include "absl/strings/str_format.h"

@@ -1,4 +1,5 @@
-// pose MODEL --motion FILE -o OUT: the character in other poses, evaluated here or on a server.
+// pose MODEL --motion FILE -o OUT: writes the character in other poses, evaluated here or on a
+// server.
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -34,7 +35,7 @@ struct PoseVerbOptions {
   bool skinned_only = false;
 };
 
-// How near the motion is to what training has seen.
+// How near the motion is to what training has seen: the mean and the lowest confidence.
 struct Confidence {
   double sum = 0, lowest = 1;
   int num_frames = 0, lowest_frame = 0;
@@ -108,7 +109,7 @@ void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, 
   }
 }
 
-// Frames of `query` through an AnimationWriter, from wherever `evaluate` takes them.
+// Writes the frames of `query` with an AnimationWriter, wherever `evaluate` takes them from.
 absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
                          const CharacterModel& model, const ClipQuery& query,
                          const std::function<absl::Status(const ConsumeFrame&)>& evaluate,
@@ -129,7 +130,7 @@ absl::Status WriteFrames(const PoseVerbOptions& options, AnimationFormat format,
   return writer->Finish();
 }
 
-// The server's Draco bytes as they come. The number of their vertices.
+// Writes the server's Draco bytes as they come and returns the number of their vertices.
 absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, PoseService& poses,
                                 const ClipQuery& query, const Progress& progress,
                                 Confidence* confidence) {
@@ -150,7 +151,7 @@ absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, PoseService& pos
   return header.num_vertices;
 }
 
-// Poses and coefficients from the server, shown by the model here.
+// Takes poses and coefficients from the server and shows them with the model here.
 absl::Status EvaluateByParameters(PoseService& poses, std::shared_ptr<const CharacterModel> model,
                                   const ClipQuery& query, const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
@@ -163,7 +164,8 @@ absl::Status EvaluateByParameters(PoseService& poses, std::shared_ptr<const Char
   return StreamClip(poses, query, {.content = StreamContent::kParameters}, sink);
 }
 
-// What a server can send for this output, and only a server.
+// Checks that `content` can be had: only a server sends less than the mesh, and not every format
+// can hold it.
 absl::Status CheckContent(StreamContent content, AnimationFormat format, bool from_server) {
   if (content == StreamContent::kMesh) return absl::OkStatus();
   if (!from_server) {
@@ -179,7 +181,7 @@ absl::Status CheckContent(StreamContent content, AnimationFormat format, bool fr
   return absl::OkStatus();
 }
 
-// The number of vertices of what was written.
+// Evaluates a model file here and returns the number of vertices of what was written.
 absl::StatusOr<int> PoseFromFile(const PoseVerbOptions& options, AnimationFormat format,
                                  const Session& session, const Progress& progress,
                                  Confidence* confidence) {
@@ -194,7 +196,7 @@ absl::StatusOr<int> PoseFromFile(const PoseVerbOptions& options, AnimationFormat
   return model->num_vertices();
 }
 
-// The same for a model that a service keeps: evaluated there.
+// Does the same for a model that a service keeps, which is evaluated there.
 absl::StatusOr<int> PoseFromService(const PoseVerbOptions& options, AnimationFormat format,
                                     const Session& session, const Progress& progress,
                                     Confidence* confidence) {
@@ -207,7 +209,7 @@ absl::StatusOr<int> PoseFromService(const PoseVerbOptions& options, AnimationFor
   if (!session.local && format == AnimationFormat::kDraco) {
     return WriteStream(options, service->poses(), query, progress, confidence);
   }
-  // Polygons and texture coordinates are not in a stream.
+  // A stream has neither polygons nor texture coordinates, so they are taken from the model.
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, service->models().Download(id, {}));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
   PLEAT_RETURN_IF_ERROR(WriteFrames(

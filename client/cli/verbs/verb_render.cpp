@@ -1,5 +1,5 @@
-// render INPUT... -o sheet.png: a contact sheet, one row per input; with --rig skeletons, with
-// --compare heat maps of the errors of a model.
+// render INPUT... -o sheet.png: draws a contact sheet with one row per input; with --rig it draws
+// skeletons, with --compare heat maps of the errors of a model.
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -41,8 +41,8 @@ struct ModelAnimations {
   MeshSequence skinned, hybrid;
 };
 
-// What the model's rig alone makes of the input's poses, and what rig and learned detail make of
-// them, in the given frames.
+// Returns what the model's rig alone makes of the input's poses, and what rig and learned detail
+// make of them, in the given frames.
 absl::StatusOr<ModelAnimations> AnimateModel(std::shared_ptr<const CharacterModel> model,
                                              const MeshSequence& input,
                                              const std::vector<int>& frames,
@@ -78,7 +78,8 @@ absl::Status CheckFrames(const std::string& label, const MeshSequence& sequence,
   return absl::OkStatus();
 }
 
-// --compare: skinned only and hybrid colored by their distance from the input, and the input.
+// Draws the sheet of --compare: skinned only and hybrid, colored by their distance from the input,
+// and the input itself.
 absl::StatusOr<std::string> DrawComparison(const RenderVerbOptions& options,
                                            const Session& session) {
   if (options.inputs.size() != 2 || options.rig || !options.model.empty() ||
@@ -119,8 +120,8 @@ RigSheetRow ModelRigRow(const std::string& label, const CharacterModel& model) {
           {ViewOf("rest", rig, Pose::Rest(rig.skeleton), rig.rest_positions)}};
 }
 
-// The automatic rig of a sequence: its rest frame, and the given frames in the poses fitted to
-// them.
+// Returns the automatic rig of a sequence: its rest frame, and the given frames in the poses that
+// were fitted to them.
 absl::StatusOr<RigSheetRow> SequenceRigRow(const std::string& label, const MeshSequence& sequence,
                                            const std::vector<int>& frames, const Session& session) {
   PLEAT_RETURN_IF_ERROR(CheckFrames(label, sequence, frames));

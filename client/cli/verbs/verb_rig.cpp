@@ -1,4 +1,4 @@
-// rig INPUT... --report r.json: the automatic rig of many inputs as one table.
+// rig INPUT... --report r.json: rigs many inputs automatically and shows the results as one table.
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>

@@ -1,4 +1,4 @@
-// sequences: what a store holds.
+// sequences: the mesh sequences of a service.
 #include "cli/io/frame_rate.h"
 #include "cli/show/info_json.h"
 #include "cli/verbs/stored_verb.h"

@@ -1,4 +1,4 @@
-// train INPUT... -o model.pleat: a character, computed here or on a server, with the same bytes.
+// train INPUT... -o model.pleat: trains a character, here or on a server, with the same bytes.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ namespace {
 struct TrainVerbOptions {
   std::vector<std::string> inputs;
   std::string output, report, fps, rig;
-  std::vector<std::string> locked;  // joints of `rig`
+  std::vector<std::string> locked;  // the joints of `rig` that are locked
   TrainFlags flags;
   TrainResources resources;
   bool detach = false;
@@ -46,10 +46,10 @@ struct TrainedModel {
   std::shared_ptr<const CharacterModel> model;
   std::string bytes;
   std::string id;                         // on the service that trained it, if one did
-  std::map<std::string, double> seconds;  // per stage
+  std::map<std::string, double> seconds;  // by the name of the stage
 };
 
-// `rig` may be null: found automatically.
+// Trains in this process. Without `rig`, which may be null, it finds one.
 absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips, const UserRig* rig,
                                        const TrainOptions& options, const TrainResources& resources,
                                        const Session& session) {
@@ -65,7 +65,7 @@ absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips, c
   return trained;
 }
 
-// The rig of --rig for the first clip, with the joints of --lock; none without --rig.
+// Returns the rig of --rig for the first clip, with the joints of --lock, or none without --rig.
 absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& options,
                                                    const MeshSequence& clip) {
   if (options.rig.empty()) return std::optional<UserRig>();
@@ -75,11 +75,11 @@ absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& optio
   return std::optional<UserRig>(std::move(rig));
 }
 
-// `rig` may be null: found automatically.
+// Uploads the clips and creates a job for them. Without `rig`, which may be null, it finds a rig.
 absl::StatusOr<JobInfo> CreateJob(CharacterService& service, const std::vector<MeshSequence>& clips,
                                   const UserRig* rig, const TrainOptions& options,
                                   const Session& session) {
-  // Without a name of its own the model is called like its first clip, as in TrainHere.
+  // A model without a name of its own is called like its first clip, as in TrainHere.
   TrainingRequest request{.options = options};
   if (rig) request.rig = EncodeRig(*rig);
   for (const MeshSequence& clip : clips) {
@@ -104,7 +104,7 @@ absl::StatusOr<TrainedModel> TrainOnService(CharacterService& service, const Job
   return trained;
 }
 
-// The steps of training that a report names; a learner's own stages count as "learn".
+// Returns the seconds of the steps that a report names. A learner's own stages count as "learn".
 std::map<std::string, double> StepSeconds(const std::map<std::string, double>& stage_seconds) {
   static const std::set<std::string> steps = {"queued", "read",   "rig",     "fit",
                                               "refine", "detail", "measure", "store"};
@@ -121,7 +121,7 @@ uint64_t PeakMemoryBytes() {
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
 }
 
-// Where to look: the frames and bones that skinning fits worst, and what smoothing did.
+// Prints where to look: the frames and bones that skinning fits worst, and what smoothing did.
 void PrintWorst(const CharacterModel& model, std::ostream& out) {
   const TrainingRecord& record = model.record();
   const bool several = std::any_of(record.worst_frames.begin(), record.worst_frames.end(),

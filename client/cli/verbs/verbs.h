@@ -1,5 +1,5 @@
-// The verbs of `pleat`: one function and one file (verb_<name>.cpp) each. A function adds its verb
-// to the parser; the verb runs later, through Session::run.
+// The verbs of `pleat`. Each has one function and one file (verb_<name>.cpp). The function adds the
+// verb to the parser; the verb runs later, through Session::run.
 #pragma once
 
 #include <functional>
@@ -11,18 +11,18 @@
 
 namespace pleat {
 
-// A verb with the flags that all verbs share (--quiet, --json). When the parser chooses it,
-// `run` becomes the session's.
+// Adds a verb with the flags that all verbs share (--quiet, --json). When the parser chooses it,
+// session.run becomes `run`.
 CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
                   const std::string& description, std::function<absl::Status()> run);
 
-// --server, --local, --data-dir: for verbs that can run on a server.
+// Adds --server, --local, --data-dir and the flags of TLS, for verbs that can run on a server.
 void AddServerFlags(CLI::App* verb, Session& session);
-// The same for verbs that run in this process unless --server or --data-dir is given, which is what
-// RunsOnService says.
+// Does the same for verbs that run in this process unless --server or --data-dir is given.
+// RunsOnService says which of the two it is.
 void AddOptionalServerFlags(CLI::App* verb, Session& session);
 bool RunsOnService(const Session& session);
-// --local alone, for verbs that always run in this process.
+// Adds --local alone, for verbs that always run in this process.
 void AddInProcessFlag(CLI::App* verb, Session& session);
 
 void AddGenerateVerb(CLI::App& app, Session& session);
