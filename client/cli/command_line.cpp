@@ -52,6 +52,7 @@ std::string Prefix(const std::vector<std::string>& arguments, const CLI::App& ap
 ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& session) {
   const std::unique_ptr<CLI::App> app = MakeParser(session);
   try {
+    // The parser takes the arguments from the back of the list.
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     app->parse(reversed);
   } catch (const CLI::Success& help) {
@@ -63,6 +64,7 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& sess
     return ExitCode::kUsage;
   }
 
+  // Pleat reports errors as statuses, but memory may run out anywhere, and other libraries throw.
   absl::Status status;
   try {
     status = session.run();

@@ -26,6 +26,7 @@ void Install(void (*handler)(int), int flags) {
 
 }  // namespace
 
+// SA_RESETHAND restores the default after the first signal, so the second one ends the process.
 void InstallInterruptHandler() { Install(Remember, SA_RESETHAND | SA_RESTART); }
 void ExitOnInterrupt() { Install(Leave, 0); }
 bool Interrupted() { return interrupted != 0; }

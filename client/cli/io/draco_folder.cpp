@@ -60,6 +60,8 @@ struct DracoFolder {
   int num_frames = 0;
 };
 
+// Reads stream.json. A folder may come from anywhere, so its header is as hostile as one from a
+// server.
 absl::StatusOr<DracoFolder> ParseHeader(const std::string& text, const std::string& path) {
   DracoFolder folder;
   try {

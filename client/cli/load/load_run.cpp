@@ -167,6 +167,8 @@ absl::StatusOr<LoadResult> RunLoad(RemotePoses& remote, const ClipQuery& charact
         std::move(session), poses, SendTimes(options, i),
         poses.size() * static_cast<size_t>(i) / static_cast<size_t>(options.num_clients), &stop));
   }
+  // The sessions are open by now. All clients share one start, a moment ahead, so that their
+  // threads have begun when the schedule does.
   const Clock::time_point start = Clock::now() + kNap;
   std::atomic<int> num_running = options.num_clients;
   std::vector<std::thread> threads;

@@ -143,6 +143,8 @@ std::shared_ptr<const CharacterModel> CharacterModel::WithRecord(TrainingRecord 
   return copy;
 }
 
+// Counts what grows with the mesh or with the training frames. Names, options and the record are
+// small and left out.
 size_t CharacterModel::memory_bytes() const {
   const size_t vertices = static_cast<size_t>(num_vertices());
   size_t bytes = sizeof(*this) + DetailModelBytes(*parts_.detail_model);

@@ -72,7 +72,7 @@ std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& 
     const std::set<int> wider = Grown(skeleton, near);
     DetailRegion region{std::move(weights[bone]), {}};
     for (std::set<int> moving : {all, wider, near}) {
-      moving.erase(0);  // the root has no features
+      moving.erase(0);  // the root moves vertices but has no features
       if (moving.empty()) continue;
       region.feature_sets.push_back(ColumnsOf(moving, num_joints, options));
     }

@@ -132,6 +132,8 @@ absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Trai
   const int num_rows = static_cast<int>(data.features.rows());
   if (num_rows < kMinFramesToValidate) return LearnerChoice::kGp;
   const RowSplit split = HoldOutBlocks(num_rows, data.clip_starts);
+  // The rows are held out, but not the basis of the details: it comes from all training frames and
+  // is the same for every candidate.
   LearningData part;
   part.features = data.features(split.train, Eigen::all);
   part.details = data.details;

@@ -59,6 +59,8 @@ absl::StatusOr<Eigen::Matrix4d> LocalTransform(const json& node) {
   return transform.matrix();
 }
 
+// Reads nodes, skin, skeleton and meshes, in this order, because each needs the one before. The
+// mesh is placed by the skin alone: glTF ignores the transform of a node whose mesh is skinned.
 class SkinReader {
  public:
   SkinReader(const GlbContainer& glb, const MeshLimits& limits) : glb_(glb), limits_(limits) {}

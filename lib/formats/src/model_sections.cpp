@@ -149,6 +149,8 @@ void WriteControl(const CharacterModel::Parts& parts, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(parts.upsampler.has_value()));
   if (!parts.upsampler) return;
   const RbfUpsampler::Matrix& matrix = parts.upsampler->matrix();
+  // The sparse V x C matrix is written as the number of entries of each row, then all columns, then
+  // all values.
   std::vector<uint32_t> row_sizes;
   std::vector<int32_t> columns;
   std::vector<float> values;
@@ -175,6 +177,7 @@ absl::Status ReadControl(ByteReader* reader, int num_vertices, std::vector<int>*
   std::vector<uint32_t> row_sizes;
   PLEAT_RETURN_IF_ERROR(
       ReadVector(reader, static_cast<uint64_t>(num_vertices), "upsampler rows", &row_sizes));
+  // The sum of 32-bit sizes cannot overflow here, and ReadVector checks it against the bytes left.
   uint64_t num_entries = 0;
   for (const uint32_t size : row_sizes) num_entries += size;
   std::vector<int32_t> columns;

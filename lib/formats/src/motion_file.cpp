@@ -53,6 +53,9 @@ absl::Status ReadNumbers(const json& value, const std::string& where, std::span<
   return absl::OkStatus();
 }
 
+// Reads the parsed JSON of a motion. The frames come in one of two forms: a list "frames", or the
+// two columns "root_translation" and "rotations". Joints that the file does not name stay at rest.
+// What a reader can repair becomes a warning; everything else is an error that says where it is.
 class MotionParser {
  public:
   MotionParser(const json& root, const Skeleton& skeleton, const MeshLimits& limits)

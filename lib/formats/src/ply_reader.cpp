@@ -106,6 +106,8 @@ class PlyBody {
   int64_t first_line_;
 };
 
+// Reads the elements in the order of the header. The body has no index: an element that is not
+// needed must still be read value by value, since its lists may have any length.
 class PlyParser {
  public:
   PlyParser(std::string_view bytes, const PlyHeader& header, const std::string& file,

@@ -129,6 +129,8 @@ class FrameFileReader {
                      options_.limits.max_sequence_bytes, " bytes"));
   }
 
+  // Runs on several threads. Each call writes only to the entries of its own frame, so the first
+  // fault by frame number is reported, whichever thread finished first.
   void ReadFrame(int t) {
     absl::StatusOr<MeshFile> mesh = ReadMesh(paths_[t], options_);
     faults_[t] = mesh.ok()

@@ -82,6 +82,7 @@ void EncoderPool::GiveBack(std::string key, FrameEncoder encoder) {
   std::lock_guard lock(mutex_);
   used_bytes_ += ChargeOf(encoder);
   entries_.push_front({std::move(key), std::move(encoder)});
+  // This drops the encoder itself when it is too large for the pool.
   while (used_bytes_ > capacity_bytes_) {
     used_bytes_ -= ChargeOf(entries_.back().encoder);
     entries_.pop_back();

@@ -76,6 +76,8 @@ absl::Status LocalJobs::Start() {
 absl::Status LocalJobs::Restore() {
   PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
                          files_->catalogue().List(EntryKind::kJob));
+  // The rigs of jobs are deleted here and nowhere else: those that no unfinished job needs any
+  // more, and those whose job was never created because the process ended in between.
   std::vector<StoredJob> jobs;
   std::set<std::string> needed_rigs;
   for (const CatalogueEntry& entry : entries) {
@@ -112,6 +114,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
   if (!request.rig.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const RigFile rig, runner_.DecodeUserRig(request.rig));
     PLEAT_RETURN_IF_ERROR(CheckRigCounts(rig, clips[0]));
+    // The rig is stored before the job, so that a job that exists finds its rig.
     draft.rig_id = ToHex(ComputeSha256(request.rig));
     PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kRig, {draft.rig_id, ""}, request.rig));
   }

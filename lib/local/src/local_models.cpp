@@ -18,7 +18,7 @@ absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() {
 
 absl::Status LocalModels::Delete(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));
-  cache_.Erase(id);
+  cache_.Erase(id);  // sessions that use the model keep it until they end
   return absl::OkStatus();
 }
 
@@ -35,6 +35,7 @@ absl::StatusOr<std::string> LocalModels::ReadBytes(const std::string& id, uint64
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const std::string& id) {
   using Loaded = ByteCache<CharacterModel>::Loaded;
   return cache_.Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
+    // Files of all kinds lie in one place; the row says that this one is a model.
     PLEAT_RETURN_IF_ERROR(files_->catalogue().Get(EntryKind::kModel, key).status());
     PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->blobs().Get(key));
     PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));

@@ -57,6 +57,9 @@ Eigen::VectorXd PoseFeatures::Reference(const PoseFeatureOptions& options, const
   assert(track.num_frames() > 0);
   const int num_joints = track.num_joints();
   const int k = NumCoordinates(options.representation);
+  // The coordinates of each frame are taken on the branch nearest to those of the frame before, so
+  // a rotation that passes 180 degrees goes on smoothly and the mean lies in the middle of the
+  // motion.
   Eigen::VectorXd current = NeutralReference(options.representation, num_joints);
   const Eigen::VectorXd neutral = current;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(current.size());

@@ -25,6 +25,7 @@ Pose SamplePose(const PoseTrack& track, int clip_begin, int clip_end, double pos
   assert(clip_begin < clip_end);
   if (clip_end - clip_begin == 1) return track.pose(clip_begin);
   const double clamped = std::clamp<double>(position, clip_begin - 1, clip_end - 1);
+  // Both frames are in the clip. The fraction is negative before it, and 1 at the last frame.
   const int before = std::clamp(static_cast<int>(std::floor(clamped)), clip_begin, clip_end - 2);
   return Interpolate(track.pose(before), track.pose(before + 1), clamped - before);
 }
