@@ -42,10 +42,9 @@ absl::Status CheckJointCount(const Pose& pose, int num_joints) {
 // joint, which has been placed by then and is the pivot.
 //
 // A bone scale s stretches the bone along its own direction u at rest and nothing else, by the
-// matrix S_b = I + (s - 1) u u^T. So R_b S_b = R_b + (s - 1) (R_b u) u^T, which is computed below
-// with
-// u = bone / |bone|. Children begin at the end of the stretched bone but are not stretched with it,
-// because R_b and not R_b S_b is passed on to them.
+// matrix S_b = I + (s - 1) u u^T. So R_b S_b = R_b + (s - 1) (R_b u) u^T, where u = bone / |bone|.
+// Children begin at the end of the stretched bone but are not stretched with it, because R_b and
+// not R_b S_b is passed on to them.
 void ComputeBoneTransforms(const Skeleton& skeleton, const Pose& pose,
                            const std::vector<double>& bone_scales, BoneTransforms* transforms) {
   const int num_joints = skeleton.num_joints();

@@ -56,8 +56,8 @@ struct LiveFrame {
 };
 
 // Send and SendDone may run on one thread while Receive runs on another one. Every pose gets one
-// answer, in order; with latest_wins, only the newest of those that wait gets one. After the last
-// call of either, the session may be destroyed.
+// answer, in order; with latest_wins, only the newest of those that wait gets one. Neither may be
+// running when the session is destroyed.
 class LiveSession {
  public:
   virtual ~LiveSession() = default;  // ends the session and waits for no more answers

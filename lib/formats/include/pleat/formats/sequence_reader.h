@@ -31,8 +31,7 @@ struct ReadSequenceOptions {
 // - a glob of such files ("dir/frame_*.obj")
 // - one .obj, .ply or .drc, which is a sequence of one frame
 // - a .pc2, whose mesh is the .obj or .ply of the same stem, or template.obj or template.ply, or
-// the
-//   only mesh of the folder with the right number of vertices, in this order
+//   the only mesh of the folder with the right number of vertices, in this order
 // - a Pleat sequence file (.pseq).
 //
 // Topology and appearance are those of the first frame. The errors name the file and the fault: the
