@@ -32,8 +32,8 @@ std::vector<Rgb> ErrorColors(const ColorScale& scale,
                              const Eigen::Ref<const Eigen::Matrix3Xd>& truth);
 
 // Returns a PNG with a row for each frame and a column for each of `columns`, whose tiles name the
-// mean and the largest error. The last column is the truth, without colors. frame_numbers: how the
-// frames of `truth` are called. kInvalidArgument when sizes differ.
+// mean and the largest error. The last column is the truth, without colors. frame_numbers: what the
+// frames of `truth` are called in the picture. kInvalidArgument when sizes differ.
 absl::StatusOr<std::string> RenderErrorSheet(const MeshSequence& truth,
                                              const std::vector<int>& frame_numbers,
                                              const std::vector<ErrorColumn>& columns,

@@ -23,7 +23,7 @@ namespace pleat {
 template <typename Info>
 struct StoredThings {
   std::string verb, description;
-  std::string kind;  // how messages and --help call one of them, such as "model"
+  std::string kind;  // what messages and --help call one of them, such as "model"
   absl::StatusOr<std::vector<Info>> (*list)(CharacterService& service);
   absl::Status (*remove)(CharacterService& service, const std::string& id);
   // Null when they cannot be downloaded.

@@ -79,7 +79,7 @@ absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& optio
 absl::StatusOr<JobInfo> CreateJob(CharacterService& service, const std::vector<MeshSequence>& clips,
                                   const UserRig* rig, const TrainOptions& options,
                                   const Session& session) {
-  // A model without a name of its own is called like its first clip, as in TrainHere.
+  // A model without a name of its own is named after its first clip, as in TrainHere.
   TrainingRequest request{.options = options};
   if (rig) request.rig = EncodeRig(*rig);
   for (const MeshSequence& clip : clips) {

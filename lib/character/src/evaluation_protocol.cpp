@@ -21,7 +21,7 @@ bool IsTestFrame(EvaluationProtocol protocol, int t, int num_frames) {
     case EvaluationProtocol::kEvery5th:
       return t % 5 == 2;
     case EvaluationProtocol::kBlocks10: {
-      const int start = t < 15 ? -1 : t - (t - 15) % 35;  // of the block that t may lie in
+      const int start = t < 15 ? -1 : t - (t - 15) % 35;  // where the block of t would begin
       return start >= 0 && start < num_frames - 5 && t < start + 10;
     }
     case EvaluationProtocol::kLast30:

@@ -123,7 +123,7 @@ bool NaturalLess(std::string_view a, std::string_view b) {
 absl::Status SortFrameFiles(std::vector<std::string>* paths) {
   std::sort(paths->begin(), paths->end(),
             [](const std::string& a, const std::string& b) { return NaturalLess(a, b); });
-  // The longest series is the one that is meant; anything beside it is a file gone astray.
+  // The longest series is the one that is meant; anything beside it is a stray file.
   std::map<std::string, std::vector<NameParts>> series;  // the files of each pattern
   for (const std::string& path : *paths) {
     NameParts parts = TakeApart(path);

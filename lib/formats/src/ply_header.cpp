@@ -11,7 +11,7 @@ namespace pleat {
 namespace {
 
 constexpr int kMaxHeaderLines = 10'000;
-constexpr size_t kMaxProperties = 1'000;  // of one element
+constexpr size_t kMaxProperties = 1'000;  // in one element
 
 std::optional<PlyScalar> ScalarFromName(std::string_view name) {
   constexpr std::pair<std::string_view, PlyScalar> kNames[] = {

@@ -24,7 +24,7 @@ void ClipInfoToProto(const Info& info, Message* message) {
   message->set_size_bytes(info.size_bytes);
 }
 
-// what: how errors call the message, such as "sequence".
+// what: the name of the message in errors, such as "sequence".
 template <typename Info, typename Message>
 absl::Status ClipInfoFromProto(const Message& message, const std::string& what, Info* info) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(message.id(), absl::StrCat(what, ".id")));

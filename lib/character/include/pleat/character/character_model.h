@@ -43,7 +43,7 @@ struct TrainingRecord {
   int num_frames = 0;            // the number of training frames
   int rest_frame = 0;            // the frame that was rigged
   double yaw_degrees = 0;        // the facing that was found, about +y from +z
-  double rig_residual = 0;       // of embedding the template; a value under .03 can be trusted
+  double rig_residual = 0;       // that of the embedding; a value under .03 can be trusted
   double diagonal_m = 0;         // bounding-box diagonal of the first frame, meters
   // The errors of the skinned rig alone and of the whole model on the training frames. Their
   // frame_mean_percent is not kept.
