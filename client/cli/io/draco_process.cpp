@@ -4,9 +4,8 @@
 // child can write it although nobody reads it yet, and it is read when the child has closed its
 // output.
 //
-// Nothing waits longer than kPollMs without looking at the deadline and at the cancellation.
-// However a run ends, the child is gone and its exit status taken when the Child object is
-// destroyed.
+// While output is awaited, the deadline and the cancellation are looked at every kPollMs. However a
+// run ends, the child is gone and its exit status taken when the Child object is destroyed.
 #include "cli/io/draco_process.h"
 
 #include <fcntl.h>

@@ -24,7 +24,7 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const Rem
                                            ChannelUse use);
 
 // Waits until the channel is connected, for at most options.connect_seconds. kUnavailable says why
-// it is not. When the two sides do not agree on encryption, it returns at once.
+// it is not. When the TLS handshake fails, it returns at once.
 absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
                                const std::string& address, const RemoteOptions& options);
 

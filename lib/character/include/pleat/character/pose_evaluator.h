@@ -39,7 +39,7 @@ struct PoseQuery {
   EvaluatedFrame* frame = nullptr;
   FrameParameters* parameters = nullptr;  // when given, it is filled in place of the frame
   // The evaluator whose scratch memory the query uses. It must be of the same model, serve no other
-  // query of the batch, and not be in use meanwhile. A batch of sessions that have evaluated before
+  // query of the batch, and not be in use by others. A batch of sessions that have evaluated before
   // then allocates nothing, whichever of them evaluates it. Null: the evaluating one uses memory of
   // its own.
   PoseEvaluator* scratch_of = nullptr;
