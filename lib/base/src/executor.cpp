@@ -29,8 +29,15 @@
 #include <utility>
 
 namespace pleat {
+namespace {
 
-Executor::Executor(int num_threads) {
+// More streams than a server plays at once. How many of them wait at the same moment depends on
+// the threads, so a queue that grew as needed would allocate at moments that nobody can foresee.
+constexpr size_t kExpectedTurns = 256;
+
+}  // namespace
+
+Executor::Executor(int num_threads) : turns_(std::vector<Turn>(kExpectedTurns)) {
   if (num_threads <= 0) num_threads = static_cast<int>(std::thread::hardware_concurrency());
   for (int i = 0; i < std::max(1, num_threads); ++i) threads_.emplace_back([this] { Work(); });
 }

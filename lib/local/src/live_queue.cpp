@@ -26,14 +26,19 @@ void PoseList::CopyFrom(const PoseList& other) {
 
 LiveQueue::LiveQueue(const LiveRules& rules, int depth, int num_joints)
     : rules_(rules), depth_(depth), num_joints_(num_joints) {
-  Pose pose;
-  pose.rotations.resize(num_joints_);
-  LiveTurn turn;
-  for (size_t h = 0; h < depth_; ++h) turn.poses.push_back(pose);
+  const LiveTurn turn = MakeTurn();
   recent_ = turn.poses;
   recent_.clear();
   waiting_ = RingQueue<LiveTurn>(std::vector<LiveTurn>(
       static_cast<size_t>(rules_.latest_wins ? 1 : rules_.max_in_flight), turn));
+}
+
+LiveTurn LiveQueue::MakeTurn() const {
+  Pose pose;
+  pose.rotations.resize(num_joints_);
+  LiveTurn turn;
+  for (size_t h = 0; h < depth_; ++h) turn.poses.push_back(pose);
+  return turn;
 }
 
 bool LiveQueue::HasRoom() const {

@@ -41,7 +41,10 @@ LocalPoseStream::LocalPoseStream(std::unique_ptr<LocalPoseSession> session, cons
       listener_(listener),
       session_(std::move(session)),
       queue_(rules, session_->model().options().history,
-             session_->model().skeleton().num_joints()) {}
+             session_->model().skeleton().num_joints()) {
+  turn_ = queue_.MakeTurn();
+  poses_.reserve(turn_.poses.size());
+}
 
 bool LocalPoseStream::HasRoom() const {
   std::lock_guard lock(mutex_);

@@ -39,6 +39,7 @@ constexpr size_t kExpectedModels = 16;
 
 void PoseBatcher::MakeBatches() {
   waiting_.reserve(kExpectedModels);
+  unused_.reserve(static_cast<size_t>(executor_->num_threads()));
   for (int t = 0; t < executor_->num_threads(); ++t) {
     auto batch = std::make_unique<Batch>();
     batch->works.reserve(static_cast<size_t>(most_together_));

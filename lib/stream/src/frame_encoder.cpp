@@ -178,9 +178,23 @@ struct FrameEncoder::State {
     return EncodeDracoPointCloud(*cloud, header.box, speed, &key);
   }
 
-  // Makes room for the frames that follow, so that the first difference is the last to allocate:
-  // one that is larger than a key frame is not sent.
-  void Reserve(std::string* bytes) const { bytes->reserve(key.size() + key.size() / 2); }
+  // Allocates what differences need, so that the first one finds it.
+  void ReserveDeltas() {
+    for (Eigen::Matrix3Xi* matrix : {&last, &now, &movement, &residuals}) {
+      matrix->resize(3, header.num_vertices);
+    }
+    writer.Reserve(header.num_vertices);
+  }
+
+  // Makes room for every frame of the session: the coordinates as plain bits, five of them for
+  // positions outside of the box. What is larger than a key frame is not sent. The room is the same
+  // for every frame, because a caller gives several strings in turn, and each would have to grow
+  // after a key frame that is larger than those before.
+  void Reserve(std::string* bytes) const {
+    constexpr size_t kOverhead = 1024;  // headers, tables of frequencies
+    const auto bits = static_cast<size_t>(3 * (header.box.bits + 5));
+    bytes->reserve(static_cast<size_t>(header.num_vertices) * bits / 8 + kOverhead);
+  }
 
   absl::Status EncodeDelta(const Eigen::Ref<const Eigen::Matrix3Xf>& positions,
                            std::string* bytes) {
@@ -266,6 +280,7 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(
     PLEAT_ASSIGN_OR_RETURN(const FrameDecoder view, FrameDecoder::Create(header));
     state->predictor.emplace(view.topology(), view.reference(), header.box);
     state->residual_cloud = MakeDracoResidualCloud(header.num_vertices);
+    state->ReserveDeltas();
   }
   return FrameEncoder(std::move(state));
 }

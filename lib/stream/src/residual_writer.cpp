@@ -44,7 +44,20 @@ uint32_t ZigZag(int value) {
   return (static_cast<uint32_t>(value) << 1) ^ static_cast<uint32_t>(value >> 31);
 }
 
+// A symbol takes less than three bytes, the last state four.
+size_t MostBytes(size_t num_symbols) { return 3 * num_symbols + 8; }
+
 }  // namespace
+
+void ResidualWriter::Reserve(int num_vertices) {
+  const auto num_symbols = static_cast<size_t>(num_vertices);
+  for (Channel& channel : channels_) {
+    channel.symbols.reserve(num_symbols);
+    channel.counts.reserve(kMaxSymbol + 1);
+    channel.steps.reserve(kMaxSymbol + 1);
+    channel.bytes.reserve(MostBytes(num_symbols));
+  }
+}
 
 bool ResidualWriter::CountSymbols(const Eigen::Matrix3Xi& residuals, int c) {
   Channel& channel = channels_[c];
@@ -57,7 +70,6 @@ bool ResidualWriter::CountSymbols(const Eigen::Matrix3Xi& residuals, int c) {
     largest = std::max(largest, channel.symbols[i]);
   }
   if (largest > kMaxSymbol) return false;
-  channel.counts.reserve(kMaxSymbol + 1);
   channel.counts.assign(largest + 1, 0);
   for (const uint32_t symbol : channel.symbols) ++channel.counts[symbol];
   channel.num_used = channel.counts.size() - static_cast<size_t>(std::count(
@@ -75,7 +87,6 @@ void ResidualWriter::Normalize(Channel* channel) {
   const int64_t target = int64_t{1} << channel->precision_bits;
   const auto total = static_cast<int64_t>(channel->symbols.size());
 
-  channel->steps.reserve(kMaxSymbol + 1);
   channel->steps.assign(counts.size(), Step());
   int64_t sum = 0, above_one = 0;
   size_t most_frequent = 0;
@@ -126,7 +137,7 @@ void ResidualWriter::EncodeSymbols() {
   uint8_t* out[3];
   for (int c = 0; c < 3; ++c) {
     Channel& channel = channels_[c];
-    channel.bytes.resize(3 * count + 8);  // a symbol takes less than 3 bytes, the last state 4
+    channel.bytes.resize(MostBytes(count));
     out[c] = channel.bytes.data();
     precision[c] = uint32_t{1} << channel.precision_bits;
     state[c] = kLowestState * precision[c];

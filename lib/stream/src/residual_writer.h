@@ -11,10 +11,12 @@ namespace pleat {
 
 // Writes sequential Draco point clouds with three int32 attributes of one component each and
 // without prediction. EncodeDracoResiduals makes the same kind of cloud with Draco itself and takes
-// four times as long. One writer serves one thread: it owns scratch memory, which has its final
-// size after the first frame.
+// four times as long. One writer serves one thread: it owns scratch memory.
 class ResidualWriter {
  public:
+  // Gives the scratch memory the size that frames of `num_vertices` can need at most.
+  void Reserve(int num_vertices);
+
   // residuals: 3 x V. Returns false when they are too large, or too few for the number of different
   // values; Draco itself then finds a smaller form.
   bool Write(const Eigen::Matrix3Xi& residuals, std::string* bytes);

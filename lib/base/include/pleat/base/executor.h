@@ -34,7 +34,7 @@ class Executor {
   // Queues `task`, which must not throw. `flow` says whose task it is: a flow gets one task per
   // round, however many of its tasks wait. The flow 0 stands for a flow of the task's own; posting
   // to it allocates nothing when the captures of the task fit into std::function itself (two
-  // pointers) and the queue has been as long before.
+  // pointers) and no more than 256 turns wait, or as many have waited before.
   void Post(std::function<void()> task, uint64_t flow = 0);
   int num_threads() const { return static_cast<int>(threads_.size()); }
 

@@ -67,6 +67,8 @@ class LiveQueue {
   bool empty() const { return waiting_.empty(); }
   // Says whether a pose waits and its reply may be sent now.
   bool ready() const;
+  // Returns a turn with memory for the longest history, for Take to fill again and again.
+  LiveTurn MakeTurn() const;
   // Takes out the pose to answer next and counts its reply as sent. Call it when a pose waits.
   // `turn` is overwritten and keeps its memory.
   void Take(LiveTurn* turn);
