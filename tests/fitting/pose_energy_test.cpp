@@ -70,7 +70,7 @@ TEST_F(PoseEnergyTest, GradientAgreesWithDifferences) {
   }
 }
 
-TEST_F(PoseEnergyTest, GaussNewtonMatrixIsTheCurvatureOfTheLinearisedVertices) {
+TEST_F(PoseEnergyTest, GaussNewtonMatrixIsTheCurvatureOfTheLinearizedVertices) {
   // E of vertices moved linearly along a tangent d is E + g.d + d.H.d / 2 exactly, so H is checked
   // through the Jacobian: |J d|^2 = d.H.d / 2, with J d by central differences of the vertices.
   const PoseEnergy energy = MakeEnergy(7, 0, 0);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <latch>
 #include <set>
 #include <thread>
 
@@ -71,16 +72,17 @@ TEST_F(LocalCharacterServiceTest, EverythingSurvivesARestart) {
 
 TEST_F(LocalCharacterServiceTest, AJobThatWasRunningGoesOnAfterARestart) {
   Open();
-  trainer_.step_ms = 50;
+  trainer_.Hold();
   const std::string sequence_id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
   const std::string running = service_->jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   const std::string waiting =
       service_->jobs().CreateTraining({.sequence_ids = {sequence_id}, .options = {.seed = 2}})->id;
-  while (trainer_.num_started == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  trainer_.step_ms = 0;
+  trainer_.WaitUntilHeld();
   Open();
+  trainer_.Release();
   EXPECT_EQ(RunToEnd(running).state, JobState::kSucceeded);
   EXPECT_EQ(RunToEnd(waiting).state, JobState::kSucceeded);
+  EXPECT_EQ(trainer_.num_started, 3);
 }
 
 TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays) {
@@ -89,8 +91,20 @@ TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays
   const CompressOptions options{.max_error_mm = .2};
   const std::string sequence_id = service_->sequences().Upload(large, {})->id;
   const std::string job = service_->jobs().CreateCompression(sequence_id, options)->id;
-  while (service_->jobs().Get(job)->stage != "encode") {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  {
+    // Listeners are called where the job reports: this one stops it in its encoding until the
+    // service shuts down.
+    std::latch encoding(1);
+    const auto witness = service_->jobs().Subscribe(job, [] {}).value();
+    const auto subscription = service_->jobs().Subscribe(job, [&] {
+      if (witness->current().info.stage != "encode") return;
+      if (!encoding.try_wait()) encoding.count_down();
+      while (witness->status().ok()) std::this_thread::yield();
+    });
+    ASSERT_THAT(subscription, IsOk());
+    encoding.wait();
+    service_->Shutdown();
+    EXPECT_EQ(service_->jobs().Get(job)->state, JobState::kQueued);
   }
   Open();
   const JobInfo done = RunToEnd(job);
@@ -131,7 +145,7 @@ TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
 
 TEST_F(LocalCharacterServiceTest, AnOwnRigSurvivesARestartAndGoesWithItsJob) {
   Open();
-  trainer_.step_ms = 50;
+  trainer_.Hold();
   const MeshSequence tube = MakeSwayingTube(5);
   const std::string id = service_->sequences().Upload(tube, {})->id;
   const Rig known = MakeFakeModel(tube, {})->rig();
@@ -142,8 +156,8 @@ TEST_F(LocalCharacterServiceTest, AnOwnRigSurvivesARestartAndGoesWithItsJob) {
   EXPECT_EQ(waiting.state, JobState::kQueued);
   const std::string path =
       folder_.path() + "/blobs/" + waiting.rig_id.substr(0, 2) + "/" + waiting.rig_id;
-  trainer_.step_ms = 0;
   Open();
+  trainer_.Release();
   EXPECT_TRUE(std::filesystem::exists(path) || IsFinal(service_->jobs().Get(waiting.id)->state));
   const JobInfo job = RunToEnd(waiting.id);
   ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
@@ -275,12 +289,13 @@ TEST_F(LocalCharacterServiceTest, DamagedFilesAreNoticed) {
 
 TEST_F(LocalCharacterServiceTest, AJobWhoseSequenceIsGoneFailsWithAReason) {
   Open();
-  trainer_.step_ms = 5;
+  trainer_.Hold();
   const std::string a = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
   const std::string b = service_->sequences().Upload(MakeSwayingTube(6), {})->id;
   ASSERT_THAT(service_->jobs().CreateTraining({.sequence_ids = {a}}), IsOk());
   const std::string job = service_->jobs().CreateTraining({.sequence_ids = {b}})->id;
   ASSERT_THAT(service_->sequences().Delete(b), IsOk());
+  trainer_.Release();
   const JobInfo info = RunToEnd(job);
   EXPECT_EQ(info.state, JobState::kFailed);
   EXPECT_THAT(info.error, HasStatus(absl::StatusCode::kNotFound, HasSubstr("sequence")));
@@ -288,15 +303,20 @@ TEST_F(LocalCharacterServiceTest, AJobWhoseSequenceIsGoneFailsWithAReason) {
 
 TEST_F(LocalCharacterServiceTest, ShutdownEndsWatchers) {
   Open();
-  trainer_.step_ms = 100;
+  trainer_.Hold();
   const std::string id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
   ASSERT_THAT(service_->jobs().CreateTraining({.sequence_ids = {id}}), IsOk());
   const std::string waiting = service_->jobs().CreateTraining({.sequence_ids = {id}})->id;
+  std::latch watching(1);
   std::thread stopper([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    watching.wait();
     service_->Shutdown();
   });
-  EXPECT_THAT(WatchJob(service_->jobs(), waiting, [](const JobInfo&) { return true; }),
+  EXPECT_THAT(WatchJob(service_->jobs(), waiting,
+                       [&](const JobInfo&) {
+                         if (!watching.try_wait()) watching.count_down();
+                         return true;
+                       }),
               HasStatus(absl::StatusCode::kUnavailable, testing::_));
   stopper.join();
 }

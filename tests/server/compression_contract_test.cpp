@@ -94,10 +94,11 @@ TEST_P(CompressionContractTest, AJobGivesTheBytesAndTheReportOfALocalRun) {
 
 TEST_P(CompressionContractTest, JobsOfBothKindsShareOneQueue) {
   const std::string id = service_.sequences().Upload(MakeSwayingTube(20), {})->id;
-  running_.trainer().step_ms = 5;
+  running_.trainer().Hold();
   const std::string training =
       service_.jobs().CreateTraining({.sequence_ids = {id}, .model_name = "m"})->id;
   const std::string compression = service_.jobs().CreateCompression(id, {})->id;
+  running_.trainer().Release();
   EXPECT_EQ(WatchToEnd(compression).state, JobState::kSucceeded);
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, service_.jobs().List());
   ASSERT_EQ(jobs.size(), 2u);

@@ -13,8 +13,9 @@ namespace {
 
 class JobSubscriptionTest : public testing::Test {
  protected:
-  std::string CreateJob(int step_ms) {
-    running_.trainer().step_ms = step_ms;
+  // A job that does not end before the trainer is released.
+  std::string CreateJob() {
+    running_.trainer().Hold();
     const std::string id = running_.service().sequences().Upload(MakeSwayingTube(5), {})->id;
     return running_.service().jobs().CreateTraining({.sequence_ids = {id}})->id;
   }
@@ -23,10 +24,11 @@ class JobSubscriptionTest : public testing::Test {
 };
 
 TEST_F(JobSubscriptionTest, WatchesAgainWhenTheServerComesBack) {
-  const std::string job = CreateJob(20);
+  const std::string job = CreateJob();
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto subscription,
                              running_.service().jobs().Subscribe(job, [] {}));
   running_.RestartServer(0);
+  running_.trainer().Release();
   EXPECT_EQ(WatchToEnd(running_.local().jobs(), job).state, JobState::kSucceeded);
   while (!IsFinal(subscription->current().info.state)) {
     ASSERT_THAT(subscription->status(), IsOk());
@@ -35,7 +37,7 @@ TEST_F(JobSubscriptionTest, WatchesAgainWhenTheServerComesBack) {
 }
 
 TEST_F(JobSubscriptionTest, EndsWithAReasonWhenNoServerComesBack) {
-  const std::string job = CreateJob(500);
+  const std::string job = CreateJob();
   RemoteOptions options;
   options.max_attempts = 2;
   const auto client = RemoteCharacterService::Connect(running_.address(), options).value();
@@ -58,7 +60,7 @@ TEST_F(JobSubscriptionTest, EndsWithAReasonWhenNoServerComesBack) {
 }
 
 TEST_F(JobSubscriptionTest, CanBeGivenUpAtAnyTime) {
-  const std::string job = CreateJob(500);
+  const std::string job = CreateJob();
   for (int i = 0; i < 5; ++i) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto subscription,
                                running_.service().jobs().Subscribe(job, [] {}));

@@ -81,11 +81,12 @@ TEST_P(StreamDoorsContractTest, AModelLeavesInPieces) {
 
 TEST_P(StreamDoorsContractTest, ASubscriptionShowsAJobUntilItIsFinal) {
   const std::string sequence = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
-  running_.trainer().step_ms = 2;
+  running_.trainer().Hold();
   const std::string job = service_.jobs().CreateTraining({.sequence_ids = {sequence}})->id;
   std::atomic<int> num_rings = 0;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto subscription,
                              service_.jobs().Subscribe(job, [&] { ++num_rings; }));
+  running_.trainer().Release();
   EXPECT_EQ(WatchToEnd(service_.jobs(), job).state, JobState::kSucceeded);
   // The two observers of a server are told in no certain order.
   uint64_t revision = 0;

@@ -76,7 +76,6 @@ TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
 
 TEST_F(StreamingTest, AWatcherThatDoesNotReadGetsTheNewestStateLater) {
   const std::string sequence_id = running_.service().sequences().Upload(MakeSwayingTube(5), {})->id;
-  running_.trainer().step_ms = 5;
   const std::string job_id =
       running_.service().jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   const auto stub = v1::JobService::NewStub(channel());
@@ -162,7 +161,7 @@ TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
   const std::string id = running_.TrainModel();
   const auto model = running_.local().models().Acquire(id).value();
   const std::string sequence_id = running_.service().sequences().List()->at(0).id;
-  running_.trainer().step_ms = 200;
+  running_.trainer().Hold();
   const std::string job_id =
       running_.service().jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   std::atomic<bool> watching = false;

@@ -1,12 +1,13 @@
-// Training that takes as long as a test wants and gives a small model of the clip's own mesh.
+// Training that stops where a test wants and gives a small model of the clip's own mesh.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <memory>
-#include <thread>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -110,10 +111,25 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
   return CharacterModel::Create(std::move(parts)).value();
 }
 
+// Trains in 20 steps that take no time, and stops where it is told.
 class FakeTrainer {
  public:
-  std::atomic<int> step_ms = 0;  // how long each of the 20 steps takes
   std::atomic<int> num_started = 0;
+
+  // From now on trainings report `step` of 20 and stop there, until Release, a later step given
+  // here, or their cancellation.
+  void HoldAt(int step) {
+    std::lock_guard lock(mutex_);
+    hold_at_ = step;
+    changed_.notify_all();
+  }
+  void Hold() { HoldAt(kNumSteps / 2); }
+  void Release() { HoldAt(kNumSteps); }
+  // Returns when a training has stopped.
+  void WaitUntilHeld() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return num_held_ > 0; });
+  }
 
   auto function() {
     return
@@ -122,17 +138,37 @@ class FakeTrainer {
                const Progress& progress) -> absl::StatusOr<std::shared_ptr<const CharacterModel>> {
           ++num_started;
           const Progress learning = progress.Stage("learn", 0, 1);
-          for (int step = 0; step < 20; ++step) {
-            if (absl::Status status = learning.Report(step / 20.0, 100.0 - step); !status.ok()) {
+          for (int step = 0; step < kNumSteps; ++step) {
+            const double fraction = step / static_cast<double>(kNumSteps);
+            if (absl::Status status = learning.Report(fraction, 100.0 - step); !status.ok()) {
               return status;
             }
-            std::this_thread::sleep_for(std::chrono::milliseconds(step_ms));
+            PassHold(step, learning);
           }
           if (options.iterations == 13)
             return absl::FailedPreconditionError("no human-like rig fits");
           return MakeFakeModel(clips[0], options);
         };
   }
+
+ private:
+  static constexpr int kNumSteps = 20;
+
+  void PassHold(int step, const Progress& progress) {
+    std::unique_lock lock(mutex_);
+    ++num_held_;
+    changed_.notify_all();
+    while (step >= hold_at_ && !progress.cancelled()) {
+      // A cancellation rings no bell, so it is asked for.
+      changed_.wait_for(lock, std::chrono::milliseconds(1));
+    }
+    --num_held_;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int hold_at_ = kNumSteps;  // guarded by mutex_
+  int num_held_ = 0;         // guarded by mutex_
 };
 
 // A motion of a model's skeleton.
