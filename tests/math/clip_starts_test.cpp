@@ -37,5 +37,16 @@ TEST(ClipStartsTest, EveryFrameIsInOneClip) {
   }
 }
 
+TEST(ClipStartsTest, TheRangesOfAllClipsFollowEachOther) {
+  int num_frames = 0, num_clips = 0;
+  for (const ClipRange& range : ClipRanges({0, 2, 3}, 9)) {
+    EXPECT_EQ(range.clip, num_clips++);
+    EXPECT_EQ(range.begin, num_frames);
+    EXPECT_EQ(range.end, range.clip == 0 ? 2 : range.clip == 1 ? 3 : 9);
+    num_frames = range.end;
+  }
+  EXPECT_EQ(num_clips, 3);
+}
+
 }  // namespace
 }  // namespace pleat

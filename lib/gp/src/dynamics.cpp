@@ -2,16 +2,18 @@
 
 #include <algorithm>
 
+#include "pleat/math/clip_starts.h"
+
 namespace pleat {
 
 DynamicsRows MakeDynamicsRows(const std::vector<int>& clip_starts, int num_rows, int order) {
   DynamicsRows rows;
   rows.order = order;
-  for (size_t c = 0; c < clip_starts.size(); ++c) {
-    const int begin = clip_starts[c];
-    const int end = c + 1 < clip_starts.size() ? clip_starts[c + 1] : num_rows;
+  for (const ClipRange& clip : ClipRanges(clip_starts, num_rows)) {
     // The first `order` rows of each clip have no predecessors in it.
-    for (int t = begin; t < end; ++t) (t - begin < order ? rows.firsts : rows.targets).push_back(t);
+    for (int t = clip.begin; t < clip.end; ++t) {
+      (t - clip.begin < order ? rows.firsts : rows.targets).push_back(t);
+    }
   }
   return rows;
 }

@@ -29,4 +29,10 @@ ClipRange ClipOfFrame(const std::vector<int>& clip_starts, int num_frames, int t
           .end = next == clip_starts.end() ? num_frames : *next};
 }
 
+std::vector<ClipRange> ClipRanges(const std::vector<int>& clip_starts, int num_frames) {
+  std::vector<ClipRange> ranges;
+  for (const int start : clip_starts) ranges.push_back(ClipOfFrame(clip_starts, num_frames, start));
+  return ranges;
+}
+
 }  // namespace pleat

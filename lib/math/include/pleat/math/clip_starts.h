@@ -19,5 +19,7 @@ struct ClipRange {
 };
 // clip_starts: valid for `num_frames`, which is above t.
 ClipRange ClipOfFrame(const std::vector<int>& clip_starts, int num_frames, int t);
+// All clips in order.
+std::vector<ClipRange> ClipRanges(const std::vector<int>& clip_starts, int num_frames);
 
 }  // namespace pleat
