@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "absl/strings/str_cat.h"
+#include "input_check.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 
@@ -12,22 +13,12 @@ namespace {
 
 absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
                         const std::vector<int>& vertices) {
-  const int num_vertices = sequence.num_vertices();
-  if (rig.weights.num_vertices() != num_vertices || rig.rest_positions.cols() != num_vertices) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("details: the rig has ", rig.weights.num_vertices(),
-                     " vertices, the sequence has ", num_vertices, "; use the rig of this mesh"));
-  }
-  if (track.num_frames() != sequence.num_frames()) {
-    return absl::InvalidArgumentError(absl::StrCat("details: the pose track has ",
-                                                   track.num_frames(), " frames, the sequence has ",
-                                                   sequence.num_frames()));
-  }
-  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, rig.skeleton.num_joints()));
+  PLEAT_RETURN_IF_ERROR(CheckRigOfSequence("details", sequence, rig));
+  PLEAT_RETURN_IF_ERROR(CheckTrackOfSequence("details", sequence, rig, track));
   for (const int v : vertices) {
-    if (v < 0 || v >= num_vertices) {
+    if (v < 0 || v >= sequence.num_vertices()) {
       return absl::InvalidArgumentError(
-          absl::StrCat("details: vertex ", v, " is not in [0, ", num_vertices, ")"));
+          absl::StrCat("details: vertex ", v, " is not in [0, ", sequence.num_vertices(), ")"));
     }
   }
   return absl::OkStatus();

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
+#include "input_check.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/moments.h"
@@ -32,8 +32,8 @@ class PoseFitter {
         energy_(chain_, rig.skeleton, options.bend_stiffness * stiffness_unit_),
         frames_(sequence.num_frames()),
         clip_of_(sequence.num_frames()) {
-    for (size_t c = 0; c < options.clip_starts.size(); ++c) {
-      std::fill(clip_of_.begin() + options.clip_starts[c], clip_of_.end(), static_cast<int>(c));
+    for (const ClipRange& clip : ClipRanges(options.clip_starts, sequence.num_frames())) {
+      std::fill(clip_of_.begin() + clip.begin, clip_of_.begin() + clip.end, clip.clip);
     }
   }
 
@@ -251,24 +251,13 @@ class PoseFitter {
   std::optional<double> unsmoothed_rms_m_, unsmoothed_jitter_rad_;
 };
 
-absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig,
-                        const PoseFitOptions& options) {
-  const int num_vertices = sequence.num_vertices();
-  if (rig.weights.num_vertices() != num_vertices || rig.rest_positions.cols() != num_vertices) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("pose fit: the rig has ", rig.weights.num_vertices(), " skinned and ",
-                     rig.rest_positions.cols(), " rest vertices, the sequence '", sequence.name(),
-                     "' has ", num_vertices, "; use the rig of this mesh"));
-  }
-  return CheckClipStarts(options.clip_starts, sequence.num_frames());
-}
-
 }  // namespace
 
 absl::StatusOr<PoseTrack> FitPoses(const MeshSequence& sequence, const Rig& rig,
                                    const PoseFitOptions& options, PoseFitSummary* summary,
                                    const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, options));
+  PLEAT_RETURN_IF_ERROR(CheckRigOfSequence("pose fit", sequence, rig));
+  PLEAT_RETURN_IF_ERROR(CheckClipStarts(options.clip_starts, sequence.num_frames()));
   PoseFitter fitter(sequence, rig, options);
   PLEAT_RETURN_IF_ERROR(fitter.Run(progress));
   PLEAT_ASSIGN_OR_RETURN(PoseTrack track, fitter.Track());

@@ -38,6 +38,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "input_check.h"
 #include "joint_step.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
@@ -190,18 +191,8 @@ class RigRefiner {
 
 absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
                         const RigRefinementOptions& options) {
-  if (rig.weights.num_vertices() != sequence.num_vertices() ||
-      rig.rest_positions.cols() != sequence.num_vertices()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "rig refinement: the rig has ", rig.weights.num_vertices(), " vertices, the sequence ",
-        sequence.num_vertices(), "; use the rig of this mesh"));
-  }
-  if (track.num_frames() != sequence.num_frames()) {
-    return absl::InvalidArgumentError(absl::StrCat("rig refinement: the pose track has ",
-                                                   track.num_frames(), " frames, the sequence ",
-                                                   sequence.num_frames()));
-  }
-  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, rig.skeleton.num_joints()));
+  PLEAT_RETURN_IF_ERROR(CheckRigOfSequence("rig refinement", sequence, rig));
+  PLEAT_RETURN_IF_ERROR(CheckTrackOfSequence("rig refinement", sequence, rig, track));
   for (const int j : options.locked_joints) {
     if (j < 0 || j >= rig.skeleton.num_joints()) {
       return absl::InvalidArgumentError(absl::StrCat("rig refinement: locked joint ", j, " of ",
