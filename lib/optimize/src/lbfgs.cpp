@@ -194,9 +194,7 @@ absl::StatusOr<Eigen::VectorXd> Lbfgs::Run(const Eigen::VectorXd& start,
       break;
     }
   }
-  summary.evaluations = evaluations_;
-  summary.final_objective = value_;
-  summary.final_gradient = LargestEntry(gradient_);
+  ReportEnd(evaluations_, value_, gradient_, &summary);
   return x_;
 }
 

@@ -178,9 +178,7 @@ absl::StatusOr<Eigen::VectorXd> ScaledConjugateGradients::Run(const Eigen::Vecto
     }
     ChooseDirection(accepted);
   }
-  summary.evaluations = evaluations_;
-  summary.final_objective = value_;
-  summary.final_gradient = LargestEntry(gradient_);
+  ReportEnd(evaluations_, value_, gradient_, &summary);
   return x_;
 }
 

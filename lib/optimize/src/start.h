@@ -1,4 +1,4 @@
-// The common entry of both optimizers.
+// How both optimizers begin and end.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/progress.h"
 #include "pleat/optimize/objective.h"
+#include "pleat/optimize/summary.h"
 
 namespace pleat {
 
@@ -35,6 +36,14 @@ inline absl::Status EvaluateStart(Objective& objective, const Eigen::VectorXd& s
 // Returns the largest absolute entry, which the tolerance of gradients is compared with.
 inline double LargestEntry(const Eigen::VectorXd& v) {
   return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+}
+
+// Writes down where a run has ended.
+inline void ReportEnd(int evaluations, double value, const Eigen::VectorXd& gradient,
+                      OptimizationSummary* summary) {
+  summary->evaluations = evaluations;
+  summary->final_objective = value;
+  summary->final_gradient = LargestEntry(gradient);
 }
 
 }  // namespace pleat
