@@ -77,7 +77,11 @@ uint64_t EdgeKey(int from, int to) {
 // One walk over the surface that codes or decodes; both directions make the same choices.
 class ConnectivityWalk {
  public:
-  // known: the mesh to encode, or null.
+  // Encodes `known`.
+  ConnectivityWalk(const Topology& known, BinaryCoder* encoder)
+      : ConnectivityWalk(known.num_vertices(), known.num_faces(), known.num_corners(), &known,
+                         encoder) {}
+  // known: the mesh to encode, or null to decode one of so many vertices, faces and corners.
   ConnectivityWalk(int num_vertices, int num_faces, int num_corners, const Topology* known,
                    BinaryCoder* coder)
       : num_faces_(num_faces),
@@ -350,16 +354,13 @@ class ConnectivityWalk {
 
 std::vector<FaceVisit> VisitOrder(const Topology& topology) {
   BinaryCoder ignored = BinaryCoder::ForEncoding();
-  ConnectivityWalk walk(topology.num_vertices(), topology.num_faces(), topology.num_corners(),
-                        &topology, &ignored);
+  ConnectivityWalk walk(topology, &ignored);
   walk.Run().IgnoreError();  // only damaged code fails
   return walk.visits();
 }
 
 void EncodeTopology(const Topology& topology, BinaryCoder* coder) {
-  ConnectivityWalk walk(topology.num_vertices(), topology.num_faces(), topology.num_corners(),
-                        &topology, coder);
-  walk.Run().IgnoreError();  // only damaged code fails
+  ConnectivityWalk(topology, coder).Run().IgnoreError();  // only damaged code fails
 }
 
 absl::StatusOr<Topology> DecodeTopology(int num_vertices, int num_faces, int num_corners,

@@ -36,6 +36,9 @@ uint32_t Hash(uint32_t a, uint32_t b, uint32_t c) {
 // One pass over the list that codes or decodes; both directions see the same candidates.
 class FaceListCoder {
  public:
+  FaceListCoder(const Topology& known, BinaryCoder* encoder)
+      : FaceListCoder(known.num_vertices(), known.num_faces(), known.num_corners(), &known,
+                      encoder) {}
   FaceListCoder(int num_vertices, int num_faces, int num_corners, const Topology* known,
                 BinaryCoder* coder)
       : num_faces_(num_faces),
@@ -215,9 +218,7 @@ class FaceListCoder {
 }  // namespace
 
 void EncodeFaceList(const Topology& topology, BinaryCoder* coder) {
-  FaceListCoder list(topology.num_vertices(), topology.num_faces(), topology.num_corners(),
-                     &topology, coder);
-  list.Run().IgnoreError();  // only damaged code fails
+  FaceListCoder(topology, coder).Run().IgnoreError();  // only damaged code fails
 }
 
 absl::StatusOr<Topology> DecodeFaceList(int num_vertices, int num_faces, int num_corners,
