@@ -8,7 +8,11 @@ namespace pleat {
 
 using nlohmann::ordered_json;
 
-ordered_json SequenceJson(const SequenceInfo& info) {
+namespace {
+
+// What stored sequences and compressed ones say alike.
+template <typename Info>
+ordered_json StoredMeshesJson(const Info& info) {
   return {{"id", info.id},
           {"name", info.name},
           {"num_frames", info.num_frames},
@@ -17,6 +21,10 @@ ordered_json SequenceJson(const SequenceInfo& info) {
           {"fps", info.frame_rate.fps()},
           {"size_bytes", info.size_bytes}};
 }
+
+}  // namespace
+
+ordered_json SequenceJson(const SequenceInfo& info) { return StoredMeshesJson(info); }
 
 const char* JobKindName(const JobInfo& info) {
   return std::holds_alternative<TrainOptions>(info.options) ? "training" : "compression";
@@ -72,13 +80,7 @@ ordered_json ModelJson(const ModelInfo& info) {
 }
 
 ordered_json CompressedSequenceJson(const CompressedSequenceInfo& info) {
-  ordered_json json = {{"id", info.id},
-                       {"name", info.name},
-                       {"num_frames", info.num_frames},
-                       {"num_vertices", info.num_vertices},
-                       {"num_faces", info.num_faces},
-                       {"fps", info.frame_rate.fps()},
-                       {"size_bytes", info.size_bytes}};
+  ordered_json json = StoredMeshesJson(info);
   if (info.record) {
     json["sequence_id"] = info.record->sequence_id;
     json["options"] = OptionsJson(info.record->options);
