@@ -2,6 +2,10 @@
 // that decode to the evaluator's positions.
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <optional>
+#include <string>
+
 #include "pleat/base/sha256.h"
 #include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
@@ -11,48 +15,67 @@
 #include "pleat/local/local_character_service.h"
 #include "pleat/performer/performer.h"
 #include "pleat/remote/remote_character_service.h"
+#include "server/watch_to_end.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {
 
-TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const Performer performer,
-      GeneratePerformer({.num_frames = 40, .num_vertices = 1200, .frame_rate = {30, 1}}));
-  // The server trains what it read from the file, so that is the input here too.
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence,
-                             DecodeSequence(EncodeSequence(performer.sequence)));
-  TrainOptions options;
-  options.learner = LearnerChoice::kGp;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
-                             TrainCharacter({sequence}, options, {.num_threads = 1}));
+class TrainingOverNetworkTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    PLEAT_ASSERT_OK_AND_ASSIGN(service_, LocalCharacterService::Open({.data_dir = folder_.path()}));
+    PLEAT_ASSERT_OK_AND_ASSIGN(server_, GrpcServer::Start(service_.get(), {}));
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        client_, RemoteCharacterService::Connect("127.0.0.1:" + std::to_string(server_->port())));
+    options_.learner = LearnerChoice::kGp;
+  }
 
-  TemporaryFolder folder;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto service,
-                             LocalCharacterService::Open({.data_dir = folder.path()}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto server, GrpcServer::Start(service.get(), {}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(
-                                                    "127.0.0.1:" + std::to_string(server->port())));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo uploaded,
-                             client->sequences().Upload(performer.sequence, {}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const JobInfo created,
-      client->jobs().CreateTraining({.sequence_ids = {uploaded.id}, .options = options}));
+  // Generates a performer and uploads it.
+  void Perform(int num_frames, int num_vertices) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(performer_, GeneratePerformer({.num_frames = num_frames,
+                                                              .num_vertices = num_vertices,
+                                                              .frame_rate = {30, 1}}));
+    // The server trains what it read from the file, so that is the input here too.
+    PLEAT_ASSERT_OK_AND_ASSIGN(sequence_, DecodeSequence(EncodeSequence(performer_->sequence)));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo uploaded,
+                               client_->sequences().Upload(performer_->sequence, {}));
+    sequence_id_ = uploaded.id;
+  }
+
+  // Trains on the server, with `rig` unless it is empty.
+  void Train(const std::string& rig, JobInfo* job, std::string* model_bytes) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const JobInfo created,
+        client_->jobs().CreateTraining(
+            {.sequence_ids = {sequence_id_}, .options = options_, .rig = rig}));
+    *job = WatchToEnd(client_->jobs(), created.id);
+    ASSERT_EQ(job->state, JobState::kSucceeded) << job->error;
+    PLEAT_ASSERT_OK_AND_ASSIGN(*model_bytes, client_->models().Download(job->result_id, {}));
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<LocalCharacterService> service_;
+  std::unique_ptr<GrpcServer> server_;
+  std::unique_ptr<RemoteCharacterService> client_;
+  TrainOptions options_;
+  std::optional<Performer> performer_;  // from Perform
+  std::optional<MeshSequence> sequence_;
+  std::string sequence_id_;
+};
+
+TEST_F(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
+  ASSERT_NO_FATAL_FAILURE(Perform(40, 1200));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
+                             TrainCharacter({*sequence_}, options_, {.num_threads = 1}));
   JobInfo job;
-  ASSERT_THAT(WatchJob(client->jobs(), created.id,
-                       [&](const JobInfo& info) {
-                         job = info;
-                         return true;
-                       }),
-              IsOk());
-  ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes, client->models().Download(job.result_id, {}));
+  std::string bytes;
+  ASSERT_NO_FATAL_FAILURE(Train("", &job, &bytes));
   EXPECT_TRUE(bytes == EncodeModel(*model)) << "the model bytes differ";
 
   ClipQuery query{.model_id = job.result_id,
-                  .track = performer.truth.track.Subset({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}),
+                  .track = performer_->truth.track.Subset({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}),
                   .bone_scales = {}};
   std::vector<EvaluatedFrame> truth;
   ASSERT_THAT(PoseEvaluator(model).EvaluateClip(query.track, {},
@@ -66,7 +89,7 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
     std::optional<FrameDecoder> decoder;
     double worst_steps = 0;
     ASSERT_THAT(
-        StreamClip(client->poses(), query, {.encoding = encoding},
+        StreamClip(client_->poses(), query, {.encoding = encoding},
                    {.on_header =
                         [&](const StreamHeader& header) {
                           decoder.emplace(FrameDecoder::Create(header).value());
@@ -90,43 +113,23 @@ TEST(TrainingOverNetworkTest, GivesTheBytesAndFramesOfALocalRun) {
 
 // A rig of the user's own: with weights, without them, and of the weights of joints, as another
 // package writes them.
-TEST(TrainingOverNetworkTest, AnOwnRigGivesTheBytesOfALocalRun) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const Performer performer,
-      GeneratePerformer({.num_frames = 8, .num_vertices = 600, .frame_rate = {30, 1}}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence,
-                             DecodeSequence(EncodeSequence(performer.sequence)));
-  TrainOptions options;
-  options.learner = LearnerChoice::kGp;
-  TemporaryFolder folder;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto service,
-                             LocalCharacterService::Open({.data_dir = folder.path()}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto server, GrpcServer::Start(service.get(), {}));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(
-                                                    "127.0.0.1:" + std::to_string(server->port())));
-  const std::string sequence_id = client->sequences().Upload(performer.sequence, {})->id;
-  const UserRig full{performer.truth.rig.skeleton, performer.truth.rig.weights, 0, {5, 9}};
+TEST_F(TrainingOverNetworkTest, AnOwnRigGivesTheBytesOfALocalRun) {
+  ASSERT_NO_FATAL_FAILURE(Perform(8, 600));
+  const UserRig full{performer_->truth.rig.skeleton, performer_->truth.rig.weights, 0, {5, 9}};
   UserRig skeleton_only = full;
   skeleton_only.weights.reset();
   std::string of_joints = EncodeRig(full);
   of_joints.replace(of_joints.find("\"bones\""), 7, "\"joints\"");
   for (const std::string& text : {EncodeRig(full), EncodeRig(skeleton_only), of_joints}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigJson(text));
-    PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, ResolveRig(file, sequence));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, ResolveRig(file, *sequence_));
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::shared_ptr<const CharacterModel> model,
-                               TrainCharacterWithRig({sequence}, rig, options));
-    PLEAT_ASSERT_OK_AND_ASSIGN(
-        JobInfo job, client->jobs().CreateTraining(
-                         {.sequence_ids = {sequence_id}, .options = options, .rig = text}));
+                               TrainCharacterWithRig({*sequence_}, rig, options_));
+    JobInfo job;
+    std::string bytes;
+    ASSERT_NO_FATAL_FAILURE(Train(text, &job, &bytes));
     EXPECT_EQ(job.rig_id, ToHex(ComputeSha256(text)));
-    ASSERT_THAT(WatchJob(client->jobs(), job.id,
-                         [&](const JobInfo& info) {
-                           job = info;
-                           return true;
-                         }),
-                IsOk());
-    ASSERT_EQ(job.state, JobState::kSucceeded) << job.error;
-    EXPECT_TRUE(*client->models().Download(job.result_id, {}) == EncodeModel(*model));
+    EXPECT_TRUE(bytes == EncodeModel(*model)) << "the model bytes differ";
   }
 }
 
