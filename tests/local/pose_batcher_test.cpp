@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <future>
 #include <memory>
 #include <thread>
@@ -35,6 +37,7 @@ class Show final : public PoseWork {
     num_together = together;
     if (query != nullptr) status = query->status;
     if (order_ != nullptr) order_->push_back(this);
+    if (then) then();
   }
   const Pose& pose() const { return pose_; }
 
@@ -42,6 +45,7 @@ class Show final : public PoseWork {
   int num_together = -1;
   absl::Status status;
   EvaluatedFrame frame;
+  std::function<void()> then;  // after it was evaluated
 
  private:
   PoseEvaluator evaluator_;
@@ -117,6 +121,32 @@ TEST_F(PoseBatcherTest, ModelsAreNotMixedAndAManyTimesUsedOneStarvesNoOther) {
   EvaluatedFrame frame;
   ASSERT_THAT(PoseEvaluator(rare).Evaluate({&last->pose()}, {}, &frame), IsOk());
   EXPECT_EQ(last->frame.positions, frame.positions);
+}
+
+// Sessions whose poses never run out. Every batch answers four of them and takes one turn: were
+// there a turn for every answer, the other model would wait longer the later it came.
+TEST_F(PoseBatcherTest, WorkThatComesBackAtOnceDoesNotPileUpTurns) {
+  constexpr size_t kNumShows = 8, kTogether = 4, kArrival = 200, kEnd = 1000;
+  const auto popular = FakeModel(1), rare = FakeModel(2);
+  std::vector<std::unique_ptr<Show>> shows;
+  const auto late = MakeShow(rare, 3);
+  {
+    auto executor = std::make_unique<Executor>(1);
+    PoseBatcher batcher(executor.get(), kTogether);
+    Hold hold(executor.get());
+    for (size_t i = 0; i < kNumShows; ++i) {
+      shows.push_back(MakeShow(popular, static_cast<int>(i % 5)));
+      shows.back()->then = [&, show = shows.back().get()] {
+        if (order_.size() == kArrival) batcher.Submit(rare.get(), late.get());
+        if (order_.size() < kEnd) batcher.Submit(popular.get(), show);
+      };
+      batcher.Submit(popular.get(), shows.back().get());
+    }
+    hold.Release();
+    executor.reset();  // waits for all work, which uses the batcher
+  }
+  const auto place = std::find(order_.begin(), order_.end(), late.get()) - order_.begin();
+  EXPECT_LE(static_cast<size_t>(place), kArrival + (kNumShows + 1) * kTogether);
 }
 
 TEST_F(PoseBatcherTest, WorkThatIsWithdrawnOrWrongDisturbsNobody) {

@@ -1,10 +1,12 @@
 // Two queues meet here. The executor decides when a thread works, by turns; the lines in waiting_
 // decide what it does in its turn. Submit puts a work at the end of its model's line and then posts
-// one turn for the model. A turn does not belong to the work that brought it: it takes the works at
-// the front of the line, several at once if they are there. The turns that these works brought find
-// an empty line later, and return. The other way around is impossible: the work enters the line
-// before its turn is posted, and a turn that finds a line takes at least one work from it, so there
-// are never more works in a line than turns to come. No work is forgotten.
+// one turn for the model, if there are fewer turns to come than works. A turn does not belong to
+// the work that brought it: it takes the works at the front of the line, several at once if they
+// are there. The turns that these works brought serve works that come later, or find an empty line
+// and return. A turn takes at least one work where there is one, so there are never more works in a
+// line than turns to come: no work is forgotten. There are also never more turns than works have
+// been in the line at once. Sessions that come back at once would otherwise bring several turns for
+// each that is used, and under load the round of the executor would grow for ever.
 //
 // How many a turn takes: an equal share of the line for each thread, rounded up. Two works on two
 // threads are two batches of one, since a core that does nothing costs more than a batch saves.
@@ -17,8 +19,8 @@
 // comes as late as possible: it picks the pose, and a newer one may have replaced the pose that
 // Submit was called for.
 //
-// `model` is a key here and is never dereferenced. A late turn may outlive its model; if another
-// model has its address by then, that one gets a turn more than it needs.
+// `model` is a key here and is never dereferenced. A late turn may outlive its model, and so does
+// the line until then; another model that has its address by then continues that line.
 //
 // What is allocated, and when: as many batches as the executor has threads, with the first Submit;
 // room for kExpectedModels lines at the same time; nothing for a frame. Works are linked through a
@@ -49,26 +51,40 @@ void PoseBatcher::MakeBatches() {
   has_batches_ = true;
 }
 
+std::vector<PoseBatcher::Line>::iterator PoseBatcher::FindLine(const CharacterModel* model) {
+  return std::find_if(waiting_.begin(), waiting_.end(),
+                      [model](const Line& line) { return line.model == model; });
+}
+
 void PoseBatcher::Submit(const CharacterModel* model, PoseWork* work) {
   {
     std::lock_guard lock(mutex_);
     if (!has_batches_) MakeBatches();
-    auto line = std::find_if(waiting_.begin(), waiting_.end(),
-                             [model](const Line& line) { return line.model == model; });
+    auto line = FindLine(model);
     if (line == waiting_.end()) line = waiting_.insert(line, Line{.model = model});
     work->next_waiting_ = nullptr;
     (line->size == 0 ? line->first : line->last->next_waiting_) = work;
     line->last = work;
-    ++line->size;
+    if (++line->size <= line->num_turns) return;
+    ++line->num_turns;
   }
   executor_->Post([this, model] { Run(model); });
 }
 
+void PoseBatcher::RemoveWithoutTurns(std::vector<Line>::iterator line) {
+  if (line->num_turns > 0) return;
+  *line = waiting_.back();  // the order of lines does not matter
+  waiting_.pop_back();
+}
+
 std::unique_ptr<PoseBatcher::Batch> PoseBatcher::TakeBatch(const CharacterModel* model) {
   std::lock_guard lock(mutex_);
-  const auto line = std::find_if(waiting_.begin(), waiting_.end(),
-                                 [model](const Line& line) { return line.model == model; });
-  if (line == waiting_.end()) return nullptr;
+  const auto line = FindLine(model);
+  --line->num_turns;
+  if (line->size == 0) {
+    RemoveWithoutTurns(line);
+    return nullptr;
+  }
   const auto num_threads = static_cast<size_t>(executor_->num_threads());
   const size_t share = (line->size + num_threads - 1) / num_threads;
   // There are as many batches as threads, and a turn has at most one, so one is there.
@@ -79,10 +95,7 @@ std::unique_ptr<PoseBatcher::Batch> PoseBatcher::TakeBatch(const CharacterModel*
     line->first = line->first->next_waiting_;
     --line->size;
   }
-  if (line->size == 0) {  // the order of lines does not matter
-    *line = waiting_.back();
-    waiting_.pop_back();
-  }
+  RemoveWithoutTurns(line);
   return batch;
 }
 

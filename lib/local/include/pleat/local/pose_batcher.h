@@ -37,10 +37,10 @@ class PoseWork {
 };
 
 // A matrix product of several poses reads the model from memory once, which makes a batch cheaper
-// than its poses one by one. Every work brings one turn of the executor, so sessions of other
-// models wait for at most one batch where they would have waited for one pose. The work that has
-// waited longest is always in the next batch of its model. Nothing is allocated for a frame, unless
-// more models have work at once than ever before. Thread-safe.
+// than its poses one by one. Every work brings at most one turn of the executor, so sessions of
+// other models wait for at most one batch where they would have waited for one pose. The work that
+// has waited longest is always in the next batch of its model. Nothing is allocated for a frame,
+// unless more models have work at once than ever before. Thread-safe.
 class PoseBatcher {
  public:
   // most_together: the largest number of works in a batch; 1 evaluates them one by one. The
@@ -60,6 +60,7 @@ class PoseBatcher {
     PoseWork* first = nullptr;
     PoseWork* last = nullptr;
     size_t size = 0;
+    size_t num_turns = 0;  // of the executor, still to come: never fewer than works
   };
   // Works that are evaluated together. Batches are used again for the sake of their memory.
   struct Batch {
@@ -72,7 +73,12 @@ class PoseBatcher {
   void MakeBatches();
   // One turn of the executor.
   void Run(const CharacterModel* model);
-  // Takes the next batch of `model`. Returns null when earlier turns have taken all works.
+  // Returns the line of `model`, or waiting_.end(). Call it with mutex_ held.
+  std::vector<Line>::iterator FindLine(const CharacterModel* model);
+  // Removes a line whose turns have all come, so that it is empty too.
+  void RemoveWithoutTurns(std::vector<Line>::iterator line);
+  // Takes the next batch of `model`, for a turn that has come. Returns null when earlier turns have
+  // taken all works.
   std::unique_ptr<Batch> TakeBatch(const CharacterModel* model);
   // Evaluates a batch that is prepared and not empty, and hands the queries to their works.
   static void Evaluate(Batch* batch);
@@ -81,7 +87,7 @@ class PoseBatcher {
   const int most_together_;
   std::mutex mutex_;
   // All three are guarded by mutex_.
-  std::vector<Line> waiting_;                   // the lines that are not empty, in any order
+  std::vector<Line> waiting_;                   // the lines with turns to come, in any order
   std::vector<std::unique_ptr<Batch>> unused_;  // one for each thread without a batch
   bool has_batches_ = false;
 };
