@@ -23,9 +23,9 @@
 // The wish for a key frame is passed on before the frame is encoded and survives a failure: the
 // encoder remembers it until a frame succeeds.
 //
-// Memory: the queue is allocated with the stream; turn, pointers and reply grow with the first
-// answers and are used again. The listener gets reply_ by reference, may exchange the frame in it,
-// and leaves the rest. OnReply may destroy this object, so nothing follows it.
+// Memory: the queue, the turn and the pointers are allocated with the stream; the reply grows with
+// the first answer and is used again. The listener gets reply_ by reference, may exchange the frame
+// in it, and leaves the rest. OnReply may destroy this object, so nothing follows it.
 #include "local_pose_stream.h"
 
 #include <new>

@@ -57,9 +57,9 @@ class FrameEncoder {
   // In a kDracoDelta stream the frame is a difference from the frame encoded before it, or a key
   // frame where that is cheaper. Every frame must therefore reach the decoder, in order.
   //
-  // `bytes` are replaced and keep their memory. After the first difference, further differences
-  // allocate nothing, except where ResidualWriter leaves the residuals to Draco. All other frames
-  // are encoded by Draco, which allocates.
+  // `bytes` are replaced and keep their memory. Into bytes that have held a frame of this session,
+  // differences allocate nothing, except where ResidualWriter leaves the residuals to Draco. All
+  // other frames are encoded by Draco, which allocates.
   absl::Status Encode(const Eigen::Ref<const Eigen::Matrix3Xf>& positions, std::string* bytes);
   // Does the same and returns a new string.
   absl::StatusOr<std::string> Encode(const Eigen::Ref<const Eigen::Matrix3Xf>& positions);
