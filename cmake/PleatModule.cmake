@@ -46,8 +46,8 @@ function(pleat_add_module name)
 endfunction()
 
 # pleat_add_tests(gp) builds the *_test.cpp of this folder (of its subfolder gp, where there is one)
-# into gp_test and registers every case with CTest. LIBRARIES adds what the tests use beyond the
-# module itself and tests/support.
+# into gp_test and registers every case with CTest. Subfolders with a CMakeLists.txt of their own are
+# other tests. LIBRARIES adds what the tests use beyond the module itself and tests/support.
 function(pleat_add_tests name)
   cmake_parse_arguments(ARG "" "PRECOMPILED" "LIBRARIES" ${ARGN})
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
@@ -55,6 +55,11 @@ function(pleat_add_tests name)
     string(APPEND folder /${name})
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*_test.cpp ${folder}/*/*_test.cpp)
+  file(GLOB others ${folder}/*/CMakeLists.txt)
+  foreach(other IN LISTS others)
+    cmake_path(GET other PARENT_PATH other)
+    list(FILTER sources EXCLUDE REGEX "^${other}/")
+  endforeach()
   if(NOT sources)
     message(FATAL_ERROR "${folder} has no *_test.cpp")
   endif()

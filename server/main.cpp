@@ -27,7 +27,7 @@ int Run(const ServerOptions& options) {
     std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
     return 2;
   }
-  // Blocked in every thread, so that only sigwait below sees them.
+  // Every thread blocks these signals, so that only sigwait below sees them.
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
@@ -46,7 +46,7 @@ int Run(const ServerOptions& options) {
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
   const std::string address = Address(options.grpc, (*server)->port());
-  // On standard output, so that a script can wait for it and read the port.
+  // This line goes to standard output, so that a script can wait for it and read the port.
   std::printf("listening on %s\n", address.c_str());
   std::fflush(stdout);
   spdlog::info("pleatd {} listening on {}, data in {}, {} workers", PLEAT_VERSION, address,

@@ -15,11 +15,11 @@ struct ServerOptions {
   LocalServiceOptions service;
   GrpcServerOptions grpc;
   LoggingOptions logging;
-  double drain_seconds = 10;  // how long running calls may go on after SIGTERM
+  double drain_seconds = 10;  // running calls may go on for so long after SIGTERM
 };
 
-// What the command line asks for: options, or a text to print and an exit code (--help, --version,
-// wrong flags). Reads the certificate files.
+// What the command line asks for: options, or a text to print and an exit code (for --help, for
+// --version and for wrong flags). Parsing reads the certificate files.
 struct CommandLine {
   ServerOptions options;
   bool exit = false;

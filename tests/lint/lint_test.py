@@ -69,6 +69,8 @@ PLANTED = {
     "randomness": ({"lib/gp/src/a.cpp": "std::mt19937 random;\n"}, {"tests/gp/a_test.cpp": "std::mt19937 random;\n"}),
     "fast-math": ({"lib/gp/CMakeLists.txt": "add_compile_options(-ffast-math)\n"},
                   {"lib/gp/CMakeLists.txt": "# no -ffast-math\nadd_compile_options(-ffp-contract=off)\n"}),
+    "reactor-ownership": ({"server/handlers/src/a.cpp": "class A : public grpc::ServerUnaryReactor {};\n"},
+                          {"server/handlers/src/a.cpp": "class A : public CallReactor<grpc::ServerUnaryReactor> {};\n"}),
     "dynamic-cast": ({"client/cli/verbs/a.cpp": "dynamic_cast<Remote*>(service);\n"},
                      {"tests/stream/a_test.cpp": "dynamic_cast<Remote*>(service);\n"}),
     "sleep": ({"tests/jobs/a_test.cpp": "std::this_thread::sleep_for(seconds(1));\n"},

@@ -102,6 +102,9 @@ RULES = (
     Rule("fast-math", "the same bytes give the same model: no fast-math, no contraction", "text",
          r"^[^#]*-(?:ffast-math|Ofast|funsafe-math|fassociative-math|ffp-contract=(?:fast|on))",
          suffixes=("CMakeLists.txt", ".cmake", "CMakePresets.json")),
+    Rule("reactor-ownership", "a reactor is a CallReactor, made by StartReactor: call_reactor.h says who owns it", "code",
+         r"\bdelete\s+this\b|\bnew\s+\w*(?:Reactor|Stream)\b|\bpublic\s+grpc::Server\w+Reactor\b",
+         where=("server/",)),
     Rule("dynamic-cast", "a cast to the concrete type breaks the contract of the interface", "code",
          r"\bdynamic_cast\b", where=PROGRAMS),
     # Tests and words.

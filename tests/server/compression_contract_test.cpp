@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <thread>
 
 #include "pleat/base/random.h"
 #include "pleat/base/sha256.h"
@@ -224,10 +223,10 @@ TEST_P(CompressionContractTest, CancellationActsWithinASecond) {
   const std::string id =
       service_.sequences().Upload(MakeSwayingTube(200, "large", 100, 60), {})->id;
   const std::string job = service_.jobs().CreateCompression(id, {.max_error_mm = .1})->id;
-  while (service_.jobs().Get(job)->stage != "encode") {
-    ASSERT_FALSE(IsFinal(service_.jobs().Get(job)->state));
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  ASSERT_THAT(
+      WatchJob(service_.jobs(), job, [](const JobInfo& info) { return info.stage != "encode"; }),
+      IsOk());
+  ASSERT_FALSE(IsFinal(service_.jobs().Get(job)->state));
   const auto start = std::chrono::steady_clock::now();
   EXPECT_THAT(service_.jobs().Cancel(job), IsOk());
   EXPECT_EQ(WatchToEnd(job).state, JobState::kCancelled);

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <set>
-#include <thread>
 
 #include "pleat/base/sha256.h"
 #include "pleat/formats/model_file.h"
@@ -129,9 +128,9 @@ TEST_P(ContractTest, CancellationActsWithinASecond) {
   const std::string waiting = service_.jobs().CreateTraining({.sequence_ids = {id}})->id;
   EXPECT_THAT(service_.jobs().Cancel(waiting), IsOk());
   EXPECT_EQ(service_.jobs().Get(waiting)->state, JobState::kCancelled);
-  while (service_.jobs().Get(running)->state == JobState::kQueued) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  ASSERT_THAT(WatchJob(service_.jobs(), running,
+                       [](const JobInfo& info) { return info.state == JobState::kQueued; }),
+              IsOk());
   const auto start = std::chrono::steady_clock::now();
   EXPECT_THAT(service_.jobs().Cancel(running), IsOk());
   EXPECT_EQ(WatchToEnd(running).state, JobState::kCancelled);

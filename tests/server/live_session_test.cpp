@@ -6,6 +6,7 @@
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -17,7 +18,6 @@
 namespace pleat {
 namespace {
 
-using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 using Stream = grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>;
 
@@ -50,13 +50,9 @@ class LiveSessionTest : public testing::Test {
     return (frame.positions - truth).cwiseAbs().maxCoeff() /
            session.decoder().header().box.step_m();
   }
-  template <typename Condition>
-  static bool Eventually(Condition condition) {
-    for (int i = 0; i < 500; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(milliseconds(10));
-    }
-    return false;
+  // Waits until `count`, which somebody increments and notifies, is at least `least`.
+  static void WaitFor(const std::atomic<int>& count, int least) {
+    for (int now = count; now < least; now = count) count.wait(now);
   }
   // A session by hand, for what the client library does not do.
   std::unique_ptr<Stream> OpenRaw(grpc::ClientContext* context, int max_in_flight,
@@ -199,29 +195,30 @@ TEST_F(LiveSessionTest, TheLatestPoseWinsWhereTheReaderIsSlow) {
                              Open({.stream = {.encoding = FrameEncoding::kDracoDelta},
                                    .max_in_flight = 2,
                                    .latest_wins = true}));
-  for (int t = 0; t < track.num_frames(); ++t) {  // nobody reads
-    ASSERT_THAT(session->Send(t, track.pose(t)), IsOk());
-  }
-  std::this_thread::sleep_for(milliseconds(100));
-  int num_frames = 0, num_superseded = 0;
+  // A pose at a time is answered at once.
   LiveFrame frame;
-  do {
-    ASSERT_THAT(session->Receive(&frame), IsOk());
-    const int t = static_cast<int>(frame.number);
-    EXPECT_LE(Steps(*session, frame, Truth(track, t)), .505) << "history of pose " << t;
-    ++num_frames;
-    num_superseded += frame.num_superseded;
-  } while (frame.number + 1 < static_cast<uint64_t>(track.num_frames()));
-  EXPECT_EQ(num_frames + num_superseded, track.num_frames());
-  EXPECT_LE(num_frames, 4) << "two under way, and what the acknowledgements let through";
-  // A pose at a time is answered at once, whatever the credits.
   for (int t = 0; t < 10; ++t) {
-    ASSERT_THAT(session->Send(t, track.pose(t), {}, t == 0), IsOk());
+    ASSERT_THAT(session->Send(t, track.pose(t)), IsOk());
     ASSERT_THAT(session->Receive(&frame), IsOk());
     EXPECT_EQ(frame.number, static_cast<uint64_t>(t));
   }
+  // Now nobody reads, and after the last pose no acknowledgement can come.
+  for (int t = 10; t < track.num_frames(); ++t) {
+    ASSERT_THAT(session->Send(t, track.pose(t)), IsOk());
+  }
   session->SendDone();
-  EXPECT_THAT(session->Receive(&frame), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
+  int num_frames = 0, num_superseded = 0, last = 0;
+  absl::Status status;
+  while ((status = session->Receive(&frame)).ok()) {
+    last = static_cast<int>(frame.number);
+    EXPECT_LE(Steps(*session, frame, Truth(track, last)), .505) << "history of pose " << last;
+    ++num_frames;
+    num_superseded += frame.num_superseded;
+  }
+  EXPECT_THAT(status, HasStatus(absl::StatusCode::kOutOfRange, testing::_));
+  EXPECT_EQ(last + 1, track.num_frames());
+  EXPECT_EQ(num_frames + num_superseded, track.num_frames() - 10);
+  EXPECT_LE(num_frames, 3) << "two under way, and the last one";
 }
 
 TEST_F(LiveSessionTest, FramesWaitForAcknowledgements) {
@@ -232,9 +229,7 @@ TEST_F(LiveSessionTest, FramesWaitForAcknowledgements) {
   stream->Write(PoseMessage(1));
   ASSERT_TRUE(stream->Read(&response));
   EXPECT_EQ(response.frame().number(), 1u);
-  for (int i = 2; i < 10; ++i) stream->Write(PoseMessage(i));
-  std::this_thread::sleep_for(milliseconds(50));
-  stream->Write(PoseMessage(10));  // the server has had time to answer 2, were it allowed to
+  for (int i = 2; i <= 10; ++i) stream->Write(PoseMessage(i));  // none may be answered yet
   v1::LiveSessionRequest acknowledgement;
   acknowledgement.mutable_acknowledgement()->set_frames_received(1);
   stream->Write(acknowledgement);
@@ -253,20 +248,22 @@ TEST_F(LiveSessionTest, FramesWaitForAcknowledgements) {
 TEST_F(LiveSessionTest, ASenderWaitsForItsCreditsAndEveryPoseIsAnswered) {
   const PoseTrack track = MakeMotion(model_->skeleton(), 200);
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, Open({.max_in_flight = 3}));
-  std::atomic<int> num_sent = 0;
+  std::atomic<int> num_sent = 0, num_received = 0;
   std::thread sender([&] {
     for (int t = 0; t < track.num_frames(); ++t) {
       EXPECT_THAT(session->Send(t, track.pose(t)), IsOk());
-      ++num_sent;
+      // The frame that is being received now has given its credit back already.
+      EXPECT_LE(++num_sent, num_received + 1 + 3);
+      num_sent.notify_one();
     }
     session->SendDone();
   });
-  std::this_thread::sleep_for(milliseconds(50));
-  EXPECT_EQ(num_sent, 3);
+  WaitFor(num_sent, 3);  // the sender goes as far as it may before anybody reads
   LiveFrame frame;
   for (int t = 0; t < track.num_frames(); ++t) {
     ASSERT_THAT(session->Receive(&frame), IsOk());
     EXPECT_EQ(frame.number, static_cast<uint64_t>(t));
+    ++num_received;
   }
   EXPECT_THAT(session->Receive(&frame), HasStatus(absl::StatusCode::kOutOfRange, testing::_));
   sender.join();
@@ -286,7 +283,8 @@ TEST_F(LiveSessionTest, AReaderThatStopsDelaysNobodyAndGoesAway) {
   EXPECT_LT(SecondsSince(start), 5);
   EXPECT_EQ(running_.local().models().cache_stats().num_pinned, 2);
   stalled.clear();
-  EXPECT_TRUE(Eventually([&] { return running_.local().models().cache_stats().num_pinned == 1; }));
+  running_.server().Shutdown(600);  // returns when all calls have ended
+  EXPECT_EQ(running_.local().models().cache_stats().num_pinned, 1);
 }
 
 // One client floods the server with calls, 24 at a time; another one edits.
@@ -304,10 +302,11 @@ TEST_F(LiveSessionTest, AFloodOfCallsStarvesNoSession) {
         grpc::ClientContext context;
         v1::EvaluatePoseResponse response;
         num_answered += stub_->EvaluatePose(&context, request, &response).ok();
+        num_answered.notify_one();
       }
     });
   }
-  EXPECT_TRUE(Eventually([&] { return num_answered > 24; }));
+  WaitFor(num_answered, 25);
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, Open());
   LiveFrame frame;
   const int before = num_answered;

@@ -3,7 +3,7 @@
 #include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <latch>
 #include <thread>
 
 #include "pleat/formats/sequence_file.h"
@@ -12,12 +12,12 @@
 #include "pleat/v1/sequence_service.grpc.pb.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "server/running_service.h"
+#include "server/watch_to_end.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
 namespace {
 
-using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
 class StreamingTest : public testing::Test {
@@ -25,15 +25,8 @@ class StreamingTest : public testing::Test {
   std::shared_ptr<grpc::Channel> channel() {
     return grpc::CreateChannel(running_.address(), grpc::InsecureChannelCredentials());
   }
-  // Waits until `condition` holds, at most five seconds.
-  template <typename Condition>
-  static bool Eventually(Condition condition) {
-    for (int i = 0; i < 500; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(milliseconds(10));
-    }
-    return false;
-  }
+  // Longer than any test: a shutdown that returns has seen every call end by itself.
+  static constexpr double kLongDrainSeconds = 600;
 
   RunningService running_{
       Reach::kSocket, {}, {.max_receive_bytes = 4 << 20, .max_open_streams = 8}};
@@ -65,13 +58,13 @@ TEST_F(StreamingTest, AClientThatNeverReadsCostsLittleAndGoesAway) {
     v1::EvaluateClipResponse response;
     ASSERT_TRUE(reader->Read(&response));
     EXPECT_TRUE(response.has_header());
-    std::this_thread::sleep_for(milliseconds(100));
     EXPECT_EQ(running_.local().models().cache_stats().num_pinned, 1);
     context.TryCancel();
     reader->Finish();
   }
-  // The stalled stream has let go of the model, but this test still holds it.
-  EXPECT_TRUE(Eventually([&] { return model.use_count() == 2; }));
+  running_.server().Shutdown(kLongDrainSeconds);
+  // The stalled stream has let go of the model, but this test and the cache still hold it.
+  EXPECT_EQ(model.use_count(), 2);
 }
 
 TEST_F(StreamingTest, AWatcherThatDoesNotReadGetsTheNewestStateLater) {
@@ -83,7 +76,7 @@ TEST_F(StreamingTest, AWatcherThatDoesNotReadGetsTheNewestStateLater) {
   v1::WatchJobRequest request;
   request.set_id(job_id);
   const auto reader = stub->WatchJob(&context, request);
-  std::this_thread::sleep_for(milliseconds(300));  // the job is over now
+  EXPECT_EQ(WatchToEnd(running_.local().jobs(), job_id).state, JobState::kSucceeded);
   v1::WatchJobResponse response;
   v1::JobState last = v1::JOB_STATE_UNSPECIFIED;
   while (reader->Read(&response)) last = response.job().state();
@@ -96,28 +89,27 @@ TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
   const std::string bytes = EncodeSequence(large);
   const std::string id = SequenceId(bytes);
   const auto stub = v1::SequenceService::NewStub(channel());
-  v1::UploadSequenceRequest header;
+  v1::UploadSequenceRequest header, data;
   header.mutable_header()->set_id(id);
   header.mutable_header()->set_size_bytes(bytes.size());
-  grpc::ClientContext context;
-  v1::UploadSequenceResponse response;
-  auto writer = stub->UploadSequence(&context, &response);
-  ASSERT_TRUE(writer->Write(header));
-  v1::UploadSequenceRequest data;
   data.set_data(bytes.substr(0, 1'000'000));
-  ASSERT_TRUE(writer->Write(data));
-  ASSERT_TRUE(Eventually(
-      [&] { return running_.local().sequences().QueryUpload(id)->received_bytes == 1'000'000; }));
   {
-    grpc::ClientContext second_context;
-    v1::UploadSequenceResponse second_response;
-    const auto second = stub->UploadSequence(&second_context, &second_response);
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto first,
+                               running_.local().sequences().BeginUpload(id, bytes.size(), 0));
+    grpc::ClientContext context;
+    v1::UploadSequenceResponse response;
+    const auto second = stub->UploadSequence(&context, &response);
     second->Write(header);
     second->WritesDone();
     EXPECT_EQ(second->Finish().error_code(), grpc::StatusCode::ABORTED);
   }
-  context.TryCancel();  // the connection breaks
-  writer->Finish();
+  grpc::ClientContext context;
+  v1::UploadSequenceResponse response;
+  const auto broken = stub->UploadSequence(&context, &response);
+  ASSERT_TRUE(broken->Write(header));
+  ASSERT_TRUE(broken->Write(data));
+  context.TryCancel();  // the connection breaks, wherever the server is
+  broken->Finish();
   PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo info,
                              running_.service().sequences().Upload(large, {}));
   EXPECT_EQ(info.id, id);
@@ -125,23 +117,19 @@ TEST_F(StreamingTest, ABrokenUploadGoesOnAndTwoWritersDoNotMix) {
 
 TEST_F(StreamingTest, TooManyStreamsAreRefused) {
   const std::string id = running_.TrainModel();
+  const auto open = [&] {
+    return running_.remote().poses().OpenLiveSession(
+        {.model_id = id, .track = {}, .bone_scales = {}});
+  };
   std::vector<std::unique_ptr<LiveSession>> sessions;
-  for (int i = 0; i < 8; ++i) {
-    sessions.push_back(running_.remote()
-                           .poses()
-                           .OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
-                           .value());
-  }
-  EXPECT_THAT(
-      running_.remote().poses().OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}}),
-      HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-open-streams")));
+  for (int i = 0; i < 8; ++i) sessions.push_back(open().value());
+  EXPECT_THAT(open(),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("max-open-streams")));
   sessions.pop_back();
-  EXPECT_TRUE(Eventually([&] {
-    return running_.remote()
-        .poses()
-        .OpenLiveSession({.model_id = id, .track = {}, .bone_scales = {}})
-        .ok();
-  }));
+  // The server learns of it a little later than the client.
+  absl::Status status = open().status();
+  while (status.code() == absl::StatusCode::kResourceExhausted) status = open().status();
+  EXPECT_THAT(status, IsOk());
 }
 
 TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
@@ -158,13 +146,15 @@ TEST_F(StreamingTest, MessagesAboveTheLimitAreRefused) {
 }
 
 TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
-  const std::string id = running_.TrainModel();
+  // Frames that no window of the network can hold all at once.
+  constexpr int kNumFrames = 60;
+  const std::string id = running_.TrainModel(MakeSwayingTube(3, "medium", 150, 80));
   const auto model = running_.local().models().Acquire(id).value();
   const std::string sequence_id = running_.service().sequences().List()->at(0).id;
   running_.trainer().Hold();
   const std::string job_id =
       running_.service().jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
-  std::atomic<bool> watching = false;
+  std::latch under_way(2), refusing(1);
   const auto stub = v1::JobService::NewStub(channel());
   grpc::Status watched;
   std::thread watcher([&] {
@@ -173,31 +163,45 @@ TEST_F(StreamingTest, ShutdownLetsAClipEndAndEndsTheRest) {
     request.set_id(job_id);
     const auto reader = stub->WatchJob(&context, request);
     v1::WatchJobResponse response;
-    while (reader->Read(&response)) watching = true;
+    EXPECT_TRUE(reader->Read(&response));
+    under_way.count_down();
+    while (reader->Read(&response)) {
+    }
     watched = reader->Finish();
   });
   int num_frames = 0;
   std::thread clip([&] {
     const ClipQuery query{
-        .model_id = id, .track = MakeMotion(model->skeleton(), 400), .bone_scales = {}};
-    EXPECT_THAT(
-        running_.service().poses().EvaluateClip(query,
-                                                [&](int, const EvaluatedFrame&) {
-                                                  std::this_thread::sleep_for(milliseconds(1));
-                                                  ++num_frames;
-                                                  return absl::OkStatus();
-                                                }),
-        IsOk());
+        .model_id = id, .track = MakeMotion(model->skeleton(), kNumFrames), .bone_scales = {}};
+    EXPECT_THAT(running_.service().poses().EvaluateClip(query,
+                                                        [&](int, const EvaluatedFrame&) {
+                                                          if (++num_frames == 3) {
+                                                            under_way.count_down();
+                                                            refusing.wait();
+                                                          }
+                                                          return absl::OkStatus();
+                                                        }),
+                IsOk());
   });
-  EXPECT_TRUE(Eventually([&] { return watching && num_frames > 10; }));
+  under_way.wait();
   std::thread stopper([&] {
     running_.local().Shutdown();
-    running_.server().Shutdown(10);
+    running_.server().Shutdown(kLongDrainSeconds);
   });
   watcher.join();
   EXPECT_EQ(watched.error_code(), grpc::StatusCode::UNAVAILABLE);
+  grpc::StatusCode code = grpc::StatusCode::OK;
+  while (code == grpc::StatusCode::OK) {
+    grpc::ClientContext context;
+    v1::GetJobRequest request;
+    v1::GetJobResponse response;
+    request.set_id(job_id);
+    code = stub->GetJob(&context, request, &response).error_code();
+  }
+  EXPECT_EQ(code, grpc::StatusCode::UNAVAILABLE);
+  refusing.count_down();
   clip.join();
-  EXPECT_EQ(num_frames, 400);
+  EXPECT_EQ(num_frames, kNumFrames);
   stopper.join();
 }
 

@@ -10,10 +10,10 @@
 #include <grpcpp/server_builder.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -24,12 +24,12 @@
 namespace pleat {
 namespace {
 
-constexpr int kKeepaliveMs = 60'000;  // how often an idle connection is asked
+constexpr int kKeepaliveMs = 60'000;         // between two questions to an idle connection
+constexpr int kKeepaliveTimeoutMs = 20'000;  // until it must have answered
 constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
-constexpr auto kDrainPoll = std::chrono::milliseconds(10);
-constexpr auto kSlowReaderTime = std::chrono::seconds(1);  // to take the frame that is written
+// How long a live session that drains may take to get rid of the frame that is being written.
+constexpr auto kSlowReaderTime = std::chrono::seconds(1);
 constexpr auto kCloseTime = std::chrono::milliseconds(100);
-constexpr int kKeepaliveTimeoutMs = 20'000;  // how long it may take to answer
 
 absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
     const GrpcServerOptions& options) {
@@ -92,8 +92,7 @@ class GrpcServerImpl final : public GrpcServer {
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
-    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT,
-                               0);  // a second server must fail, not share
+    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // a second server fails
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
@@ -116,24 +115,30 @@ class GrpcServerImpl final : public GrpcServer {
     context_.draining = true;
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
     context_.live_sessions.DrainAll();
-    const auto start = std::chrono::steady_clock::now();
-    const auto deadline =
-        start + std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
-    bool abandoned = false;
-    while (context_.num_calls > 0 && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(kDrainPoll);
-      if (!abandoned && std::chrono::steady_clock::now() > start + kSlowReaderTime) {
-        context_.live_sessions.AbandonAll();
-        abandoned = true;
-      }
-    }
+    WaitForCalls(drain_seconds);
     // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
     server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);
     server_->Wait();
+    // A task whose call has ended may still own its reactor, which refers to the context.
+    context_.open_calls.WaitUntilNone();
     server_.reset();
   }
 
  private:
+  // Waits until all calls have ended or their time is over. Live sessions have less time: they have
+  // been told to end, and the client of one that still goes on after kSlowReaderTime does not read.
+  void WaitForCalls(double drain_seconds) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto deadline =
+        start + std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
+    const auto patience = start + kSlowReaderTime;
+    if (context_.open_calls.WaitUntilNone(std::min(deadline, patience)) || deadline <= patience) {
+      return;
+    }
+    context_.live_sessions.AbandonAll();
+    context_.open_calls.WaitUntilNone(deadline);
+  }
+
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
   std::optional<Executor> own_pose_executor_;

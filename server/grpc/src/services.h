@@ -1,4 +1,4 @@
-// The gRPC services: each method hands over to its handler.
+// The gRPC services. Each of their methods hands its call over to the handler of the same name.
 #pragma once
 
 #include <grpcpp/impl/service_type.h>

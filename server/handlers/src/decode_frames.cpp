@@ -22,8 +22,8 @@ struct Decode {
   std::unique_ptr<DecodeSession> session = nullptr;
   std::string shape{};
   size_t shape_sent = 0;
-  const Eigen::Matrix3Xf* frame = nullptr;  // that is being sent; of the session
-  int number = 0;                           // of that frame, or of the next one
+  const Eigen::Matrix3Xf* frame = nullptr;  // is being sent and belongs to the session; or null
+  int number = 0;                           // numbers this frame, or the next one when it is null
   int64_t next_vertex = 0;
 
   absl::StatusOr<bool> Next(v1::DecodeFramesResponse* response) {
@@ -68,7 +68,7 @@ struct Decode {
 grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
     HandlerContext* context, const v1::DecodeFramesRequest& request) {
   const auto decode = std::make_shared<Decode>(Decode{context->compressed_sequences, request});
-  return new PullStream<v1::DecodeFramesResponse>(
+  return StartReactor<PullStream<v1::DecodeFramesResponse>>(
       context, context->storage_executor, "DecodeFrames",
       [decode](v1::DecodeFramesResponse* response) { return decode->Next(response); });
 }

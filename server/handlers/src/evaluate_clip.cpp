@@ -40,7 +40,7 @@ struct Clip {
 grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
     HandlerContext* context, const v1::EvaluateClipRequest& request) {
   const auto clip = std::make_shared<Clip>(Clip{context->poses, request});
-  return new PullStream<v1::EvaluateClipResponse>(
+  return StartReactor<PullStream<v1::EvaluateClipResponse>>(
       context, context->pose_executor, "EvaluateClip",
       [clip](v1::EvaluateClipResponse* response) { return clip->Next(response); });
 }

@@ -2,10 +2,12 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/run_unary.h"
 #include "pleat/wire/skeleton_messages.h"
@@ -15,16 +17,44 @@
 namespace pleat {
 namespace {
 
-// Reads, computes and writes at the same time, each at most once: one message of each kind is in
-// memory, and what the queue bounds. A reply is computed only when the one before has been handed
-// to the transport, so a client that does not read stops its own session and nobody else's.
+// One live session: poses come in, frames go out, at the pace of the slower side.
+//
+// Three activities overlap, each at most once: a read (reading_), a computation (working_) and a
+// write (writing_). Their ends arrive on different threads: OnReadDone, OnWriteDone and OnCancel on
+// those of gRPC, the start of the session on the pose executor, OnReply on a thread of the service,
+// Drain and Abandon on the thread that shuts the server down. All of them take mutex_, note what
+// has happened and call Advance, which alone decides what starts next. So nobody waits for anybody,
+// and a session that has nothing to do occupies no thread.
+//
+// Stages: kNew until the first message; kStarting while the model is loaded, when nothing is read;
+// kOpen from then on. The end is a stage of its own in all but name: once Ended() holds, Advance
+// starts nothing any more, waits for the computation and the write under way (both use response_,
+// and both come back to Advance) and calls Finish, once. A read may still be under way then; it
+// ends by itself and finds finished_ set.
+//
+// Credits bound what waits. The pose stream says by HasRoom() whether another pose may be read and
+// by ready() whether the client has acknowledged enough frames for the next reply, so a client that
+// sends faster than it reads is held back by its own flow control. The computation starts only when
+// the write before it is over: hence one response_ serves both, one frame per session is in memory,
+// and a client that does not read stops its own session and nobody else's. When the input has
+// ended, no acknowledgement can come, and the poses that wait are answered without credits.
+//
+// The order matters in three places. An acknowledgement counts before the pose that carries it, for
+// it may free the credit that the pose needs. Answered starts the write before it calls Advance:
+// between them the lock is held, so nobody sees a session with neither a computation nor a write,
+// and ends it with a frame unsent. And the pose stream, which holds the model, is destroyed before
+// Finish: the client that reads the status may delete the model right after.
 class LiveReactor final
-    : public grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>,
+    : public CallReactor<grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>>,
       public Drainable,
       private LiveListener {
  public:
   LiveReactor(HandlerContext* context, grpc::CallbackServerContext* call)
-      : slot_(context), context_(context), call_(call), entry_(&context->live_sessions, this) {
+      : CallReactor(context), slot_(context), context_(context), call_(call) {}
+
+  // A server that begins to drain meanwhile either finds the entry or has set `draining` before.
+  void Start() {
+    entry_.emplace(&context_->live_sessions, this);
     Advance(std::unique_lock(mutex_));
   }
 
@@ -50,22 +80,22 @@ class LiveReactor final
     cancelled_ = true;
     Advance(std::move(lock));
   }
-  void OnDone() override { delete this; }
 
   void Drain() override { Advance(std::unique_lock(mutex_)); }
   void Abandon() override {
     std::lock_guard lock(mutex_);
-    if (!finished_) call_->TryCancel();
+    if (!finished_) call_->TryCancel();  // call_ is gone some time after Finish
   }
 
  private:
   enum class Stage { kNew, kStarting, kOpen };
 
+  // The first error is the reason of the end.
   void Keep(absl::Status status) {
     if (status_.ok()) status_ = std::move(status);
   }
 
-  // Takes in request_. With the lock.
+  // Takes in request_. Call it with mutex_ held.
   absl::Status Accept() {
     if (stage_ == Stage::kNew) {
       if (request_.part_case() != v1::LiveSessionRequest::kStart) {
@@ -88,14 +118,14 @@ class LiveReactor final
 
   bool HasWork() const {
     if (stage_ != Stage::kOpen) return stage_ == Stage::kStarting;
-    return stream_->ready() || (input_ended_ && !stream_->empty());  // no acknowledgement can come
+    return stream_->ready() || (input_ended_ && !stream_->empty());
   }
   bool WantsToRead() const {
     return stage_ == Stage::kNew || (stage_ == Stage::kOpen && stream_->HasRoom());
   }
   bool Ended() const { return cancelled_ || !status_.ok() || (input_ended_ && !HasWork()); }
 
-  // Starts what can be started. `this` may be gone when this function returns.
+  // Starts what can be started, or ends the session. `lock` holds mutex_.
   void Advance(std::unique_lock<std::mutex> lock) {
     if (finished_) return;
     if (context_->draining) Keep(absl::UnavailableError("the server is shutting down"));
@@ -108,7 +138,7 @@ class LiveReactor final
         LogFailure("LiveSession", status_);
       }
       const grpc::Status status = ToGrpcStatus(status_);
-      stream_.reset();  // lets go of the model now, not when the client has read the status
+      stream_.reset();
       lock.unlock();
       Finish(status);
       return;
@@ -122,21 +152,21 @@ class LiveReactor final
       if (stage_ == Stage::kOpen) {
         stream_->Answer();
       } else {
-        context_->pose_executor->Post(
-            [this] { Answered(CallGuarded([this] { return Start(); })); });
+        Post(context_->pose_executor, [this] { Answered(CallGuarded([this] { return Open(); })); });
       }
     }
   }
 
-  // On a thread of the service. Nothing else touches response_ until it is written.
+  // Nothing else touches response_ until it is written.
   void OnReply(LiveReply&& reply) override {
+    const auto hold = Hold();  // Answered may end the call, and gRPC lets go of it
     Answered(CallGuarded([&] {
       Fill(std::move(reply));
       return absl::OkStatus();
     }));
   }
 
-  // Sends what is in response_, or ends. `this` may be gone when this function returns.
+  // Sends what is in response_, or ends the session.
   void Answered(absl::Status status) {
     std::unique_lock lock(mutex_);
     working_ = false;
@@ -148,7 +178,8 @@ class LiveReactor final
     Advance(std::move(lock));
   }
 
-  absl::Status Start() {
+  // The header as the first response. Reads request_ without the lock: no read is under way.
+  absl::Status Open() {
     PLEAT_RETURN_IF_ERROR(slot_.status());
     response_.Clear();
     const v1::LiveSessionRequest::Start& start = request_.start();
@@ -176,25 +207,25 @@ class LiveReactor final
   }
 
   StreamSlot slot_;
-  HandlerContext* context_;
-  grpc::CallbackServerContext* call_;
-  v1::LiveSessionResponse response_;  // used while working_ or writing_
+  HandlerContext* const context_;
+  grpc::CallbackServerContext* const call_;
+  v1::LiveSessionResponse response_;  // belongs to what is working_ or writing_
 
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards all below but entry_
   v1::LiveSessionRequest request_;
   Stage stage_ = Stage::kNew;
-  std::unique_ptr<PoseStream> stream_;  // of the open session
-  absl::Status status_;                 // why it ends
+  std::unique_ptr<PoseStream> stream_;  // from kOpen to finished_
+  absl::Status status_;                 // why the session ends
   bool reading_ = false, writing_ = false, working_ = false;
   bool input_ended_ = false, cancelled_ = false, finished_ = false;
-  LiveRegistry::Entry entry_;
+  std::optional<LiveRegistry::Entry> entry_;  // the last member, so that it goes first
 };
 
 }  // namespace
 
 grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
     HandlerContext* context, grpc::CallbackServerContext* call) {
-  return new LiveReactor(context, call);
+  return StartReactor<LiveReactor>(context, call);
 }
 
 }  // namespace pleat

@@ -56,7 +56,7 @@ absl::Status Read(const v1::LiveSessionRequest::LivePose& message, LivePose* pos
   return absl::OkStatus();
 }
 
-// Of the whole process.
+// How long all threads of the process have computed since its start.
 uint64_t ProcessorMicroseconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);

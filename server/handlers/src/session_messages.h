@@ -1,4 +1,4 @@
-// Pose sessions on the wire.
+// The messages of pose sessions and their C++ types.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ v1::Frame ToProto(uint64_t number, EncodedFrame frame);
 
 // kInvalidArgument when the credits are out of range.
 absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start);
-// What is wrong with the pose is its status.
+// A pose that cannot be read is no error here: its status says what is wrong with it.
 LivePose FromProto(const v1::LiveSessionRequest::LivePose& message);
 v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status);
 v1::LiveReport ReportOf(const LiveReply& reply);

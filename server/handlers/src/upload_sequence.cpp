@@ -8,16 +8,17 @@ grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
     HandlerContext* context, v1::UploadSequenceResponse* response) {
   using Response = v1::UploadSequenceResponse;
   SequenceService* sequences = context->sequences;
-  return new UploadStream<SequenceInfo, Response>(
+  return StartReactor<UploadStream<SequenceInfo, Response>>(
       context, response,
-      {.rpc = "UploadSequence",
-       .find = [sequences](const std::string& id) { return sequences->Get(id); },
-       .begin =
-           [sequences](const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
-             return sequences->BeginUpload(id, size_bytes, offset_bytes);
-           },
-       .reply = [](const SequenceInfo& info,
-                   Response* reply) { *reply->mutable_sequence() = ToProto(info); }});
+      UploadTarget<SequenceInfo, Response>{
+          .rpc = "UploadSequence",
+          .find = [sequences](const std::string& id) { return sequences->Get(id); },
+          .begin =
+              [sequences](const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
+                return sequences->BeginUpload(id, size_bytes, offset_bytes);
+              },
+          .reply = [](const SequenceInfo& info,
+                      Response* reply) { *reply->mutable_sequence() = ToProto(info); }});
 }
 
 }  // namespace pleat

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pleat/handlers/stream_handlers.h"
+#include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/run_unary.h"
 #include "pleat/wire/service_messages.h"
@@ -11,19 +12,18 @@
 namespace pleat {
 namespace {
 
-// Changes of the job and ends of writes both lead to Pump, which sends the newest state when
-// nothing is being written: a slow reader misses steps in between and never builds up a backlog.
-class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>,
-                           public std::enable_shared_from_this<WatchReactor> {
+// Changes of the job, ends of writes and the cancellation all lead to Pump, which sends the newest
+// state when nothing is being written: a slow reader misses steps in between and never builds up a
+// backlog. Any number of Pumps may wait or run at the same time (call_reactor.h); the mutex makes
+// one of them act, and the flag that it leaves behind keeps the others out.
+class WatchReactor final : public CallReactor<grpc::ServerWriteReactor<v1::WatchJobResponse>> {
  public:
-  static WatchReactor* Start(HandlerContext* context, std::string job_id) {
-    const std::shared_ptr<WatchReactor> reactor(new WatchReactor(context));
-    reactor->self_ = reactor;
-    context->storage_executor->Post(
-        [reactor, job_id = std::move(job_id)] { reactor->Open(job_id); });
-    return reactor.get();
-  }
+  WatchReactor(HandlerContext* context, std::string job_id)
+      : CallReactor(context), slot_(context), context_(context), job_id_(std::move(job_id)) {}
 
+  void Start() {
+    Post(context_->storage_executor, [this] { Open(); });
+  }
   void OnWriteDone(bool ok) override {
     {
       std::lock_guard lock(mutex_);
@@ -39,20 +39,15 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
     }
     Schedule();
   }
-  void OnDone() override {
-    subscription_.reset();  // no call of the listener is left
-    self_.reset();          // tasks that are still posted keep the object and find it finished
-  }
 
  private:
-  explicit WatchReactor(HandlerContext* context) : slot_(context), context_(context) {}
-
-  void Open(const std::string& job_id) {
+  void Open() {
     absl::Status status = slot_.status();
     if (status.ok()) {
-      // Until open_ is set, what the listener starts does nothing.
+      // The job may change before Subscribe returns. Until open_ is set, the Pumps that the
+      // listener schedules do nothing; the one below sees what they would have seen.
       absl::StatusOr<std::unique_ptr<JobSubscription>> subscription =
-          context_->jobs->Subscribe(job_id, [this] { Schedule(); });
+          context_->jobs->Subscribe(job_id_, [this] { Schedule(); });
       status = subscription.status();
       if (status.ok()) subscription_ = *std::move(subscription);
     }
@@ -73,7 +68,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
   }
 
   void Schedule() {
-    context_->storage_executor->Post([self = shared_from_this()] { self->Pump(); });
+    Post(context_->storage_executor, [this] { Pump(); });
   }
 
   void Pump() {
@@ -87,15 +82,16 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
       writing_ = write;
       finished_ = !write;
     }
-    // One of the flags keeps everybody else out; gRPC may call back from inside.
     if (write) {
       StartWrite(&message_);
-    } else {
-      Finish(ToGrpcStatus(status));
+      return;
     }
+    subscription_.reset();  // waits for a listener that runs, so not under the mutex
+    Finish(ToGrpcStatus(status));
   }
 
-  // Fills the message with the newest state when the client has not got it. Called with the lock.
+  // Fills the message with the newest state when the client does not have it yet. Call it with
+  // mutex_ held.
   bool TakeNews() {
     const JobUpdate update = subscription_->current();
     if (cancelled_ || (sent_any_ && update.revision == sent_revision_)) return false;
@@ -106,7 +102,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
     return true;
   }
 
-  // True when nothing more will be sent; `status` says why. Called with the lock.
+  // True when nothing more will be sent; `status` says why. Call it with mutex_ held.
   bool IsOver(absl::Status* status) const {
     if (cancelled_) {
       *status = absl::CancelledError("the client gave up");
@@ -117,12 +113,12 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
   }
 
   StreamSlot slot_;
-  HandlerContext* context_;
-  std::shared_ptr<WatchReactor> self_;  // until OnDone
-  std::unique_ptr<JobSubscription> subscription_;
+  HandlerContext* const context_;
+  const std::string job_id_;
+  std::unique_ptr<JobSubscription> subscription_;  // from open_ to finished_
 
-  std::mutex mutex_;  // all below
-  v1::WatchJobResponse message_;
+  std::mutex mutex_;              // guards all below
+  v1::WatchJobResponse message_;  // left alone while writing_
   bool open_ = false, writing_ = false, cancelled_ = false, finished_ = false;
   bool sent_any_ = false, sent_final_ = false;
   uint64_t sent_revision_ = 0;
@@ -132,7 +128,7 @@ class WatchReactor final : public grpc::ServerWriteReactor<v1::WatchJobResponse>
 
 grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(HandlerContext* context,
                                                          const v1::WatchJobRequest& request) {
-  return WatchReactor::Start(context, request.id());
+  return StartReactor<WatchReactor>(context, request.id());
 }
 
 }  // namespace pleat

@@ -7,7 +7,7 @@
 namespace pleat {
 namespace {
 
-constexpr size_t kMaxMessageBytes = 2000;  // metadata is limited to 8 KiB, percent-encoded
+constexpr size_t kMaxMessageBytes = 2000;  // percent-encoded, they fit into the 8 KiB of metadata
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <grpcpp/server_context.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -11,18 +12,48 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 
 namespace pleat {
 namespace {
 
-class UnaryReactor final : public grpc::ServerUnaryReactor {
+class UnaryReactor final : public CallReactor<grpc::ServerUnaryReactor> {
  public:
-  explicit UnaryReactor(HandlerContext* context) : counter_(context) {}
-  void OnDone() override { delete this; }
+  UnaryReactor(HandlerContext* context, Executor* executor, uint64_t flow, const char* rpc,
+               std::function<absl::Status()> handler)
+      : CallReactor(context),
+        context_(context),
+        executor_(executor),
+        flow_(flow),
+        rpc_(rpc),
+        handler_(std::move(handler)) {}
+  void Start() {
+    Post(
+        executor_, [this] { Run(); }, flow_);
+  }
+  void OnCancel() override { cancelled_ = true; }
 
  private:
-  CallCounter counter_;
+  void Run() {
+    absl::Status status;
+    if (context_->draining) {
+      status = absl::UnavailableError("the server is shutting down");
+    } else if (cancelled_) {
+      status = absl::CancelledError("the client gave up");
+    } else {
+      status = CallGuarded(handler_);
+    }
+    LogFailure(rpc_, status);
+    Finish(ToGrpcStatus(status));
+  }
+
+  HandlerContext* const context_;
+  Executor* const executor_;
+  const uint64_t flow_;
+  const char* const rpc_;
+  const std::function<absl::Status()> handler_;
+  std::atomic<bool> cancelled_ = false;
 };
 
 }  // namespace
@@ -49,22 +80,8 @@ void LogFailure(const char* rpc, const absl::Status& status) {
 grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServerContext* call,
                                    Executor* executor, const char* rpc,
                                    std::function<absl::Status()> handler) {
-  auto* reactor = new UnaryReactor(context);
-  const uint64_t flow = std::hash<std::string>()(call->peer()) | 1;  // one per connection
-  const auto run = [context, call, reactor, rpc, handler = std::move(handler)] {
-    absl::Status status;
-    if (context->draining) {
-      status = absl::UnavailableError("the server is shutting down");
-    } else if (call->IsCancelled()) {
-      status = absl::CancelledError("the client gave up");
-    } else {
-      status = CallGuarded(handler);
-    }
-    LogFailure(rpc, status);
-    reactor->Finish(ToGrpcStatus(status));
-  };
-  executor->Post(run, flow);
-  return reactor;
+  const uint64_t flow = std::hash<std::string>()(call->peer()) | 1;  // one per connection, never 0
+  return StartReactor<UnaryReactor>(context, executor, flow, rpc, std::move(handler));
 }
 
 }  // namespace pleat

@@ -1,31 +1,11 @@
-#include "server/handlers/handler_checks.h"
+#include "server/handlers/handler_suites.h"
 
 namespace pleat {
 namespace {
 
-absl::Status DeleteId(MockContext& mock, const std::string& id) {
-  v1::DeleteCompressedSequenceRequest request;
-  v1::DeleteCompressedSequenceResponse response;
-  request.set_id(id);
-  return DeleteCompressedSequence(mock.context, request, &response);
-}
-
-TEST(DeleteCompressedSequence, PassesOnHowItEnded) {
-  MockContext mock;
-  EXPECT_CALL(mock.compressed_sequences, Delete(kId))
-      .WillOnce(testing::Return(absl::OkStatus()))
-      .WillOnce(testing::Return(absl::NotFoundError("none")));
-  EXPECT_THAT(DeleteId(mock, kId), IsOk());
-  EXPECT_THAT(DeleteId(mock, kId), HasStatus(absl::StatusCode::kNotFound, "none"));
-}
-
-TEST(DeleteCompressedSequence, AnIdThatIsNoneNeverReachesTheService) {
-  MockContext mock;
-  for (const std::string& id : {std::string(), std::string("abc"), kPathId}) {
-    EXPECT_THAT(DeleteId(mock, id),
-                HasStatus(absl::StatusCode::kInvalidArgument, testing::HasSubstr("id")));
-  }
-}
+INSTANTIATE_TYPED_TEST_SUITE_P(
+    DeleteCompressedSequence, DeleteHandlerTest,
+    HandlerCase<DeleteCompressedSequence, &MockContext::compressed_sequences>);
 
 }  // namespace
 }  // namespace pleat

@@ -1,70 +1,20 @@
 #include "pleat/v1/model_service.grpc.pb.h"
-#include "server/handlers/mock_server.h"
+#include "server/handlers/transfer_suites.h"
 
 namespace pleat {
 namespace {
 
-using ::testing::_;
-using ::testing::Return;
-
-constexpr uint64_t kChunk = 512 << 10;
-
-class DownloadModelTest : public testing::Test {
- protected:
-  void ExpectInfo(uint64_t size_bytes) {
-    ModelInfo info;
-    info.id = kId;
-    info.size_bytes = size_bytes;
-    EXPECT_CALL(mock_.service.mock_models, Get(kId)).WillOnce(Return(info));
+struct DownloadModelCase {
+  using Info = ModelInfo;
+  using Request = v1::DownloadModelRequest;
+  using Response = v1::DownloadModelResponse;
+  static auto& Mock(MockService& service) { return service.mock_models; }
+  static auto Download(const std::shared_ptr<grpc::Channel>& channel, grpc::ClientContext* call,
+                       const Request& request) {
+    return v1::ModelService::NewStub(channel)->DownloadModel(call, request);
   }
-  grpc::Status Download(const std::string& id, uint64_t offset, std::string* bytes) {
-    const auto stub = v1::ModelService::NewStub(mock_.channel);
-    v1::DownloadModelRequest request;
-    request.set_id(id);
-    request.set_offset_bytes(offset);
-    const auto reader = stub->DownloadModel(&mock_.call, request);
-    v1::DownloadModelResponse part;
-    while (reader->Read(&part)) {
-      EXPECT_EQ(part.offset_bytes(), offset + bytes->size());
-      EXPECT_EQ(part.size_bytes(), kChunk + 3);
-      *bytes += part.data();
-    }
-    return reader->Finish();
-  }
-
-  MockServer mock_;
 };
-
-TEST_F(DownloadModelTest, SendsTheFileInPieces) {
-  ExpectInfo(kChunk + 3);
-  EXPECT_CALL(mock_.service.mock_models, ReadBytes(kId, 0, kChunk))
-      .WillOnce(Return(std::string(kChunk, 'x')));
-  EXPECT_CALL(mock_.service.mock_models, ReadBytes(kId, kChunk, kChunk)).WillOnce(Return("end"));
-  std::string bytes;
-  EXPECT_TRUE(Download(kId, 0, &bytes).ok());
-  EXPECT_TRUE(bytes == std::string(kChunk, 'x') + "end");
-}
-
-TEST_F(DownloadModelTest, GoesOnWhereTheClientSays) {
-  ExpectInfo(kChunk + 3);
-  EXPECT_CALL(mock_.service.mock_models, ReadBytes(kId, kChunk, kChunk)).WillOnce(Return("end"));
-  std::string bytes;
-  EXPECT_TRUE(Download(kId, kChunk, &bytes).ok());
-  EXPECT_EQ(bytes, "end");
-}
-
-TEST_F(DownloadModelTest, AnIdThatIsNoneNeverReachesTheService) {
-  std::string bytes;
-  EXPECT_THAT(Download(kPathId, 0, &bytes), HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, _));
-}
-
-TEST_F(DownloadModelTest, AFileThatIsCutOffIsNotTheWholeFile) {
-  ExpectInfo(kChunk + 3);
-  EXPECT_CALL(mock_.service.mock_models, ReadBytes).WillOnce(Return(""));
-  std::string bytes;
-  EXPECT_THAT(Download(kId, 0, &bytes),
-              HasGrpcStatus(grpc::StatusCode::DATA_LOSS, testing::HasSubstr("cut off")));
-}
+INSTANTIATE_TYPED_TEST_SUITE_P(DownloadModel, DownloadHandlerTest, DownloadModelCase);
 
 }  // namespace
 }  // namespace pleat

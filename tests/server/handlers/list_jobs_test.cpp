@@ -1,29 +1,12 @@
-#include "server/handlers/handler_checks.h"
+#include "server/handlers/handler_suites.h"
 
 namespace pleat {
 namespace {
 
-TEST(ListJobs, GivesAllOfThemInPages) {
-  MockContext mock;
-  EXPECT_CALL(mock.jobs, List).WillRepeatedly(testing::Return(FiveInfos<JobInfo>()));
-  ExpectPages<v1::ListJobsRequest, v1::ListJobsResponse>(
-      [&](const auto& request, auto* response) {
-        return ListJobs(mock.context, request, response);
-      },
-      [](const v1::ListJobsResponse& response) {
-        std::vector<std::string> ids;
-        for (const auto& item : response.jobs()) ids.push_back(item.id());
-        return ids;
-      });
-}
-
-TEST(ListJobs, PassesOnWhyItCannot) {
-  MockContext mock;
-  EXPECT_CALL(mock.jobs, List).WillOnce(testing::Return(absl::DataLossError("damaged row")));
-  v1::ListJobsResponse response;
-  EXPECT_THAT(ListJobs(mock.context, {}, &response),
-              HasStatus(absl::StatusCode::kDataLoss, "damaged row"));
-}
+struct ListJobsCase : HandlerCase<ListJobs, &MockContext::jobs> {
+  static const auto& Items(const Response& response) { return response.jobs(); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(ListJobs, ListHandlerTest, ListJobsCase);
 
 }  // namespace
 }  // namespace pleat

@@ -1,4 +1,5 @@
-// One function per streaming RPC, each in its own file. Every reactor deletes itself in OnDone.
+// One function per streaming RPC, each in its own file. What it gives belongs to gRPC
+// (call_reactor.h).
 #pragma once
 
 #include <grpcpp/support/server_callback.h>

@@ -12,8 +12,9 @@ struct LoggingOptions {
   bool json = false;           // one JSON object per line: time, level, thread, message
 };
 
-// Sets the default logger of the process; call once, before threads. kInvalidArgument lists the
-// levels. What Protocol Buffers would print by itself becomes a debug line.
+// Sets the default logger of the process; call it once, before threads are started.
+// kInvalidArgument lists the levels when options.level is none of them. What Protocol Buffers would
+// print by itself becomes a debug line.
 absl::Status ConfigureLogging(const LoggingOptions& options);
 
 }  // namespace pleat

@@ -1,4 +1,4 @@
-// Downloads of stored files in chunks, whatever the files are.
+// The download of a stored file in chunks, whatever the file is.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ namespace pleat {
 
 inline constexpr uint64_t kDownloadChunkBytes = 512 << 10;
 
-// What differs between downloads.
+// What makes one kind of download different from another.
 struct DownloadSource {
   const char* rpc;
-  // The size of the file `id`, or kNotFound.
+  // Gives the size of the file `id`, or kNotFound.
   std::function<absl::StatusOr<uint64_t>(const std::string& id)> size_of;
-  // `count` bytes of it from `offset`, fewer at its end.
+  // Gives `count` bytes of the file from `offset`, fewer at its end.
   std::function<absl::StatusOr<std::string>(const std::string& id, uint64_t offset, uint64_t count)>
       read;
 };
 
-// Response: has size_bytes, offset_bytes and data.
+// Sends the file from `offset_bytes` on. Response has the fields size_bytes, offset_bytes and data.
 template <typename Response>
 grpc::ServerWriteReactor<Response>* StartDownload(HandlerContext* context, const std::string& id,
                                                   uint64_t offset_bytes, DownloadSource source) {
@@ -55,7 +55,7 @@ grpc::ServerWriteReactor<Response>* StartDownload(HandlerContext* context, const
   };
   const char* rpc = source.rpc;
   const auto download = std::make_shared<Download>(Download{std::move(source), id, offset_bytes});
-  return new PullStream<Response>(
+  return StartReactor<PullStream<Response>>(
       context, context->storage_executor, rpc,
       [download](Response* response) { return download->Next(response); });
 }

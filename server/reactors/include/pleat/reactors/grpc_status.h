@@ -1,4 +1,4 @@
-// The one mapping from Pleat's errors to gRPC's.
+// The one mapping from Pleat's errors to those of gRPC.
 #pragma once
 
 #include <grpcpp/support/status.h>
@@ -7,7 +7,8 @@
 
 namespace pleat {
 
-// Codes are the same by number; the message is cut to what fits into a trailer.
+// The codes are the same numbers. The message is cut to what fits into a trailer and is valid
+// UTF-8.
 grpc::Status ToGrpcStatus(const absl::Status& status);
 
 }  // namespace pleat

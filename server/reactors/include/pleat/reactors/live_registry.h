@@ -8,13 +8,17 @@ namespace pleat {
 
 class Drainable {
  public:
-  virtual void Drain() = 0;    // ends as soon as what is under way has been handed over
-  virtual void Abandon() = 0;  // ends although the client does not read
+  // Ends the session as soon as the frame that is being written has been handed over.
+  virtual void Drain() = 0;
+  // Ends it although the client does not read.
+  virtual void Abandon() = 0;
+
  protected:
   ~Drainable() = default;
 };
 
-// Thread-safe.
+// Thread-safe. Drain and Abandon run while the registry is locked, so they must not add or remove
+// a session.
 class LiveRegistry {
  public:
   void DrainAll() {
@@ -26,7 +30,8 @@ class LiveRegistry {
     for (Drainable* session : sessions_) session->Abandon();
   }
 
-  // In the registry as long as it lives. The last member of a session, so that it goes first.
+  // Keeps `session` in the registry as long as it lives. It must be the last member of the session,
+  // so that it goes first: then no call of Drain or Abandon meets a session that is half destroyed.
   class Entry {
    public:
     Entry(LiveRegistry* registry, Drainable* session) : registry_(registry), session_(session) {

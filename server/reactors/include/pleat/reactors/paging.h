@@ -1,4 +1,4 @@
-// Pages of a list: the token of a page is the id of the last item before it.
+// The pages of a list. The token of a page is the id of the last item before it.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,9 @@
 
 namespace pleat {
 
-// Items [begin, end) of the page that `page_size` and `page_token` ask for. kInvalidArgument for a
-// negative size or a token that names no item (any more).
+// The items [begin, end) are the page that `page_size` and `page_token` ask for; the size 0 asks
+// for as many as allowed. kInvalidArgument for a size out of range or a token that names no item
+// (any more).
 struct PageRange {
   size_t begin = 0, end = 0;
 };

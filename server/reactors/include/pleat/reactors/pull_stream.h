@@ -9,34 +9,42 @@
 #include <utility>
 
 #include "absl/status/statusor.h"
+#include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/handler_context.h"
 #include "pleat/reactors/run_unary.h"
 
 namespace pleat {
 
-// Until the call is finished exactly one thing is under way: a Produce task or a write. So nothing
-// here needs a lock, memory is bounded by one message, and a slow client only delays itself.
+// Sequential (call_reactor.h): until the call is finished, either a Produce task or a write is
+// under way. So nothing here needs a lock, memory is bounded by one message, and a slow client only
+// delays itself.
 template <typename Response>
-class PullStream final : public grpc::ServerWriteReactor<Response> {
+class PullStream final : public CallReactor<grpc::ServerWriteReactor<Response>> {
  public:
-  // Fills the next message: true = there is one, false = the stream ends. Runs on `executor`.
+  // Fills the next message. True: there is one; false: the stream ends. Runs on `executor`.
   using Next = std::function<absl::StatusOr<bool>(Response*)>;
 
   PullStream(HandlerContext* context, Executor* executor, const char* rpc, Next next)
-      : slot_(context), executor_(executor), rpc_(rpc), next_(std::move(next)) {
-    executor_->Post([this] { Produce(); });
-  }
+      : CallReactor<grpc::ServerWriteReactor<Response>>(context),
+        slot_(context),
+        executor_(executor),
+        rpc_(rpc),
+        next_(std::move(next)) {}
 
+  void Start() { Schedule(); }
   void OnWriteDone(bool ok) override {
     if (!ok) cancelled_ = true;
-    executor_->Post([this] { Produce(); });
+    Schedule();
   }
   void OnCancel() override { cancelled_ = true; }
-  void OnDone() override { delete this; }
 
  private:
-  // `this` may be gone as soon as a write or the end has been handed over.
+  void Schedule() {
+    this->Post(executor_, [this] { Produce(); });
+  }
+
+  // Starts the next write or ends the call, as its last act.
   void Produce() {
     bool more = false;
     absl::Status status;
@@ -59,7 +67,7 @@ class PullStream final : public grpc::ServerWriteReactor<Response> {
       return;
     }
     if (!cancelled_) LogFailure(rpc_, status);
-    next_ = nullptr;  // lets go of the model now, not when the client has read the status
+    next_ = nullptr;  // lets go of what it holds, such as a model
     this->Finish(ToGrpcStatus(status));
   }
 

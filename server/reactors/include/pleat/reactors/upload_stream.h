@@ -1,4 +1,4 @@
-// Uploads of files in chunks, whatever the files are.
+// The upload of a file in chunks, whatever the file is.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>
@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
+#include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/handler_context.h"
 #include "pleat/reactors/run_unary.h"
@@ -21,11 +22,13 @@
 
 namespace pleat {
 
-// What differs between uploads. Info: what the service says about the stored file.
+// What makes one kind of upload different from another. Info is what the service says about the
+// stored file.
 template <typename Info, typename Response>
 struct UploadTarget {
   const char* rpc;
-  // What the service has under `id`; kNotFound: nothing. The call then ends early.
+  // Gives what the service has stored under `id`, and the call ends early; kNotFound when it has
+  // nothing.
   std::function<absl::StatusOr<Info>(const std::string& id)> find;
   std::function<absl::StatusOr<std::unique_ptr<ContentUpload<Info>>>(
       const std::string& id, uint64_t size_bytes, uint64_t offset_bytes)>
@@ -33,17 +36,20 @@ struct UploadTarget {
   std::function<void(const Info&, Response*)> reply;
 };
 
-// Exactly one thing is under way until the call is finished: a read or a task on the executor.
+// Sequential (call_reactor.h): until the call is finished, either a read or a task is under way.
 template <typename Info, typename Response>
-class UploadStream final : public grpc::ServerReadReactor<v1::UploadSequenceRequest> {
+class UploadStream final : public CallReactor<grpc::ServerReadReactor<v1::UploadSequenceRequest>> {
  public:
   UploadStream(HandlerContext* context, Response* response, UploadTarget<Info, Response> target)
-      : slot_(context), context_(context), response_(response), target_(std::move(target)) {
-    StartRead(&request_);
-  }
+      : CallReactor(context),
+        slot_(context),
+        context_(context),
+        response_(response),
+        target_(std::move(target)) {}
 
+  void Start() { StartRead(&request_); }
   void OnReadDone(bool ok) override {
-    context_->storage_executor->Post([this, ok] {
+    Post(context_->storage_executor, [this, ok] {
       bool finished = !ok;
       const absl::Status status =
           CallGuarded([&] { return ok ? TakePart(&finished) : Complete(); });
@@ -52,12 +58,11 @@ class UploadStream final : public grpc::ServerReadReactor<v1::UploadSequenceRequ
         return;
       }
       LogFailure(target_.rpc, status);
-      upload_.reset();  // the right to write, before the client can ask for it again
+      upload_.reset();  // the right to write: the client may ask for it again right away
       Finish(ToGrpcStatus(status));
     });
   }
   void OnCancel() override {}  // the read ends with ok = false
-  void OnDone() override { delete this; }
 
  private:
   absl::Status TakePart(bool* finished) {

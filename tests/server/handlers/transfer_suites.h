@@ -1,0 +1,193 @@
+// What all uploads and all downloads have in common, whatever the files are. The file of each
+// handler names its mock, its RPC and its messages in a case.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pleat/v1/sequence_service.pb.h"
+#include "server/handlers/mock_server.h"
+
+namespace pleat {
+
+// Case: Info, Response, Mock (of a MockService), Upload (starts the call), Id (of a response).
+template <typename Case>
+class UploadHandlerTest : public testing::Test {
+ protected:
+  using Info = typename Case::Info;
+  static v1::UploadSequenceRequest Header(const std::string& id, uint64_t offset = 0) {
+    v1::UploadSequenceRequest request;
+    request.mutable_header()->set_id(id);
+    request.mutable_header()->set_size_bytes(6);
+    request.mutable_header()->set_offset_bytes(offset);
+    return request;
+  }
+  static v1::UploadSequenceRequest Data(const std::string& bytes) {
+    v1::UploadSequenceRequest request;
+    request.set_data(bytes);
+    return request;
+  }
+  static Info Stored() {
+    Info info;
+    info.id = kId;
+    return info;
+  }
+  auto& service() { return Case::Mock(mock_.service); }
+  void ExpectNothingStored() {
+    EXPECT_CALL(service(), Get(kId)).WillOnce(testing::Return(absl::NotFoundError("none")));
+  }
+  // What BeginUpload gives; the caller adds what is expected of it.
+  MockUpload<Info>* ExpectUpload(uint64_t offset) {
+    auto upload = std::make_unique<testing::StrictMock<MockUpload<Info>>>();
+    MockUpload<Info>* result = upload.get();
+    EXPECT_CALL(service(), BeginUpload(kId, 6, offset))
+        .WillOnce(testing::Return(testing::ByMove(std::move(upload))));
+    return result;
+  }
+  grpc::Status Send(const std::vector<v1::UploadSequenceRequest>& requests) {
+    const auto writer = Case::Upload(mock_.channel, &mock_.call, &response_);
+    bool open = true;
+    for (const auto& request : requests) open = open && writer->Write(request);
+    writer->WritesDone();
+    return writer->Finish();
+  }
+
+  MockServer mock_;
+  typename Case::Response response_;
+};
+TYPED_TEST_SUITE_P(UploadHandlerTest);
+
+TYPED_TEST_P(UploadHandlerTest, HandsOverThePiecesInOrder) {
+  this->ExpectNothingStored();
+  auto* upload = this->ExpectUpload(0);
+  testing::InSequence in_order;
+  EXPECT_CALL(*upload, Append("abc")).WillOnce(testing::Return(absl::OkStatus()));
+  EXPECT_CALL(*upload, Append("def")).WillOnce(testing::Return(absl::OkStatus()));
+  EXPECT_CALL(*upload, Finish).WillOnce(testing::Return(this->Stored()));
+  EXPECT_TRUE(this->Send({this->Header(kId), this->Data("abc"), this->Data("def")}).ok());
+  EXPECT_EQ(TypeParam::Id(this->response_), kId);
+}
+
+TYPED_TEST_P(UploadHandlerTest, ContentThatIsStoredEndsTheCallEarly) {
+  EXPECT_CALL(this->service(), Get(kId)).WillOnce(testing::Return(this->Stored()));
+  EXPECT_TRUE(this->Send({this->Header(kId)}).ok());
+  EXPECT_EQ(TypeParam::Id(this->response_), kId);
+}
+
+TYPED_TEST_P(UploadHandlerTest, DataBeforeTheHeaderIsRefused) {
+  EXPECT_THAT(this->Send({this->Data("abc")}),
+              HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr("header")));
+}
+
+TYPED_TEST_P(UploadHandlerTest, AnIdThatIsNoneNeverReachesTheService) {
+  EXPECT_THAT(this->Send({this->Header(kPathId)}),
+              HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr("header.id")));
+}
+
+TYPED_TEST_P(UploadHandlerTest, NothingAtAllIsNoUpload) {
+  EXPECT_THAT(this->Send({}), HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::_));
+}
+
+TYPED_TEST_P(UploadHandlerTest, AnEmptyPieceIsRefused) {
+  this->ExpectNothingStored();
+  this->ExpectUpload(3);
+  EXPECT_THAT(
+      this->Send({this->Header(kId, 3), this->Data("")}),
+      HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr("bytes of data")));
+}
+
+TYPED_TEST_P(UploadHandlerTest, PassesOnThatAnotherWriterHoldsIt) {
+  this->ExpectNothingStored();
+  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0))
+      .WillOnce(testing::Return(testing::ByMove(absl::AbortedError("another writer"))));
+  EXPECT_THAT(this->Send({this->Header(kId)}),
+              HasGrpcStatus(grpc::StatusCode::ABORTED, "another writer"));
+}
+
+TYPED_TEST_P(UploadHandlerTest, PassesOnThatTheFileIsBad) {
+  this->ExpectNothingStored();
+  auto* upload = this->ExpectUpload(0);
+  EXPECT_CALL(*upload, Append("abcdef")).WillOnce(testing::Return(absl::OkStatus()));
+  EXPECT_CALL(*upload, Finish)
+      .WillOnce(testing::Return(absl::InvalidArgumentError("no such file")));
+  EXPECT_THAT(this->Send({this->Header(kId), this->Data("abcdef")}),
+              HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, "no such file"));
+}
+
+REGISTER_TYPED_TEST_SUITE_P(UploadHandlerTest, HandsOverThePiecesInOrder,
+                            ContentThatIsStoredEndsTheCallEarly, DataBeforeTheHeaderIsRefused,
+                            AnIdThatIsNoneNeverReachesTheService, NothingAtAllIsNoUpload,
+                            AnEmptyPieceIsRefused, PassesOnThatAnotherWriterHoldsIt,
+                            PassesOnThatTheFileIsBad);
+
+// Case: Info, Request, Response, Mock (of a MockService), Download (starts the call).
+template <typename Case>
+class DownloadHandlerTest : public testing::Test {
+ protected:
+  static constexpr uint64_t kChunk = 512 << 10;
+  static constexpr uint64_t kSize = kChunk + 3;
+
+  auto& service() { return Case::Mock(mock_.service); }
+  void ExpectInfo() {
+    typename Case::Info info;
+    info.id = kId;
+    info.size_bytes = kSize;
+    EXPECT_CALL(service(), Get(kId)).WillOnce(testing::Return(info));
+  }
+  void ExpectRead(uint64_t offset, const std::string& bytes) {
+    EXPECT_CALL(service(), ReadBytes(kId, offset, kChunk)).WillOnce(testing::Return(bytes));
+  }
+  grpc::Status Download(const std::string& id, uint64_t offset) {
+    typename Case::Request request;
+    request.set_id(id);
+    request.set_offset_bytes(offset);
+    const auto reader = Case::Download(mock_.channel, &mock_.call, request);
+    typename Case::Response part;
+    while (reader->Read(&part)) {
+      EXPECT_EQ(part.offset_bytes(), offset + bytes_.size());
+      EXPECT_EQ(part.size_bytes(), kSize);
+      bytes_ += part.data();
+    }
+    return reader->Finish();
+  }
+
+  MockServer mock_;
+  std::string bytes_;  // that have arrived
+};
+TYPED_TEST_SUITE_P(DownloadHandlerTest);
+
+TYPED_TEST_P(DownloadHandlerTest, SendsTheFileInPieces) {
+  const std::string first(this->kChunk, 'x');
+  this->ExpectInfo();
+  this->ExpectRead(0, first);
+  this->ExpectRead(this->kChunk, "end");
+  EXPECT_TRUE(this->Download(kId, 0).ok());
+  EXPECT_TRUE(this->bytes_ == first + "end");
+}
+
+TYPED_TEST_P(DownloadHandlerTest, GoesOnWhereTheClientSays) {
+  this->ExpectInfo();
+  this->ExpectRead(this->kChunk, "end");
+  EXPECT_TRUE(this->Download(kId, this->kChunk).ok());
+  EXPECT_EQ(this->bytes_, "end");
+}
+
+TYPED_TEST_P(DownloadHandlerTest, AnIdThatIsNoneNeverReachesTheService) {
+  EXPECT_THAT(this->Download(kPathId, 0),
+              HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::_));
+}
+
+TYPED_TEST_P(DownloadHandlerTest, AFileThatIsCutOffIsNotTheWholeFile) {
+  this->ExpectInfo();
+  this->ExpectRead(0, "");
+  EXPECT_THAT(this->Download(kId, 0),
+              HasGrpcStatus(grpc::StatusCode::DATA_LOSS, testing::HasSubstr("cut off")));
+}
+
+REGISTER_TYPED_TEST_SUITE_P(DownloadHandlerTest, SendsTheFileInPieces, GoesOnWhereTheClientSays,
+                            AnIdThatIsNoneNeverReachesTheService,
+                            AFileThatIsCutOffIsNotTheWholeFile);
+
+}  // namespace pleat

@@ -1,0 +1,73 @@
+#include "pleat/observe/logging.h"
+
+#include <google/protobuf/stubs/logging.h>
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <string>
+
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class LoggingTest : public testing::Test {
+ protected:
+  ~LoggingTest() override { spdlog::set_default_logger(before_); }
+  // What appears on standard error while `log` runs.
+  template <typename Log>
+  static std::string Captured(const LoggingOptions& options, Log log) {
+    testing::internal::CaptureStderr();
+    EXPECT_THAT(ConfigureLogging(options), IsOk());
+    log();
+    spdlog::default_logger()->flush();
+    return testing::internal::GetCapturedStderr();
+  }
+
+ private:
+  const std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
+};
+
+TEST_F(LoggingTest, EveryLevelHidesTheOnesBelow) {
+  const auto log = [] {
+    spdlog::debug("fine");
+    spdlog::warn("careful");
+    spdlog::error("broken");
+  };
+  EXPECT_THAT(Captured({.level = "trace"}, log), HasSubstr("fine"));
+  const std::string errors = Captured({.level = "error"}, log);
+  EXPECT_THAT(errors, HasSubstr("broken"));
+  EXPECT_THAT(errors, Not(HasSubstr("careful")));
+  EXPECT_EQ(Captured({.level = "off"}, log), "");
+}
+
+TEST_F(LoggingTest, AnUnknownLevelIsRefusedWithTheListOfAll) {
+  for (const char* level : {"", "loud", "INFO", "warning "}) {
+    EXPECT_THAT(ConfigureLogging({.level = level}),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("trace, debug, info")))
+        << level;
+  }
+}
+
+TEST_F(LoggingTest, AMessageWithAnythingInItStaysOneJsonString) {
+  const std::string line = Captured({.json = true}, [] {
+    spdlog::info(std::string("a \"quote\", C:\\ and \n\t\x01\x1f\0 end", 28));
+  });
+  EXPECT_THAT(line, HasSubstr(R"("level":"info")"));
+  EXPECT_THAT(line,
+              HasSubstr(R"("message":"a \"quote\", C:\\ and \u000a\u0009\u0001\u001f\u0000)"));
+  EXPECT_EQ(line.find('\n'), line.size() - 1) << "one line per message";
+}
+
+TEST_F(LoggingTest, WhatProtocolBuffersSayIsADebugLine) {
+  const auto log = [] { GOOGLE_LOG(ERROR) << "bad field"; };
+  EXPECT_EQ(Captured({.level = "info"}, log), "");
+  EXPECT_THAT(Captured({.level = "debug"}, log), HasSubstr("protobuf: bad field"));
+}
+
+}  // namespace
+}  // namespace pleat
