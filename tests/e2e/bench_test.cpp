@@ -39,7 +39,7 @@ class Bench : public testing::Test {
   nlohmann::json Report() { return ParseJson(Bytes(File("b.json"))); }
 
   PleatProgram pleat_;
-  ServerProgram server_{pleat_.File("store"), pleat_.File("pleatd")};
+  ServerProgram server_{pleat_.File("store")};
   std::string address_, id_;
 };
 

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 TEST(Compression, GivesTheSameBytesAndFramesHereAndThere) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(40, 800);
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
 
@@ -83,7 +83,7 @@ TEST(Compression, GivesTheSameBytesAndFramesHereAndThere) {
 TEST(Compression, ControlCCancelsTheJobOnTheServer) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(250, 4000);
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
   const std::unique_ptr<Process> compress = pleat.Start(

@@ -22,7 +22,7 @@ class PleatProgram {
   }
   std::unique_ptr<Process> Start(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), ProgramPath("pleat"));
-    return std::make_unique<Process>(arguments, File("run" + std::to_string(num_runs_++)));
+    return std::make_unique<Process>(arguments);
   }
 
   // Generates a small performer: <folder>/made/performer.pc2 with its .obj.
@@ -35,7 +35,6 @@ class PleatProgram {
 
  private:
   TemporaryFolder folder_;
-  int num_runs_ = 0;
 };
 
 // The bytes of a file, empty when it is not there.

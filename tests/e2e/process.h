@@ -3,7 +3,11 @@
 
 #include <sys/types.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace pleat {
@@ -13,18 +17,18 @@ struct ProcessResult {
   std::string out, err;
 };
 
-// One child process whose output goes to files in a folder of its own. The destructor kills it.
+// One child process. A thread of its own takes what it prints and notices its end, so that nobody
+// has to ask again and again. The destructor kills it.
 class Process {
  public:
   // environment: "NAME=value" entries on top of the parent's.
-  Process(const std::vector<std::string>& command, const std::string& output_stem,
-          const std::vector<std::string>& environment = {});
+  explicit Process(const std::vector<std::string>& command,
+                   const std::vector<std::string>& environment = {});
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  bool started() const { return pid_ > 0; }
-  void Signal(int number) const;
+  void Signal(int number);
   // Waits until it ends; kills it after `limit_seconds` (exit_code is then 137).
   ProcessResult Wait(double limit_seconds = 120);
   // True as soon as `text` stands in its output or errors; false when it ended or time is up.
@@ -33,12 +37,16 @@ class Process {
   std::string err() const;
 
  private:
-  bool Poll();  // true when it has ended
+  // Until both ends of the child's output are closed and it has ended.
+  void Watch(int out_fd, int err_fd);
 
   pid_t pid_ = -1;
+  mutable std::mutex mutex_;  // guards the next three
+  std::string out_, err_;
   bool ended_ = false;
   int exit_code_ = -1;
-  std::string out_path_, err_path_;
+  std::condition_variable changed_;
+  std::thread watcher_;  // last: it uses all of the above
 };
 
 // build/bin/<name> of this build.

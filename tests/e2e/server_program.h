@@ -13,10 +13,9 @@ namespace pleat {
 
 class ServerProgram {
  public:
-  // output_stem: where its log goes. flags: further ones.
-  ServerProgram(const std::string& data_folder, const std::string& output_stem,
-                const std::vector<std::string>& flags = {})
-      : process_(Command(data_folder, flags), output_stem) {}
+  // flags: further ones.
+  explicit ServerProgram(const std::string& data_folder, const std::vector<std::string>& flags = {})
+      : process_(Command(data_folder, flags)) {}
 
   // The address it listens on, empty when it did not come up.
   std::string WaitForAddress() {
@@ -28,7 +27,7 @@ class ServerProgram {
   }
   std::string log() const { return process_.out() + process_.err(); }
 
-  void Signal(int number) const { process_.Signal(number); }
+  void Signal(int number) { process_.Signal(number); }
   ProcessResult Stop() {
     process_.Signal(SIGTERM);
     return process_.Wait(20);

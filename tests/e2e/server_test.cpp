@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 TEST(Server, TrainsToTheSameBytesAsLocalAndStreamsEditedFrames) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(40, 800);
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
 
@@ -67,7 +67,7 @@ TEST(Server, SeveralClipsTrainOneCharacterHereAndThere) {
   const std::string first = pleat.GeneratePerformer(25, 800);
   const std::string second = generate("second", 20, "--seed");
   const std::string stranger = generate("stranger", 5, "--character-seed");
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
 
@@ -100,7 +100,7 @@ TEST(Server, AnOwnRigWithALockedJointGivesTheSameBytesHereAndThere) {
   const std::string rig = pleat.File("rig.json");
   ProcessResult result = pleat.Run({"rig", input, "--no-fit", "-o", rig});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
   const std::string remote = pleat.File("remote.pleat"), local = pleat.File("local.pleat");
@@ -125,7 +125,7 @@ TEST(Server, KeepsWhatItHasOverARestart) {
   const std::string input = pleat.GeneratePerformer(20, 800);
   std::string sequence_id;
   {
-    ServerProgram server(pleat.File("store"), pleat.File("pleatd1"));
+    ServerProgram server(pleat.File("store"));
     const std::string address = server.WaitForAddress();
     ASSERT_NE(address, "") << server.log();
     const ProcessResult result = pleat.Run({"upload", input, "--server", address});
@@ -133,7 +133,7 @@ TEST(Server, KeepsWhatItHasOverARestart) {
     sequence_id = result.out.substr(0, 64);
     EXPECT_EQ(server.Stop().exit_code, 0) << server.log();
   }
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd2"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
   ProcessResult result = pleat.Run({"sequences", "--server", address, "--json"});
@@ -148,7 +148,7 @@ TEST(Server, KeepsWhatItHasOverARestart) {
 TEST(Server, ControlCCancelsTheJob) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(60, 800);
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
   const std::unique_ptr<Process> train =
@@ -164,7 +164,7 @@ TEST(Server, ControlCCancelsTheJob) {
 TEST(Server, DetachedJobsCanBeWatchedAndTheirModelsDownloaded) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(30, 800);
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
   ProcessResult result =

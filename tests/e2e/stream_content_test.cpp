@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 TEST(StreamContent, StreamsHoldLessThanAMeshWhereAskedTo) {
   PleatProgram pleat;
   const std::string input = pleat.GeneratePerformer(25, 800);
-  ServerProgram server(pleat.File("store"), pleat.File("pleatd"));
+  ServerProgram server(pleat.File("store"));
   const std::string address = server.WaitForAddress();
   ASSERT_NE(address, "") << server.log();
   const std::string model = pleat.File("m.pleat"), motion = pleat.File("motion.json");

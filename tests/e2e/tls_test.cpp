@@ -39,7 +39,7 @@ class Tls : public testing::Test {
 };
 
 TEST_F(Tls, AClientThatTrustsTheAuthorityTrainsAndPoses) {
-  ServerProgram server(pleat_.File("store"), pleat_.File("pleatd"), ServerFlags());
+  ServerProgram server(pleat_.File("store"), ServerFlags());
   ASSERT_EQ(ListModels(server, {"--tls-ca", ca_}).exit_code, 0) << server.log();
   const std::string input = pleat_.GeneratePerformer(25, 800);
   const ProcessResult result =
@@ -50,7 +50,7 @@ TEST_F(Tls, AClientThatTrustsTheAuthorityTrainsAndPoses) {
 }
 
 TEST_F(Tls, StrangersAndPlainTextAreRefused) {
-  ServerProgram server(pleat_.File("store"), pleat_.File("pleatd"), ServerFlags());
+  ServerProgram server(pleat_.File("store"), ServerFlags());
   const Certificate stranger = Certificate::Authority("stranger");
   const ProcessResult untrusted =
       ListModels(server, {"--tls-ca", Write("other.pem", stranger.certificate_pem())});
@@ -64,7 +64,7 @@ TEST_F(Tls, StrangersAndPlainTextAreRefused) {
 TEST_F(Tls, AServerMayAskForTheClientsCertificate) {
   std::vector<std::string> flags = ServerFlags();
   flags.insert(flags.end(), {"--tls-client-ca", ca_});
-  ServerProgram server(pleat_.File("store"), pleat_.File("pleatd"), flags);
+  ServerProgram server(pleat_.File("store"), flags);
   EXPECT_NE(ListModels(server, {"--tls-ca", ca_}).exit_code, 0);
   const auto as_client = [&](const Certificate& client) {
     return ListModels(server,

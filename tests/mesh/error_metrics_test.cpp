@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "pleat/base/random.h"
 
 namespace pleat {
 namespace {
@@ -65,6 +69,65 @@ TEST(ErrorMetricsTest, NothingAddedIsAllZero) {
   const ErrorSummary summary = ErrorAccumulator(1).Summarize();
   EXPECT_EQ(summary.mean_percent, 0);
   EXPECT_TRUE(summary.frame_mean_percent.empty());
+}
+
+class RandomErrors {
+ public:
+  RandomErrors() {
+    Random random(2);
+    for (int t = 0; t < kFrames; ++t) {
+      for (auto* frames : {&predicted, &truth}) {
+        frames->emplace_back(3, kVertices);
+        for (double& x : frames->back().reshaped()) x = random.Uniform(-1, 1);
+      }
+    }
+  }
+  // With every position x taken to scale * (rotation * x + offset).
+  ErrorSummary Summarize(double scale, const Eigen::Matrix3d& rotation,
+                         const Eigen::Vector3d& offset) const {
+    ErrorAccumulator errors(2 * scale);
+    for (int t = 0; t < kFrames; ++t) {
+      errors.AddFrame(scale * ((rotation * predicted[t]).colwise() + offset),
+                      scale * ((rotation * truth[t]).colwise() + offset));
+    }
+    return errors.Summarize();
+  }
+
+  static constexpr int kFrames = 6, kVertices = 40;
+  std::vector<Eigen::Matrix3Xd> predicted, truth;
+};
+
+TEST(ErrorMetricsTest, PercentsDoNotDependOnPlaceAxesAndUnits) {
+  const RandomErrors errors;
+  const ErrorSummary a = errors.Summarize(1, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const ErrorSummary b = errors.Summarize(1000, turn, {5, -3, 2});
+  for (double ErrorSummary::*value :
+       {&ErrorSummary::mean_percent, &ErrorSummary::rms_percent, &ErrorSummary::p95_percent,
+        &ErrorSummary::max_percent, &ErrorSummary::motion_mean_percent}) {
+    EXPECT_GT(a.*value, 0);
+    EXPECT_NEAR(a.*value, b.*value, 1e-4 * (a.*value));
+  }
+  EXPECT_NEAR(1000 * a.mean_mm, b.mean_mm, 1e-6 * b.mean_mm);
+  EXPECT_NEAR(1000 * a.jitter_mm, b.jitter_mm, 1e-6 * b.jitter_mm);
+  EXPECT_NEAR(1000 * a.truth_jitter_mm, b.truth_jitter_mm, 1e-6 * b.truth_jitter_mm);
+}
+
+TEST(ErrorMetricsTest, NinetyFivePercentOfAllDistancesAreAtMostThePercentile) {
+  const RandomErrors errors;
+  const ErrorSummary summary =
+      errors.Summarize(1, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+  std::vector<double> percents;
+  for (int t = 0; t < RandomErrors::kFrames; ++t) {
+    for (const double m : (errors.predicted[t] - errors.truth[t]).colwise().norm()) {
+      percents.push_back(50 * m);
+    }
+  }
+  std::sort(percents.begin(), percents.end());
+  EXPECT_NEAR(summary.p95_percent, percents[static_cast<size_t>(.95 * (percents.size() - 1))],
+              1e-4);
+  EXPECT_NEAR(summary.max_percent, percents.back(), 1e-4);
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <numeric>
+
+#include "pleat/base/random.h"
 #include "support/mesh_shapes.h"
 
 namespace pleat {
@@ -63,6 +67,34 @@ TEST(MeshReportTest, VolumeDoesNotDependOnThePlace) {
   const double volume = InspectMesh(sphere.topology, sphere.positions).signed_volume_m3;
   sphere.positions.colwise() += Eigen::Vector3d(1000, -50, 3);
   EXPECT_NEAR(InspectMesh(sphere.topology, sphere.positions).signed_volume_m3, volume, 1e-9);
+}
+
+// Triangles between vertices of which many share a place and some have no face.
+TEST(MeshReportTest, TheNumberingOfVerticesAndFacesDoesNotMatter) {
+  Random random(11);
+  for (int round = 0; round < 20; ++round) {
+    constexpr int kVertices = 30, kFaces = 25;
+    Eigen::Matrix3Xd positions(3, kVertices);
+    for (double& coordinate : positions.reshaped()) coordinate = random.UniformInt(3);
+    std::vector<int> name(kVertices), order(kFaces);
+    std::iota(name.begin(), name.end(), 0);
+    std::iota(order.begin(), order.end(), 0);
+    for (int i = kVertices - 1; i > 0; --i) std::swap(name[i], name[random.UniformInt(i + 1)]);
+    for (int i = kFaces - 1; i > 0; --i) std::swap(order[i], order[random.UniformInt(i + 1)]);
+    Eigen::Matrix3Xi faces(3, kFaces), renamed(3, kFaces);
+    for (int& corner : faces.reshaped()) corner = random.UniformInt(kVertices - 3);
+    Eigen::Matrix3Xd moved(3, kVertices);
+    for (int v = 0; v < kVertices; ++v) moved.col(name[v]) = positions.col(v);
+    for (int f = 0; f < kFaces; ++f) {
+      for (int k = 0; k < 3; ++k) renamed(k, order[f]) = name[faces((k + f) % 3, f)];
+    }
+    const MeshReport a = InspectMesh(*Topology::FromTriangles(kVertices, faces), positions);
+    const MeshReport b = InspectMesh(*Topology::FromTriangles(kVertices, renamed), moved);
+    EXPECT_EQ(DescribeFaults(a), DescribeFaults(b));
+    EXPECT_GE(a.num_unreferenced_vertices, 3);
+    EXPECT_NEAR(a.signed_volume_m3, b.signed_volume_m3, 1e-12);
+    EXPECT_LE(a.num_welded_components, a.num_components);
+  }
 }
 
 }  // namespace

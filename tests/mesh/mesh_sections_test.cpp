@@ -1,5 +1,8 @@
 #include "pleat/mesh/mesh_sections.h"
 
+#include <string>
+
+#include "support/hostile_bytes.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -79,6 +82,58 @@ TEST(MeshSectionsTest, FrameRatesArePositive) {
     EXPECT_FALSE(MakeFrameRate(wrong, 1).ok());
     EXPECT_FALSE(MakeFrameRate(30, wrong).ok());
   }
+}
+
+TEST(MeshSectionsTest, EveryCutIsNoticedBeforeAnythingIsAllocated) {
+  const Topology topology = TriangleAndQuad();
+  const MeshAppearance appearance = Painted();
+  ByteWriter faces, names, lists;
+  WriteFaces(topology, &faces);
+  WriteMaterialNames(appearance, &names);
+  WriteAppearanceLists(appearance, &lists);
+  ForEachTruncation(std::string(faces.bytes()), [](const std::string& bytes) {
+    ByteReader reader(bytes);
+    EXPECT_EQ(ReadFaces(&reader, 5, 2, 7).status().code(), absl::StatusCode::kDataLoss);
+  });
+  ForEachTruncation(std::string(names.bytes()), [](const std::string& bytes) {
+    ByteReader reader(bytes);
+    MeshAppearance read;
+    EXPECT_EQ(ReadMaterialNames(&reader, 2, &read).code(), absl::StatusCode::kDataLoss);
+  });
+  ForEachTruncation(std::string(lists.bytes()), [&](const std::string& bytes) {
+    ByteReader reader(bytes);
+    MeshAppearance read;
+    EXPECT_EQ(ReadAppearanceLists(&reader, 2, 3, topology, &read).code(),
+              absl::StatusCode::kDataLoss);
+  });
+}
+
+TEST(MeshSectionsTest, CountsThatTheBytesCannotHoldAreRefused) {
+  const std::string bytes(64, '\1');
+  MeshAppearance read;
+  for (const uint32_t count : {0x11u, 0x10000000u, 0x80000000u, 0xffffffffu}) {
+    ByteReader names(bytes), lists(bytes), sizes(bytes), corners(bytes);
+    EXPECT_FALSE(ReadMaterialNames(&names, count, &read).ok()) << count;
+    EXPECT_FALSE(ReadAppearanceLists(&lists, count, 0, TriangleAndQuad(), &read).ok()) << count;
+    EXPECT_FALSE(ReadFaces(&sizes, 5, count, 7).ok()) << count;
+    EXPECT_FALSE(ReadFaces(&corners, 5, 0, count).ok()) << count;
+  }
+}
+
+TEST(MeshSectionsTest, CorruptFacesAreRefusedOrValid) {
+  ByteWriter writer;
+  WriteFaces(TriangleAndQuad(), &writer);
+  int num_valid = 0;
+  ForEachCorruption(std::string(writer.bytes()), [&](const std::string& bytes) {
+    ByteReader reader(bytes);
+    const absl::StatusOr<Topology> read = ReadFaces(&reader, 5, 2, 7);
+    if (!read.ok()) return;
+    ++num_valid;
+    EXPECT_EQ(read->num_corners(), 7);
+    EXPECT_LT(read->triangles().maxCoeff(), 5);
+    EXPECT_GE(read->triangles().minCoeff(), 0);
+  });
+  EXPECT_GT(num_valid, 0);
 }
 
 }  // namespace

@@ -27,5 +27,29 @@ TEST(NormalsTest, OfAGridPointUpAndLooseVerticesHaveNone) {
             Eigen::Vector3d::Zero());
 }
 
+// The volume inside a closed surface grows along these normals, a sixth of their length per meter.
+TEST(NormalsTest, AreTheGradientOfTheVolume) {
+  MeshShape box = MakeBox({1, 2, 3});
+  const Eigen::Matrix3Xd normals = SumTriangleNormals(box.positions, box.topology.triangles());
+  EXPECT_NEAR(normals.rowwise().sum().norm(), 0, 1e-12);
+  for (double& coordinate : box.positions.reshaped()) {
+    const auto volume_at = [&](double value) {
+      coordinate = value;
+      double volume = 0;
+      for (const auto& corners : box.topology.triangles().colwise()) {
+        volume += box.positions.col(corners[0])
+                      .dot(Eigen::Vector3d(box.positions.col(corners[1]))
+                               .cross(Eigen::Vector3d(box.positions.col(corners[2])))) /
+                  6;
+      }
+      return volume;
+    };
+    const double x = coordinate, step = 1e-3;
+    const double slope = (volume_at(x + step) - volume_at(x - step)) / (2 * step);
+    coordinate = x;
+    EXPECT_NEAR(normals.data()[&coordinate - box.positions.data()] / 6, slope, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace pleat

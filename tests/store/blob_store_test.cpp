@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -121,6 +122,68 @@ TEST(BlobStoreTest, ManyWritersOfTheSameContent) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(blobs.List()->size(), 1u);
   EXPECT_EQ(blobs.Get(blobs.List()->front()).value(), content);
+}
+
+TEST(BlobStoreTest, RangesAreExactUpToTheLargestNumbers) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  const std::string content = "0123456789";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string id, blobs.Put(content));
+  const uint64_t most = std::numeric_limits<uint64_t>::max();
+  for (uint64_t offset = 0; offset <= 10; ++offset) {
+    for (const uint64_t count : {uint64_t{0}, uint64_t{1}, uint64_t{9}, most - 3, most}) {
+      EXPECT_EQ(blobs.GetRange(id, offset, count).value(), content.substr(offset, count));
+    }
+  }
+  for (const uint64_t offset : {uint64_t{11}, uint64_t{1} << 63, most}) {
+    EXPECT_EQ(blobs.GetRange(id, offset, most).status().code(), absl::StatusCode::kOutOfRange);
+  }
+  EXPECT_EQ(blobs.CheckSpace(most).code(), absl::StatusCode::kResourceExhausted);
+}
+
+TEST(BlobStoreTest, FilesOfOthersAreNeitherListedNorRemoved) {
+  TemporaryFolder folder;
+  const std::string id(64, 'a');
+  for (const char* name : {"README", "ab/notes.txt", "ab/.tmp-hidden/x"}) {
+    ASSERT_THAT(WriteFile(folder.File(name), "mine"), IsOk());
+  }
+  std::filesystem::create_directories(folder.File("aa/" + id));  // the name of a file
+  PLEAT_ASSERT_OK_AND_ASSIGN(const BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  for (const char* name : {"README", "ab/notes.txt"}) {
+    EXPECT_EQ(ReadFile(folder.File(name)).value_or(""), "mine") << name;
+  }
+  EXPECT_FALSE(blobs.Contains(id));
+  EXPECT_THAT(blobs.Get(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+}
+
+TEST(BlobStoreTest, PublishingMakesAFolderThatIsGoneAndMissesAFileThatIs) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  const std::string elsewhere = folder.File("elsewhere");
+  ASSERT_THAT(WriteFile(elsewhere, "hello"), IsOk());
+  const std::string id = ToHex(ComputeSha256("hello"));
+  ASSERT_THAT(blobs.Publish(StagedFile(id, elsewhere, StagedFile::Unpublished::kRemove)), IsOk());
+  EXPECT_EQ(blobs.Get(id).value(), "hello");
+  PLEAT_ASSERT_OK_AND_ASSIGN(StagedFile file, blobs.Stage("bye"));
+  std::filesystem::remove(file.path());
+  EXPECT_THAT(blobs.Publish(std::move(file)),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("cannot store")));
+  EXPECT_THAT(blobs.List().value(), ElementsAre(id));
+}
+
+TEST(StagedFileTest, OnlyTheLastOwnerRemovesTheFile) {
+  TemporaryFolder folder;
+  const std::string path = folder.File("x");
+  ASSERT_THAT(WriteFile(path, "hello"), IsOk());
+  {
+    StagedFile first("id", path, StagedFile::Unpublished::kRemove);
+    { const StagedFile second("id", path, StagedFile::Unpublished::kKeep); }
+    EXPECT_TRUE(std::filesystem::exists(path));  // it was not its own to remove
+    const StagedFile third(std::move(first));
+    EXPECT_TRUE(std::filesystem::exists(path));
+    EXPECT_EQ(third.path(), path);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 }  // namespace

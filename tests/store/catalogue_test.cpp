@@ -5,9 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "pleat/base/file.h"
 #include "store/sync_gate.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -139,6 +144,90 @@ TEST(CatalogueTest, ManyThreads) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(catalogue->List(EntryKind::kJob)->size(), 40u);
+}
+
+TEST(CatalogueTest, IdsAreNeverReadAsSql) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db")));
+  const std::vector<std::string> ids = {"",
+                                        "'",
+                                        "' OR 1=1 --",
+                                        "x'); DROP TABLE entries; --",
+                                        "%",
+                                        "?1",
+                                        std::string("a\0b", 3),
+                                        std::string("a\0c", 3),
+                                        std::string(5000, 'i')};
+  for (const std::string& id : ids) {
+    ASSERT_THAT(catalogue->Put(EntryKind::kModel, {id, "record of " + id, 0}), IsOk());
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, catalogue->List(EntryKind::kModel));
+  ASSERT_EQ(entries.size(), ids.size());
+  for (size_t i = 0; i < ids.size(); ++i) {
+    EXPECT_EQ(entries[i].id, ids[i]);
+    EXPECT_EQ(catalogue->Get(EntryKind::kModel, ids[i])->record, "record of " + ids[i]);
+    ASSERT_THAT(catalogue->Delete(EntryKind::kModel, ids[i]), IsOk());
+    EXPECT_EQ(catalogue->List(EntryKind::kModel)->size(), ids.size() - i - 1);
+  }
+}
+
+TEST(CatalogueTest, KindsWithOneIdAreStrangers) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(folder.File("c.db")));
+  const std::vector<EntryKind> kinds = {EntryKind::kSequence, EntryKind::kModel,
+                                        EntryKind::kCompressedSequence, EntryKind::kJob,
+                                        EntryKind::kRig};
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    ASSERT_THAT(catalogue->Put(kinds[k], {"same", std::string(k, 'r'), static_cast<int>(k)}),
+                IsOk());
+  }
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const CatalogueEntry entry, catalogue->Get(kinds[k], "same"));
+    EXPECT_EQ(entry.record.size(), k);
+    EXPECT_EQ(entry.attempts, static_cast<int>(k));
+    ASSERT_THAT(catalogue->Delete(kinds[k], "same"), IsOk());
+    for (size_t other = 0; other < kinds.size(); ++other) {
+      EXPECT_EQ(catalogue->Get(kinds[other], "same").ok(), other > k);
+    }
+  }
+}
+
+// Whatever stands in the file, a start or a read says so; none gives entries that were never there.
+TEST(CatalogueTest, DamageAnywhereIsNeverBelieved) {
+  TemporaryFolder folder;
+  const std::string path = folder.File("c.db");
+  std::set<std::string> records;
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto catalogue, Catalogue::Open(path));
+    for (int i = 0; i < 60; ++i) {
+      const std::string record(300, static_cast<char>('A' + i));
+      records.insert(record);
+      ASSERT_THAT(catalogue->Put(EntryKind::kJob, {std::to_string(i), record, 0}), IsOk());
+    }
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string good, ReadFile(path));
+  for (size_t size = 0; size < good.size(); size += 4096) {  // whole pages are missing
+    ASSERT_THAT(WriteFile(path, good.substr(0, size)), IsOk());
+    const auto catalogue = Catalogue::Open(path);
+    if (size == 0) {  // a new catalogue
+      EXPECT_THAT(catalogue, IsOk());
+    } else {
+      EXPECT_FALSE(catalogue.ok() && (*catalogue)->List(EntryKind::kJob).ok()) << size;
+    }
+    for (const char* log : {"-wal", "-shm"}) std::filesystem::remove(path + log);
+  }
+  // The first bytes of each page say what it is.
+  for (size_t page = 0; page < good.size(); page += 4096) {
+    std::string damaged = good;
+    damaged.replace(page, 8, 8, '\x7f');
+    ASSERT_THAT(WriteFile(path, damaged), IsOk());
+    const auto catalogue = Catalogue::Open(path);
+    const auto entries = catalogue.ok()
+                             ? (*catalogue)->List(EntryKind::kJob)
+                             : absl::StatusOr<std::vector<CatalogueEntry>>(catalogue.status());
+    if (!entries.ok()) continue;
+    for (const CatalogueEntry& entry : *entries) EXPECT_TRUE(records.contains(entry.record));
+  }
 }
 
 }  // namespace

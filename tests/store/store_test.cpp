@@ -1,6 +1,9 @@
 #include "pleat/store/store.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <functional>
@@ -8,6 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/file.h"
 #include "pleat/base/sha256.h"
 #include "store/sync_gate.h"
 #include "support/status_matchers.h"
@@ -167,6 +171,97 @@ TEST(StoreTest, SaysWhyItCannotStart) {
   TemporaryFolder folder;
   EXPECT_THAT(Store::Open({.data_dir = folder.path(), .reserve_bytes = uint64_t{1} << 60}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("room")));
+}
+
+TEST_F(StoreSyncTest, AnEntryOfAnotherKindTakesNoFileAway) {
+  ASSERT_THAT(AddModel("bytes"), IsOk());
+  for (const EntryKind kind : {EntryKind::kSequence, EntryKind::kRig, EntryKind::kJob}) {
+    EXPECT_THAT(store_->Delete(kind, IdOf("bytes")),
+                HasStatus(absl::StatusCode::kNotFound, testing::_));
+  }
+  EXPECT_EQ(store_->blobs().Get(IdOf("bytes")).value(), "bytes");
+}
+
+TEST_F(StoreSyncTest, AddingAgainReplacesTheRecordAndKeepsThePlace) {
+  ASSERT_THAT(AddModel("first"), IsOk());
+  ASSERT_THAT(AddModel("second"), IsOk());
+  ASSERT_THAT(store_->Add(EntryKind::kModel, {IdOf("first"), "a new record"}, "first"), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, store_->catalogue().List(EntryKind::kModel));
+  ASSERT_EQ(entries.size(), 2u);
+  EXPECT_EQ(entries[0].record, "a new record");
+  EXPECT_EQ(store_->blobs().List()->size(), 2u);
+}
+
+TEST(StoreTest, AStartKeepsWhatARowNamesAndUploadsAndNothingElse) {
+  TemporaryFolder folder;
+  const std::vector<EntryKind> kinds = {EntryKind::kSequence, EntryKind::kModel,
+                                        EntryKind::kCompressedSequence, EntryKind::kRig};
+  const auto id_of = [](const std::string& bytes) { return ToHex(ComputeSha256(bytes)); };
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto store, Store::Open({.data_dir = folder.path()}));
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      const std::string bytes = absl::StrCat("kind ", k);
+      ASSERT_THAT(store->Add(kinds[k], {id_of(bytes), ""}, bytes), IsOk());
+    }
+    // The row of a job needs no file and keeps none.
+    ASSERT_THAT(store->catalogue().Put(EntryKind::kJob, {id_of("job"), "", 0}), IsOk());
+    ASSERT_THAT(store->blobs().Put("job"), IsOk());
+    ASSERT_THAT((*store->uploads().Begin(id_of("upload"), 6, 0))->Append("upl"), IsOk());
+  }
+  ASSERT_THAT(WriteFile(folder.File("blobs/ab/" + std::string(64, 'a') + ".tmp-abcdef"), "half"),
+              IsOk());
+  for (int start = 0; start < 2; ++start) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto store, Store::Open({.data_dir = folder.path()}));
+    EXPECT_TRUE(store->missing_files().empty());
+    EXPECT_EQ(store->blobs().List()->size(), kinds.size());
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      EXPECT_THAT(store->blobs().Get(id_of(absl::StrCat("kind ", k))), IsOk());
+    }
+    EXPECT_EQ(store->uploads().ReceivedBytes(id_of("upload")), 3u);
+  }
+}
+
+TEST(StoreTest, AFolderInUseNamesItsHolder) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto store, Store::Open({.data_dir = folder.path()}));
+  EXPECT_THAT(Store::Open({.data_dir = folder.path()}),
+              HasStatus(absl::StatusCode::kFailedPrecondition,
+                        testing::AllOf(HasSubstr(absl::StrCat("(process ", getpid(), ")")),
+                                       HasSubstr("--data-dir"))));
+}
+
+// A child adds and deletes as fast as it can and is killed; afterwards every row has its file.
+TEST(StoreTest, AKillLeavesNoRowWithoutItsFile) {
+  TemporaryFolder folder;
+  for (int round = 0; round < 3; ++round) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      auto store = Store::Open({.data_dir = folder.path()});
+      for (int i = 0; store.ok(); ++i) {
+        const std::string bytes = absl::StrCat(i % 7), id = ToHex(ComputeSha256(bytes));
+        if (!(*store)->Add(EntryKind::kModel, {id, bytes}, bytes).ok()) _exit(1);
+        if (i % 2 == 1 && !(*store)->Delete(EntryKind::kModel, id).ok()) _exit(1);
+        if (write(ends[1], "x", 1) != 1) _exit(1);
+      }
+      _exit(1);
+    }
+    close(ends[1]);
+    char beats[1];
+    for (int beat = 0; beat < 15 + 4 * round; ++beat) ASSERT_EQ(read(ends[0], beats, 1), 1);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    close(ends[0]);
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto store, Store::Open({.data_dir = folder.path()}));
+    EXPECT_TRUE(store->missing_files().empty());
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, store->catalogue().List(EntryKind::kModel));
+    EXPECT_FALSE(entries.empty());
+    for (const CatalogueEntry& entry : entries) {
+      EXPECT_EQ(store->blobs().Get(entry.id).value_or("missing"), entry.record);
+    }
+    EXPECT_EQ(store->blobs().List()->size(), entries.size());
+  }
 }
 
 }  // namespace

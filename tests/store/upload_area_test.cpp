@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
+#include <limits>
+#include <thread>
+#include <vector>
 
 #include "pleat/base/file.h"
+#include "pleat/base/random.h"
 #include "pleat/base/sha256.h"
 #include "pleat/store/blob_store.h"
 #include "support/status_matchers.h"
@@ -99,6 +104,71 @@ TEST_F(UploadAreaTest, ForgetsOldUploads) {
   EXPECT_EQ(area_->ReceivedBytes(id_), 3u);
   area_ = UploadArea::Open(folder_.File("uploads"), 50).value();
   EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
+}
+
+TEST_F(UploadAreaTest, PartsOfAnySizeAndAnyNumberOfBreaksGiveTheContent) {
+  Random random(5);
+  std::string content(10'000, '\0');
+  for (char& byte : content) byte = static_cast<char>(random.UniformInt(256));
+  const std::string id = ToHex(ComputeSha256(content));
+  size_t sent = 0;
+  while (sent < content.size()) {
+    if (random.UniformInt(3) == 0) area_ = UploadArea::Open(folder_.File("uploads")).value();
+    PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id, content.size(), sent));
+    for (int part = random.UniformInt(4); part > 0; --part) {
+      const std::string bytes = content.substr(sent, random.UniformInt(700));
+      ASSERT_THAT(upload->Append(bytes), IsOk());
+      sent += bytes.size();
+    }
+    EXPECT_EQ(upload->received_bytes(), sent);
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, area_->Begin(id, content.size(), content.size()));
+  EXPECT_EQ(upload->ReadComplete().value(), content);
+}
+
+TEST_F(UploadAreaTest, OffsetsThatDoNotFitLeaveWhatIsThere) {
+  { ASSERT_THAT((*area_->Begin(id_, content_.size(), 0))->Append("a seq"), IsOk()); }
+  const uint64_t most = std::numeric_limits<uint64_t>::max();
+  for (const auto& [size_bytes, offset_bytes] :
+       {std::pair<uint64_t, uint64_t>(25, 4), {25, 6}, {25, most}, {4, 5}, {most, most}}) {
+    EXPECT_THAT(area_->Begin(id_, size_bytes, offset_bytes),
+                HasStatus(absl::StatusCode::kOutOfRange, HasSubstr("has 5")));
+    EXPECT_EQ(area_->ReceivedBytes(id_), 5u);
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, area_->Begin(id_, content_.size(), 0));
+  EXPECT_EQ(area_->ReceivedBytes(id_), 0u);  // it has begun again
+}
+
+TEST_F(UploadAreaTest, BytesThatChangeOnTheDiskAreNoticedAndForgotten) {
+  const std::string path = folder_.File("uploads/" + id_ + ".part");
+  for (const std::string& damage : {std::string("A sequence in a few bytes"),  // another byte
+                                    content_.substr(1), std::string()}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, area_->Begin(id_, content_.size(), 0));
+    ASSERT_THAT(upload->Append(content_), IsOk());
+    std::filesystem::resize_file(path, 0);
+    ASSERT_THAT(WriteFile(path, damage), IsOk());
+    EXPECT_EQ(upload->ReadComplete().status().code(), absl::StatusCode::kDataLoss) << damage;
+    EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
+  }
+}
+
+TEST_F(UploadAreaTest, OfManyWritersAtOnceOneBegins) {
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> num_ready = 0, num_begun = 0, num_refused = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&] {
+        ++num_ready;
+        while (num_ready < 4) std::this_thread::yield();
+        const auto upload = area_->Begin(id_, content_.size(), 0);
+        ++(upload.ok() ? num_begun : num_refused);
+        while (num_begun + num_refused < 4) std::this_thread::yield();  // it is held until then
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(num_begun, 1);
+    EXPECT_EQ(num_refused, 3);
+  }
 }
 
 }  // namespace

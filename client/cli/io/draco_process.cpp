@@ -18,8 +18,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,7 @@ namespace pleat {
 namespace {
 
 constexpr int kPollMs = 50;  // how soon a cancellation or the deadline is noticed
+constexpr auto kEndPoll = std::chrono::milliseconds(1);
 constexpr size_t kMaxMessageBytes = 2000;
 
 // Returns the path of pleat-draco, which lies beside this program.
@@ -83,7 +86,8 @@ class Child {
   ~Child() {
     if (pid_ <= 0) return;
     kill(pid_, SIGKILL);
-    Wait();
+    int status = 0;
+    TryWait(0, &status);
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -96,7 +100,7 @@ class Child {
     posix_spawn_file_actions_adddup2(&actions, input_fd, STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, output_.write_end.get(), STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, messages_.write_end.get(), STDERR_FILENO);
-    const std::string program = ChildPath();
+    const std::string program = options_.program.empty() ? ChildPath() : options_.program;
     std::vector<std::string> words = {
         program, absl::StrCat(options_.memory_bytes), absl::StrCat(options_.cpu_seconds),
         absl::StrCat(options_.limits.max_vertices), absl::StrCat(options_.limits.max_faces)};
@@ -139,9 +143,11 @@ class Child {
   // Waits for the end of a child that closed its output too early, and returns the reason. It is an
   // error in any case.
   absl::Status Outcome() {
+    PLEAT_ASSIGN_OR_RETURN(const int status, AwaitEnd());
     char message[kMaxMessageBytes];
-    const ssize_t length = read(messages_.read_end.get(), message, sizeof message);
-    const int status = Wait();
+    struct pollfd entry = {messages_.read_end.get(), POLLIN, 0};
+    const ssize_t length =
+        poll(&entry, 1, 0) > 0 ? read(messages_.read_end.get(), message, sizeof message) : 0;
     if (WIFSIGNALED(status)) {
       if (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) {
         return absl::ResourceExhaustedError(
@@ -162,7 +168,7 @@ class Child {
     char more = 0;
     PLEAT_ASSIGN_OR_RETURN(const size_t count, Read(&more, 1));
     if (count > 0) return absl::DataLossError("pleat-draco wrote too much");
-    const int status = Wait();
+    PLEAT_ASSIGN_OR_RETURN(const int status, AwaitEnd());
     return WIFEXITED(status) && WEXITSTATUS(status) == 0
                ? absl::OkStatus()
                : absl::InternalError("pleat-draco ended badly");
@@ -172,26 +178,42 @@ class Child {
  private:
   absl::Status AwaitOutput() {
     while (true) {
+      PLEAT_RETURN_IF_ERROR(CheckTime());
       struct pollfd entry = {output_.read_end.get(), POLLIN, 0};
       const int ready = poll(&entry, 1, kPollMs);
       if (ready > 0) return absl::OkStatus();
       if (ready < 0 && errno != EINTR) return absl::ErrnoToStatus(errno, "cannot wait");
-      if (progress_.cancelled()) return absl::CancelledError("reading was cancelled");
-      if (MonotonicSeconds() > deadline_seconds_) {
-        return absl::ResourceExhaustedError(
-            absl::StrCat("decoding takes more than ", options_.wall_seconds, " s"));
-      }
     }
   }
 
-  int Wait() {
+  // A child that always has a little to say must not go on for ever either.
+  absl::Status CheckTime() const {
+    if (progress_.cancelled()) return absl::CancelledError("reading was cancelled");
+    if (MonotonicSeconds() <= deadline_seconds_) return absl::OkStatus();
+    return absl::ResourceExhaustedError(
+        absl::StrCat("decoding takes more than ", options_.wall_seconds, " s"));
+  }
+
+  // How the child has ended: one that closes its output need not end.
+  absl::StatusOr<int> AwaitEnd() {
     int status = 0;
-    struct rusage usage = {};
-    while (wait4(pid_, &status, 0, &usage) < 0 && errno == EINTR) {
+    while (!TryWait(WNOHANG, &status)) {
+      PLEAT_RETURN_IF_ERROR(CheckTime());
+      std::this_thread::sleep_for(kEndPoll);
     }
+    return status;
+  }
+
+  // False while the child runs on.
+  bool TryWait(int flags, int* status) {
+    struct rusage usage = {};
+    pid_t ended = 0;
+    while ((ended = wait4(pid_, status, flags, &usage)) < 0 && errno == EINTR) {
+    }
+    if (ended == 0) return false;
     pid_ = -1;
     peak_memory_bytes_ = static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
-    return status;
+    return true;
   }
 
   const Progress& progress_;

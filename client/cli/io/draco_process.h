@@ -16,6 +16,7 @@ struct DracoProcessOptions {
   int cpu_seconds = 20;                       // the processor time of the child
   double wall_seconds = 60;                   // the elapsed time after which it is killed
   MeshLimits limits{};
+  std::string program{};  // the child; empty = pleat-draco beside this program
 };
 
 struct DracoProcessUsage {

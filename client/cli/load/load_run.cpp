@@ -108,6 +108,11 @@ class Client {
       ++num_rejected_;
       return true;
     }
+    if (frame.number >= send_times_.size()) {
+      status_ = absl::DataLossError("the server answered a pose that was not sent");
+      *stop_ = true;
+      return true;  // or the sender could wait for ever for a credit
+    }
     const double now_s = std::chrono::duration<double>(Clock::now() - start).count();
     const double sent_s = send_times_[frame.number];
     samples_.push_back({.sent_s = sent_s,

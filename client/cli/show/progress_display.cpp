@@ -18,6 +18,7 @@ constexpr double kRedrawSeconds = 0.1;
 constexpr double kLineSeconds = 5;
 constexpr double kNewStageSeconds = 1;  // stages that last for a moment would only fill the log
 constexpr double kQuietSeconds = 0.5;   // work that is done by then shows no progress
+constexpr double kMaxSeconds = 1e9;     // of a duration; a server may say anything
 
 std::string TimeText(double fraction, double elapsed_seconds, std::optional<double> eta_seconds) {
   // An extrapolation from the first moments would only jump around.
@@ -31,13 +32,14 @@ std::string TimeText(double fraction, double elapsed_seconds, std::optional<doub
 }
 
 int Percent(double fraction) {
+  if (std::isnan(fraction)) return 0;
   return static_cast<int>(std::floor(100 * std::clamp(fraction, 0.0, 1.0) + 1e-9));
 }
 
 }  // namespace
 
 std::string FormatDuration(double seconds) {
-  const long whole = std::lround(std::max(seconds, 0.0));
+  const long whole = std::isnan(seconds) ? 0 : std::lround(std::clamp(seconds, 0.0, kMaxSeconds));
   if (whole < 60) return absl::StrCat(whole, " s");
   if (whole < 3600) return absl::StrCat(whole / 60, " min ", whole % 60, " s");
   return absl::StrCat(whole / 3600, " h ", whole / 60 % 60, " min");

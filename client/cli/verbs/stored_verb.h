@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
 #include "cli/service.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
@@ -50,7 +51,7 @@ absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOpt
       json.push_back(things.json(info));
       rows.push_back(things.row(info));
     }
-    *session.out << (session.json ? json.dump(2) + "\n" : FormatTable(things.header, rows));
+    *session.out << (session.json ? JsonText(json) : FormatTable(things.header, rows));
     return absl::OkStatus();
   }
   if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
@@ -65,7 +66,7 @@ absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOpt
     return WriteFile(options.output, bytes);
   }
   for (const Info& info : infos) {
-    if (info.id == id) *session.out << things.json(info).dump(2) << "\n";
+    if (info.id == id) *session.out << JsonText(things.json(info));
   }
   return absl::OkStatus();
 }

@@ -12,6 +12,7 @@
 #include "cli/load/load_report.h"
 #include "cli/load/load_run.h"
 #include "cli/service.h"
+#include "cli/show/json_text.h"
 #include "cli/verbs/content_flag.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
@@ -152,14 +153,14 @@ absl::Status RunBench(const BenchVerbOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const LoadReport report, Measure(options, session));
   const nlohmann::ordered_json json = LoadReportJson(report);
   if (!options.report.empty()) {
-    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, json.dump(2) + "\n"));
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, JsonText(json)));
   }
   if (!options.plot.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const Image plot, PlotLoad(report));
     PLEAT_RETURN_IF_ERROR(WriteFile(options.plot, EncodePng(plot)));
   }
   if (session.json) {
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else {
     PrintLoadReport(report, *session.out);
   }

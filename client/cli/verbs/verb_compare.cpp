@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/io/input.h"
 #include "cli/show/error_text.h"
+#include "cli/show/json_text.h"
 #include "cli/show/report_json.h"
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
@@ -46,7 +47,7 @@ absl::Status RunCompare(const CompareOptions& options, const Session& session) {
     report["diagonal_m"] = diagonal_m;
     report["num_frames"] = input.num_frames();
     report["error"] = ErrorJson(error);
-    *session.out << report.dump(2) << "\n";
+    *session.out << JsonText(report);
     return absl::OkStatus();
   }
   *session.out << FormatTable(ErrorTableHeader("error"),

@@ -8,6 +8,7 @@
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
 #include "cli/service.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
 #include "cli/show/text_table.h"
@@ -105,10 +106,10 @@ absl::Status RunCompress(const CompressVerbOptions& flags, const Session& sessio
   const nlohmann::ordered_json json =
       CompressReportJson(compressed.record, sequence.num_frames(), sequence.num_vertices());
   if (!flags.report.empty()) {
-    PLEAT_RETURN_IF_ERROR(WriteFile(flags.report, json.dump(2) + "\n"));
+    PLEAT_RETURN_IF_ERROR(WriteFile(flags.report, JsonText(json)));
   }
   if (session.json) {
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else if (!session.quiet) {
     PrintText(flags, sequence, compressed.record, *session.out);
   }

@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/io/animation_writer.h"
 #include "cli/service.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
@@ -137,7 +138,7 @@ absl::Status RunDecompress(const DecompressVerbOptions& flags, const Session& se
                                          {"num_frames", output.num_frames()},
                                          {"num_vertices", output.num_vertices()},
                                          {"seconds", seconds}};
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else if (!session.quiet) {
     *session.out << absl::StrFormat("%s: %d frames of %d vertices in %.2f s\n", flags.output,
                                     output.num_frames(), output.num_vertices(), seconds);

@@ -12,6 +12,7 @@
 #include "cli/io/input.h"
 #include "cli/show/error_text.h"
 #include "cli/show/experiment_files.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
 #include "cli/show/text_table.h"
@@ -118,13 +119,13 @@ absl::Status RunExperimentVerb(EvaluateVerbOptions options, const Session& sessi
       options.flags.preset};
   const nlohmann::ordered_json json = ExperimentJson(report, subject);
   PLEAT_ASSIGN_OR_RETURN(auto files, ExperimentPlots(report, subject));
-  files[options.experiment + ".json"] = json.dump(2) + "\n";
+  files[options.experiment + ".json"] = JsonText(json);
   files[options.experiment + ".md"] = ExperimentMarkdown(report, subject);
   for (const auto& [name, bytes] : files) {
     PLEAT_RETURN_IF_ERROR(WriteFile(absl::StrCat(options.out, "/", name), bytes));
   }
   if (session.json) {
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else {
     *session.out << FormatTable(ExperimentTableHeader(), ExperimentTableRows(report));
   }
@@ -146,10 +147,10 @@ absl::Status RunEvaluate(EvaluateVerbOptions options, const Session& session) {
 
   const nlohmann::ordered_json json = EvaluateReportJson(report);
   if (!options.report.empty()) {
-    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, json.dump(2) + "\n"));
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, JsonText(json)));
   }
   if (session.json) {
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else {
     PrintText(report, *session.out);
   }

@@ -5,6 +5,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/io/animation_writer.h"
 #include "cli/io/frame_rate.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
 #include "cli/verbs/verbs.h"
@@ -88,7 +89,7 @@ absl::Status RunGenerate(GenerateOptions options, const Session& session) {
                                    {"motion", motion_path},
                                    {"num_frames", sequence.num_frames()},
                                    {"num_vertices", sequence.num_vertices()}};
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else {
     *session.out << absl::StrFormat("%s: %d frames of %d vertices; the truth in %s and %s\n", path,
                                     sequence.num_frames(), sequence.num_vertices(), truth_path,

@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/io/frame_rate.h"
 #include "cli/io/input.h"
+#include "cli/show/json_text.h"
 #include "cli/show/mesh_report_json.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
@@ -52,7 +53,7 @@ void PrintJson(const MeshSequence& sequence, const Findings& findings, std::ostr
                     {"max_m", VectorJson(findings.bounds.max())}};
   json["sequence_id"] = SequenceId(EncodeSequence(sequence));
   json["mesh_report"] = MeshReportJson(findings.report);
-  out << json.dump(2) << "\n";
+  out << JsonText(json);
 }
 
 void PrintText(const MeshSequence& sequence, const Findings& findings, std::ostream& out) {

@@ -8,6 +8,7 @@
 #include "cli/interrupt.h"
 #include "cli/service.h"
 #include "cli/show/info_json.h"
+#include "cli/show/json_text.h"
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
@@ -32,7 +33,7 @@ void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
 absl::Status RunWatch(JobService& jobs, const std::string& id, const Session& session) {
   ExitOnInterrupt();  // Ctrl-C ends the watching, and the job goes on
   PLEAT_ASSIGN_OR_RETURN(const JobInfo job, WatchJobToEnd(jobs, id, session, false, nullptr));
-  *session.out << (session.json ? JobJson(job).dump(2) : job.result_id) << "\n";
+  *session.out << (session.json ? JsonText(JobJson(job)) : job.result_id + "\n");
   return absl::OkStatus();
 }
 
@@ -43,7 +44,7 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const JobInfo& job : jobs) json.push_back(JobJson(job));
     if (session.json)
-      *session.out << json.dump(2) << "\n";
+      *session.out << JsonText(json);
     else
       PrintTable(jobs, *session.out);
     return absl::OkStatus();
@@ -53,7 +54,7 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
   if (options.action == "cancel") return service->jobs().Cancel(id);
   if (options.action == "watch") return RunWatch(service->jobs(), id, session);
   PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->jobs().Get(id));
-  *session.out << JobJson(job).dump(2) << "\n";
+  *session.out << JsonText(JobJson(job));
   return absl::OkStatus();
 }
 

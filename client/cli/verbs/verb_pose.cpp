@@ -15,6 +15,7 @@
 #include "cli/io/model_input.h"
 #include "cli/io/motion_edit.h"
 #include "cli/service.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/verbs/content_flag.h"
 #include "cli/verbs/verbs.h"
@@ -96,7 +97,7 @@ void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, 
                                            {"lowest", confidence.lowest},
                                            {"lowest_frame", confidence.lowest_frame}}},
                                          {"seconds", seconds}};
-    *session.out << json.dump(2) << "\n";
+    *session.out << JsonText(json);
   } else if (!session.quiet) {
     *session.out << absl::StrFormat("%s: %d frames of %d vertices in %.2f s", options.output,
                                     confidence.num_frames, num_vertices, seconds);

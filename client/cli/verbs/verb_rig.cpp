@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
 #include "cli/io/rig_measurement.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
@@ -111,7 +112,7 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
     num_refused += !row.rig;
   }
   if (!options.report.empty()) {
-    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, report.dump(2) + "\n"));
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, JsonText(report)));
   }
   if (!options.output.empty() && rows[0].rig) {
     const UserRig rig{rows[0].rig->skeleton,
@@ -121,7 +122,7 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
     PLEAT_RETURN_IF_ERROR(WriteFile(options.output, EncodeRig(rig) + "\n"));
   }
   if (session.json) {
-    *session.out << report.dump(2) << "\n";
+    *session.out << JsonText(report);
   } else if (!session.quiet) {
     PrintText(rows, *session.out);
   }

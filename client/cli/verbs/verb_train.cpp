@@ -18,6 +18,7 @@
 #include "cli/service.h"
 #include "cli/show/error_text.h"
 #include "cli/show/info_json.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
 #include "cli/show/text_table.h"
@@ -168,7 +169,7 @@ void PrintText(const TrainedModel& trained, const std::string& output, std::ostr
 }
 
 absl::Status PrintDetached(const JobInfo& job, const Session& session) {
-  *session.out << (session.json ? JobJson(job).dump(2) : job.id) << "\n";
+  *session.out << (session.json ? JsonText(JobJson(job)) : job.id + "\n");
   return absl::OkStatus();
 }
 
@@ -209,10 +210,10 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
       *trained.model,
       {trained.seconds, PeakMemoryBytes(), trained.bytes.size(), ModelId(trained.bytes)});
   if (!options.report.empty()) {
-    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, report.dump(2) + "\n"));
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.report, JsonText(report)));
   }
   if (session.json) {
-    *session.out << report.dump(2) << "\n";
+    *session.out << JsonText(report);
   } else if (!session.quiet) {
     PrintText(trained, options.output, *session.out);
   }

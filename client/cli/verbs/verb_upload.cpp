@@ -6,6 +6,7 @@
 #include "cli/io/input.h"
 #include "cli/service.h"
 #include "cli/show/info_json.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
@@ -25,7 +26,7 @@ absl::Status RunUpload(const UploadOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info,
                          UploadWithProgress(service->sequences(), sequence, session));
   if (session.json) {
-    *session.out << SequenceJson(info).dump(2) << "\n";
+    *session.out << JsonText(SequenceJson(info));
   } else {
     *session.out << info.id << "\n";
   }

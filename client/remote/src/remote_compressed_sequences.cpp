@@ -101,7 +101,8 @@ class RemoteDecodeSession final : public DecodeSession {
       return BrokenStream("empty part");
     const v1::DecodeFramesResponse::Positions& part = part_.positions();
     const size_t count = part.xyz().size() / kBytesPerVertex;
-    if (part.frame() != next_ || part.first_vertex() != *next_vertex || count == 0 ||
+    if (part.frame() != next_ || (range_.end != 0 && next_ >= range_.end) ||
+        part.first_vertex() != *next_vertex || count == 0 ||
         part.xyz().size() % kBytesPerVertex != 0 ||
         count > static_cast<size_t>(positions_.cols() - *next_vertex)) {
       return BrokenStream("a part does not follow");

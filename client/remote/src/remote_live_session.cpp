@@ -62,6 +62,8 @@ class Unanswered {
   explicit Unanswered(bool latest_wins) : latest_wins_(latest_wins) {}
 
   size_t size() const { return poses_.size(); }
+  // With those that have been dropped: the server answers them too.
+  size_t num_outstanding() const { return poses_.size() + static_cast<size_t>(num_dropped_); }
 
   void Add(LivePoseMessage pose) {
     poses_.push_back(std::move(pose));
@@ -146,6 +148,7 @@ class RemoteLiveSession final : public LiveSession {
     if (!stream_->Read(&response)) return FinishStream();
     if (!response.has_header()) return BrokenStream("no header");
     PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(response.header()));
+    if (header.content != options_.stream.content) return BrokenStream("another content");
     num_received_ = num_acknowledged_ = 0;
     if (!header_.has_value()) {
       header_ = std::move(header);
@@ -208,6 +211,7 @@ class RemoteLiveSession final : public LiveSession {
       frame->number = response.rejection().number();
       frame->draco.clear();
       frame->positions.resize(3, 0);
+      if (response.rejection().code() == 0) return BrokenStream("a rejection without an error");
       return absl::Status(static_cast<absl::StatusCode>(response.rejection().code()),
                           response.rejection().message());
     }
@@ -255,13 +259,15 @@ class RemoteLiveSession final : public LiveSession {
   }
 
   void TakeAnswer(const v1::LiveReport& report, bool rejected, LiveFrame* frame) {
-    frame->num_superseded = static_cast<int>(report.num_superseded());
     frame->times = {report.queue_us(), report.evaluate_us(), report.encode_us(),
                     report.server_cpu_us(), report.evaluated_together()};
     num_failures_ = 0;
     bool acknowledge = false;
     {
       std::lock_guard lock(mutex_);
+      // This reply answers one of them, whatever the server counts.
+      const size_t most = std::max<size_t>(unanswered_.num_outstanding(), 1) - 1;
+      frame->num_superseded = static_cast<int>(std::min<size_t>(report.num_superseded(), most));
       unanswered_.Answered(frame->num_superseded, rejected);
       ++num_received_;
       // Poses carry acknowledgements with them. One is sent alone only when half of the credits are

@@ -181,9 +181,12 @@ absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::st
                                          const Progress& progress,
                                          const StartDownload<Request, Response>& start) {
   std::string bytes;
+  size_t farthest = 0;
   for (int attempt = 1;; ++attempt) {
     const absl::Status status = ReadParts<Request, Response>(
         start, id, 0, progress, &bytes, [&](uint64_t size_bytes) -> absl::StatusOr<bool> {
+          if (bytes.size() == farthest) return true;  // an empty part is no progress
+          farthest = bytes.size();
           attempt = 1;
           PLEAT_RETURN_IF_ERROR(
               progress.Report(static_cast<double>(bytes.size()) / static_cast<double>(size_bytes)));

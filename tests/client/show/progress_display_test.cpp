@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <sstream>
+#include <utility>
 
 #include "cli/session.h"
 
@@ -35,6 +37,21 @@ TEST(ProgressDisplay, ReachesAHundredPercentOnlyAtTheEnd) {
   EXPECT_THAT(FormatProgressLine({"fit", 0.9999, std::nullopt}, 1, std::nullopt),
               HasSubstr("99 %"));
   EXPECT_EQ(FormatProgressLine({"fit", 1, std::nullopt}, 1, std::nullopt), "fit: 100 %, 1 s");
+}
+
+// Fractions and times may come from a server.
+TEST(ProgressDisplay, NumbersThatAreNoneAreShownAsNothingWorse) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(FormatDuration(nan), "0 s");
+  EXPECT_EQ(FormatDuration(1e300), "277777 h 46 min");
+  EXPECT_EQ(FormatDuration(infinity), FormatDuration(1e300));
+  EXPECT_EQ(FormatDuration(-infinity), "0 s");
+  for (const auto& [fraction, percent] : {std::pair(nan, " 0 %"), std::pair(-infinity, " 0 %"),
+                                          std::pair(infinity, " 100 %"), std::pair(-.5, " 0 %")}) {
+    EXPECT_THAT(FormatProgressLine({"fit", fraction, nan}, 3, nan), HasSubstr(percent));
+    EXPECT_THAT(FormatProgressBar({"fit", fraction, nan}, 3, infinity, 79), HasSubstr(percent));
+  }
 }
 
 TEST(ProgressDisplay, LinesAreFewAndNameEveryStage) {
