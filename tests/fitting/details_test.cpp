@@ -133,6 +133,33 @@ TEST_F(DetailsTest, SameForEveryThreadCount) {
   EXPECT_EQ(one, three);
 }
 
+TEST_F(DetailsTest, ASkinnedMeshHasNoDetail) {
+  const MeshSequence skinned = MakeSkinnedSequence(figure_, track_);
+  for (const DetailAxes axes : kAllAxes) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::MatrixXd details,
+                               ComputeDetails(skinned, figure_.rig, track_, all_, {.axes = axes}));
+    EXPECT_LT(details.cwiseAbs().maxCoeff(), 1e-6);  // float32 of the sequence
+  }
+}
+
+TEST_F(DetailsTest, ColumnsAreThoseOfTheVerticesInTheirOrder) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::MatrixXd whole,
+                             ComputeDetails(sequence_, figure_.rig, track_, all_));
+  const std::vector<int> some = {17, 3, 17, 0};  // twice and out of order
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::MatrixXd part,
+                             ComputeDetails(sequence_, figure_.rig, track_, some));
+  ASSERT_EQ(part.cols(), 12);
+  for (int c = 0; c < 4; ++c) {
+    EXPECT_EQ(part.middleCols<3>(3 * c), whole.middleCols<3>(3 * some[c])) << c;
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::MatrixXd none,
+                             ComputeDetails(sequence_, figure_.rig, track_, {}));
+  EXPECT_EQ(none.rows(), 12);
+  EXPECT_EQ(none.cols(), 0);
+  EXPECT_THAT(ComputeDetails(sequence_, figure_.rig, track_, {0, -1}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex -1")));
+}
+
 TEST_F(DetailsTest, WrongInputIsRefusedWithWords) {
   const SkinnedFigure other = MakeSkinnedFigure({.num_rings = 4});
   EXPECT_THAT(ComputeDetails(sequence_, other.rig, track_, {0}),

@@ -64,6 +64,31 @@ TEST_F(JointStepTest, TheTrueJointsSolveEveryFrame) {
   }
 }
 
+// q^T M q - 2 q^T m grows from joints to joints as the measured error of the vertices does, each
+// frame at its best translation.
+TEST_F(JointStepTest, TheSystemIsTheErrorOfTheVertices) {
+  const int t = 9;
+  const auto measured = [&](const Eigen::Matrix3Xd& joints) {
+    const Skeleton moved = skeleton().WithRestPositions(joints);
+    BoneTransforms transforms;
+    ComputeBoneTransforms(moved, track_.pose(t), {}, &transforms);
+    Eigen::Matrix3Xd positions;
+    SkinVertices(figure_.rig.weights, figure_.rig.rest_positions, transforms, &positions);
+    const Eigen::Matrix3Xd error = sequence_.FrameAsDouble(t) - positions;
+    return (error.colwise() - error.rowwise().mean()).squaredNorm();
+  };
+  const auto quadratic = [&](const Eigen::Matrix3Xd& joints) {
+    const Eigen::VectorXd q = (joints.colwise() - moments_.center).reshaped();
+    return q.dot(systems_[t].matrix * q) - 2 * q.dot(systems_[t].right);
+  };
+  const Eigen::Matrix3Xd truth = skeleton().RestPositions();
+  for (const double share : {-1.0, .3, 1.0, 4.0}) {
+    const Eigen::Matrix3Xd joints = truth + share * (displaced_ - truth);
+    const double expected = measured(joints) - measured(truth);
+    EXPECT_NEAR(quadratic(joints) - quadratic(truth), expected, 1e-3 * expected + 1e-6) << share;
+  }
+}
+
 TEST_F(JointStepTest, DisplacedJointsComeBackWithPosesThatAreKnown) {
   const Eigen::Matrix3Xd solved = SolveJoints(systems_, moments_, skeleton(), displaced_, 1e-7, {});
   for (int j = 0; j < skeleton().num_joints(); ++j) {

@@ -49,6 +49,26 @@ TEST(MomentsTest, ChainMomentsAreSumsOverVertices) {
             1e-9);
 }
 
+// Only what hangs together counts: neither the place of the rest mesh nor the order of vertices.
+TEST(MomentsTest, PlaceAndOrderOfTheRestMeshDoNotMatter) {
+  const SkinnedFigure figure = MakeSkinnedFigure({.num_rings = 3, .num_sides = 4});
+  const auto gram = [](const Rig& rig) {
+    return ComputeChainMoments(ComputeRigMoments(rig), rig.skeleton).gram;
+  };
+  const Eigen::MatrixXd expected = gram(figure.rig);
+  Rig moved = figure.rig;
+  const Eigen::Vector3d shift(40, -7, 12);
+  moved.rest_positions.colwise() += shift;
+  moved.skeleton =
+      moved.skeleton.WithRestPositions(moved.skeleton.RestPositions().colwise() + shift);
+  EXPECT_LT((gram(moved) - expected).norm(), 1e-9 * expected.norm());
+  Rig reversed = figure.rig;
+  reversed.rest_positions = figure.rig.rest_positions.rowwise().reverse();
+  reversed.weights =
+      SkinWeights::FromDense(figure.rig.weights.ToDense().colwise().reverse()).value();
+  EXPECT_LT((gram(reversed) - expected).norm(), 1e-6 * expected.norm());  // float weights
+}
+
 // The energy of one frame (3 x V) as a function of the pose.
 class FrameEnergy {
  public:

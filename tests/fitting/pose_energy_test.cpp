@@ -133,6 +133,44 @@ TEST_F(PoseEnergyTest, ThePelvisIsStiffer) {
   EXPECT_NEAR(cost_of_turning(kLeftUpperLeg), 101 * cost_of_turning(kHead), 1e-6);
 }
 
+TEST_F(PoseEnergyTest, MovesKeepRotationsAndNoMoveIsNone) {
+  ChainPose pose = PoseAt(4);
+  const ChainPose before = pose;
+  pose.Move(Eigen::VectorXd::Zero(3 * pose.num_joints() + 3));
+  EXPECT_LT((pose.rotations - before.rotations).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(pose.root_position, before.root_position);
+  Random random(6);
+  for (int step = 0; step < 1000; ++step) {  // products of rotations drift
+    Eigen::VectorXd move(3 * pose.num_joints() + 3);
+    for (double& entry : move) entry = 2 * random.Normal();
+    pose.Move(move);
+  }
+  for (int a = 0; a < pose.num_joints(); ++a) {
+    const Eigen::Matrix3d rotation = pose.rotation(a);
+    EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+    EXPECT_GT(rotation.determinant(), 0);
+  }
+}
+
+TEST_F(PoseEnergyTest, AttractionsAddUpAndGoWithTheirFrame) {
+  const ChainPose pose = PoseAt(5);
+  const Eigen::Matrix3Xd target = PoseAt(2).rotations;
+  PoseEnergy energy = MakeEnergy(1, .5, 0);
+  const double plain = energy.Value(pose);
+  energy.AddAttraction(target, .3);
+  const double once = energy.Value(pose);
+  const PoseEnergy copy = energy;
+  energy.AddAttraction(target, .6);
+  EXPECT_NEAR(energy.Value(pose) - plain, 3 * (once - plain), 1e-9);
+  EXPECT_EQ(copy.Value(pose), once);  // works on a frame of its own
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  EXPECT_NEAR(energy.Linearize(pose, &gradient, &hessian), energy.Value(pose), 1e-9);
+  const FrameMoments frame = ComputeFrameMoments(figure_.rig, moments_, sequence_.frame(1));
+  energy.SetFrame(ComputeChainCross(moments_, frame, figure_.rig.skeleton), frame.sum_squares);
+  EXPECT_EQ(energy.Value(pose), plain);
+}
+
 TEST_F(PoseEnergyTest, ChainPoseRoundTrip) {
   const Skeleton& skeleton = figure_.rig.skeleton;
   const Eigen::Vector3d center(1, 2, 3);

@@ -84,6 +84,31 @@ TEST_F(PoseSolversTest, AllJointsRecoverTheTruth) {
   }
 }
 
+// Starts that are as wrong as can be: any rotation of any bone.
+TEST_F(PoseSolversTest, NoStartIsMadeWorse) {
+  Random random(15);
+  for (int t = 0; t < 40; t += 8) {
+    const FrameMoments frame = SetFrame(t);
+    ChainPose start = ToChainPose(skeleton_, Pose::Rest(skeleton_), frame.center);
+    Eigen::VectorXd move(3 * start.num_joints() + 3);
+    for (double& entry : move) entry = 3 * random.Normal();
+    start.Move(move);
+    double last = energy_.Value(start);
+    for (const int max_iterations : {1, 2, 5, 20, 200}) {
+      ChainPose pose = start;
+      const PoseSolverSummary summary =
+          MinimizePose(energy_, {.max_iterations = max_iterations}, &pose);
+      EXPECT_LE(summary.num_iterations, max_iterations);
+      EXPECT_LE(summary.energy, last * (1 + 1e-12)) << max_iterations;
+      EXPECT_NEAR(summary.energy, energy_.Value(pose), 1e-9 * last);
+      last = summary.energy;
+    }
+    ChainPose walked = start;
+    WalkSweep(energy_, skeleton_, &walked);
+    EXPECT_LE(energy_.Value(walked), energy_.Value(start));
+  }
+}
+
 TEST_F(PoseSolversTest, ZeroIterationsLeaveTheStart) {
   const FrameMoments frame = SetFrame(9);
   ChainPose pose = ClosedFormWalk(moments_, frame, skeleton_);

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
 #include "pleat/fitting/pose_fit.h"
 #include "pleat/mesh/adjacency.h"
 #include "support/skinned_figure.h"
@@ -212,6 +216,86 @@ TEST_F(RigRefinementTest, SameForEveryThreadCount) {
   EXPECT_EQ(one.skeleton.RestPositions(), three.skeleton.RestPositions());
   EXPECT_EQ(one.weights.ToDense(), three.weights.ToDense());
   EXPECT_EQ(one.rest_positions, three.rest_positions);
+}
+
+// Each kind of unknown alone, and all together, explains the motion better than the first rig.
+TEST_F(RigRefinementTest, WhateverMayMoveTheErrorFalls) {
+  const PoseTrack few = MakeSmoothPoses(figure_.rig.skeleton, 16, 6, .5);
+  const MeshSequence sequence =
+      MakeSkinnedSequence(figure_, few, MakeWaveDetails(figure_, 16, .01));
+  for (const auto& [joints, weights, rest] :
+       {std::tuple(true, false, false), std::tuple(false, true, false),
+        std::tuple(false, false, true), std::tuple(true, true, true)}) {
+    RigRefinementSummary summary;
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Rig refined,
+        Refine(sequence, displaced_,
+               {.joints = joints, .weights = weights, .rest = rest, .num_rounds = 2}, &summary));
+    EXPECT_LT(summary.rms_m, summary.round_rms_m[0]);
+    EXPECT_LE(summary.round_rms_m[1], summary.round_rms_m[0]);
+    const bool same_joints =
+        refined.skeleton.RestPositions() == displaced_.skeleton.RestPositions();
+    EXPECT_EQ(same_joints, !joints);
+    EXPECT_EQ(summary.mean_weight_change > 0, weights);
+    EXPECT_EQ(summary.rest_moved_m > 0, rest);
+    const Eigen::VectorXd sums = refined.weights.ToDense().rowwise().sum();
+    EXPECT_LT((sums.array() - 1).abs().maxCoeff(), 1e-5);
+  }
+  // Nothing may move: the rig stays, and its error is told.
+  RigRefinementSummary summary;
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Rig same,
+      Refine(sequence, displaced_, {.joints = false, .weights = false, .rest = false}, &summary));
+  EXPECT_EQ(same.rest_positions, displaced_.rest_positions);
+  EXPECT_EQ(same.weights.ToDense(), displaced_.weights.ToDense());
+  EXPECT_LE(summary.rms_m, summary.round_rms_m[0]);
+}
+
+TEST_F(RigRefinementTest, LongSequencesAreRefinedOnSomeOfTheirFrames) {
+  const MeshSequence sequence = MakeSkinnedSequence(figure_, track_);
+  RigRefinementOptions options = RigRefinementOptions::JointsOnly();
+  options.joint_prior = 1e-3;
+  options.max_frames = 12;
+  std::vector<double> fractions;
+  const Progress progress(
+      [&](const ProgressUpdate& update) { fractions.push_back(update.fraction); }, nullptr);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Rig few,
+                             Refine(sequence, displaced_, options, nullptr, progress));
+  EXPECT_LT(JointError(few), JointError(displaced_));
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_NEAR(fractions.back(), 1, 1e-12);
+  // These are every fifth frame.
+  std::vector<int> fifth;
+  for (int t = 0; t < 60; t += 5) fifth.push_back(t);
+  const auto track = FitPoses(sequence, displaced_, {}, nullptr);
+  PoseTrack::Parts poses;
+  for (const int t : fifth) poses.poses.push_back(track->pose(t));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Rig same,
+                             RefineRig(sequence.Subset(fifth), displaced_,
+                                       PoseTrack::FromValid(std::move(poses)), options, nullptr));
+  EXPECT_EQ(same.skeleton.RestPositions(), few.skeleton.RestPositions());
+}
+
+TEST_F(RigRefinementTest, OptionsOutOfRangeAreRefused) {
+  const MeshSequence sequence = MakeSkinnedSequence(figure_, track_);
+  for (double RigRefinementOptions::*pull :
+       {&RigRefinementOptions::joint_prior, &RigRefinementOptions::weight_smoothness,
+        &RigRefinementOptions::weight_prior, &RigRefinementOptions::rest_smoothness,
+        &RigRefinementOptions::rest_prior}) {
+    for (const double wrong : {-1e-9, std::nan("")}) {
+      RigRefinementOptions options;
+      options.*pull = wrong;
+      EXPECT_THAT(RefineRig(sequence, displaced_, track_, options, nullptr),
+                  HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("must be positive")));
+    }
+  }
+  for (int RigRefinementOptions::*count :
+       {&RigRefinementOptions::num_rounds, &RigRefinementOptions::max_frames}) {
+    RigRefinementOptions options;
+    options.*count = 0;
+    EXPECT_THAT(RefineRig(sequence, displaced_, track_, options, nullptr),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("must be positive")));
+  }
 }
 
 TEST_F(RigRefinementTest, WrongInputIsRefusedWithWords) {

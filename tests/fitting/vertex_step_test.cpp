@@ -94,6 +94,62 @@ TEST_F(VertexStepTest, RestPositionsThatWereMovedComeBack) {
   EXPECT_LT((kept - moved.rest_positions).cwiseAbs().maxCoeff(), 1e-6);
 }
 
+// Sum over all edges of the squared difference of what lies at their ends (rows).
+double Roughness(const Eigen::MatrixXd& rows, const VertexAdjacency& adjacency) {
+  double sum = 0;
+  for (int v = 0; v < rows.rows(); ++v) {
+    for (const int32_t n : adjacency.neighbors(v)) sum += (rows.row(v) - rows.row(n)).squaredNorm();
+  }
+  return sum;
+}
+
+TEST_F(VertexStepTest, SmoothnessEvensOutBetweenNeighbors) {
+  const Rig rigid = Rigid();
+  Rig moved = figure_.rig;
+  Random random(3);
+  for (double& x : moved.rest_positions.reshaped()) x += .01 * random.Normal();
+  double last_weights = 1e9, last_rest = 1e9;
+  for (const double smoothness : {0.0, .01, .1}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights,
+                               RefineWeights(moments_, rigid, rigid.weights, adjacency_,
+                                             {.smoothness = smoothness, .num_threads = 1}, {}));
+    EXPECT_LT(Roughness(weights.ToDense(), adjacency_), last_weights) << smoothness;
+    last_weights = Roughness(weights.ToDense(), adjacency_);
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Eigen::Matrix3Xd rest,
+        RefineRestPositions(moments_, moved, moved.rest_positions, adjacency_,
+                            {.smoothness = smoothness, .num_threads = 1}, {}));
+    const Eigen::MatrixXd displacements = (rest - moved.rest_positions).transpose();
+    EXPECT_LT(Roughness(displacements, adjacency_), last_rest) << smoothness;
+    last_rest = Roughness(displacements, adjacency_);
+  }
+}
+
+// A vertex may take bones of its own, of its neighbors, and those next to its own in the skeleton.
+TEST_F(VertexStepTest, WeightsStayNearTheirBones) {
+  const Rig rigid = Rigid();
+  const Eigen::MatrixXd before = rigid.weights.ToDense();
+  const Skeleton& skeleton = figure_.rig.skeleton;
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const SkinWeights refined,
+      RefineWeights(moments_, rigid, rigid.weights, adjacency_, {.num_sweeps = 1}, {}));
+  const Eigen::MatrixXd after = refined.ToDense();
+  EXPECT_EQ(after.col(0).cwiseAbs().maxCoeff(), 0);  // the root has no bone
+  for (int v = 0; v < after.rows(); ++v) {
+    Eigen::Index own = 0;
+    before.row(v).maxCoeff(&own);
+    for (int b = 1; b < skeleton.num_joints(); ++b) {
+      if (after(v, b) == 0) continue;
+      const int parent = skeleton.parent(static_cast<int>(own));
+      const bool is_near =
+          b == own || b == parent || skeleton.parent(b) == own || skeleton.parent(b) == parent;
+      bool is_neighbors = false;
+      for (const int32_t n : adjacency_.neighbors(v)) is_neighbors |= before(n, b) > 0;
+      EXPECT_TRUE(is_near || is_neighbors) << "vertex " << v << " of bone " << own << " took " << b;
+    }
+  }
+}
+
 TEST_F(VertexStepTest, ThreadsDoNotChangeTheResult) {
   const Rig rigid = Rigid();
   const WeightStepOptions one{.smoothness = .01, .prior = .001, .num_threads = 1};
@@ -101,6 +157,12 @@ TEST_F(VertexStepTest, ThreadsDoNotChangeTheResult) {
   three.num_threads = 3;
   EXPECT_EQ(RefineWeights(moments_, rigid, rigid.weights, adjacency_, one, {})->ToDense(),
             RefineWeights(moments_, rigid, rigid.weights, adjacency_, three, {})->ToDense());
+  const auto rest = [&](int num_threads) {
+    return RefineRestPositions(moments_, rigid, rigid.rest_positions, adjacency_,
+                               {.smoothness = 1, .prior = .1, .num_threads = num_threads}, {})
+        .value();
+  };
+  EXPECT_EQ(rest(1), rest(3));
   const VertexMoments again =
       ComputeVertexMoments(sequence_, frames_, poses_, centers_, figure_.rig, 3, {}).value();
   EXPECT_EQ(again.pairs, moments_.pairs);
@@ -112,6 +174,9 @@ TEST_F(VertexStepTest, CancellationIsHeard) {
   EXPECT_THAT(ComputeVertexMoments(sequence_, frames_, poses_, centers_, figure_.rig, 1, cancelled),
               HasStatus(absl::StatusCode::kCancelled, testing::_));
   EXPECT_THAT(RefineWeights(moments_, figure_.rig, figure_.rig.weights, adjacency_, {}, cancelled),
+              HasStatus(absl::StatusCode::kCancelled, testing::_));
+  EXPECT_THAT(RefineRestPositions(moments_, figure_.rig, figure_.rig.rest_positions, adjacency_, {},
+                                  cancelled),
               HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 

@@ -184,6 +184,49 @@ TEST(GramTermTest, ClampedLogsHaveNoGradient) {
   EXPECT_EQ(term.Evaluate({.noise = -30}, data, 1, false), value);
 }
 
+// K^-1 of the last evaluation, in the three forms that callers take it in.
+TEST_P(GramTermTest, SolutionsAndWhitenerAreOfTheSameMatrix) {
+  const Eigen::MatrixXd x = RandomMatrix(31, 3, 1), y = RandomMatrix(31, 6, 2);
+  const KernelLogs logs{-.4, .3, -1, -1.5, -.7};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(y));
+  GramTerm term(31, GetParam());
+  term.SetInputs(x);
+  const double value = term.Evaluate(logs, data, 1, true);
+  const Eigen::MatrixXd inverse = WrittenOutKernel(x, GetParam(), logs).inverse();
+  Eigen::MatrixXd solution;
+  term.Solve(y, solution);
+  EXPECT_LT((solution - inverse * y).norm(), 1e-9 * solution.norm());
+  const Eigen::MatrixXd whitener = term.whitener().triangularView<Eigen::Lower>();
+  EXPECT_LT((whitener.transpose() * whitener - inverse).norm(), 1e-9 * inverse.norm());
+  // The weight is a factor of everything.
+  const Eigen::VectorXd logs_before = term.log_gradient();
+  EXPECT_NEAR(term.Evaluate(logs, data, 2.5, true), 2.5 * value, 1e-9 * std::abs(value));
+  EXPECT_LT((term.log_gradient() - 2.5 * logs_before).norm(), 1e-9 * logs_before.norm());
+  EXPECT_LT((term.weighted_solution() - 2.5 * solution).norm(), 1e-9 * solution.norm());
+}
+
+// Two terms that share inputs and scratch give, in turn, what each gives alone.
+TEST_P(GramTermTest, SharedMemoryChangesNothing) {
+  const Eigen::MatrixXd x = RandomMatrix(20, 2, 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData first, MakeGramData(RandomMatrix(20, 30, 2)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData second, MakeGramData(RandomMatrix(20, 4, 3)));
+  GramTerm alone(20, GetParam()), a(20, GetParam()), b(20, GetParam());
+  alone.SetInputs(x);
+  b.ShareInputs(a);
+  b.ShareScratch(a);
+  a.SetInputs(x);
+  for (const KernelLogs& logs : {KernelLogs{}, KernelLogs{.3, -.1, -1, -2, -1}}) {
+    for (const auto& [term, data] : {std::pair(&a, &first), std::pair(&b, &second)}) {
+      EXPECT_EQ(term->Evaluate(logs, *data, 1.3, true), alone.Evaluate(logs, *data, 1.3, true));
+      EXPECT_EQ(term->log_gradient(), alone.log_gradient());
+      Eigen::MatrixXd shared, own;
+      term->InputGradient(shared);
+      alone.InputGradient(own);
+      EXPECT_EQ(shared, own);
+    }
+  }
+}
+
 TEST(GramTermTest, CancelledEvaluationIsNotANumber) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(RandomMatrix(10, 4, 2)));
   GramTerm term(10, {});
@@ -195,6 +238,12 @@ TEST(GramTermTest, CancelledEvaluationIsNotANumber) {
 TEST(GramDataTest, RefusesWhatIsNoGramMatrix) {
   EXPECT_THAT(MakeGramDataFromGram(Eigen::MatrixXd::Zero(3, 4), 1),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("not square")));
+  Eigen::MatrixXd hole = Eigen::MatrixXd::Identity(3, 3);
+  hole(2, 1) = std::nan("");
+  EXPECT_THAT(MakeGramDataFromGram(hole, 1),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("not finite")));
+  EXPECT_THAT(MakeGramData(Eigen::MatrixXd::Constant(3, 3, 1e200)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("not finite")));
   Eigen::MatrixXd indefinite = Eigen::MatrixXd::Identity(3, 3);
   indefinite(0, 0) = -.5;
   EXPECT_THAT(MakeGramDataFromGram(indefinite, 1),

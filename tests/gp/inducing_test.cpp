@@ -95,6 +95,24 @@ TEST(InducingTest, WhitenerIsLowerTriangular) {
             0);
 }
 
+TEST(InducingTest, WhatCannotBeFactoredIsNoSolution) {
+  const Eigen::MatrixXd outputs = RandomMatrix(6, 1, 1);
+  const auto solves = [&](const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& cross) {
+    InducedWeights weights;
+    return SolveInduced(
+        covariance, kNoise, outputs,
+        [&](Eigen::Index begin, Eigen::Index count) {
+          return Eigen::MatrixXd(cross.middleRows(begin, count));
+        },
+        [] { return false; }, true, &weights);
+  };
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(3, 3), cross = RandomMatrix(6, 3, 2);
+  EXPECT_TRUE(solves(identity, cross));
+  EXPECT_FALSE(solves(-identity, cross));
+  EXPECT_FALSE(solves(std::nan("") * identity, cross));
+  EXPECT_FALSE(solves(identity, std::nan("") * cross));
+}
+
 TEST(InducingTest, StopsWhenCancelled) {
   const Exact exact;
   InducedWeights weights;

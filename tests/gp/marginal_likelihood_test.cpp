@@ -33,6 +33,34 @@ TEST(MarginalLikelihoodTest, GradientIsTheSlopeInEveryUnknown) {
   }
 }
 
+TEST(MarginalLikelihoodTest, FactorsAreRootsOfWhatMultipliesSquaredDistances) {
+  const std::vector<std::vector<int>> groups = {{3, 0}, {1}};
+  const Eigen::VectorXd factors = RelevanceFactors(groups, Eigen::Vector2d(std::log(9), -99), 5);
+  EXPECT_NEAR(factors[0], 3, 1e-12);
+  EXPECT_EQ(factors[3], factors[0]);
+  EXPECT_EQ(factors[1], std::exp(-.5 * kMaxKernelLog));  // clamped
+  EXPECT_EQ(factors[2], 1);                              // in no group
+  EXPECT_EQ(factors[4], 1);
+}
+
+// All columns in one group: a factor on their squared distances is a factor of g, where the kernel
+// has no linear term.
+TEST(MarginalLikelihoodTest, OneGroupOfEverythingIsAnotherWidth) {
+  GpRegressionOptions options;
+  options.kernel.linear = false;
+  options.prior_precision = options.relevance_precision = 0;
+  options.input_groups = {{0, 1, 2}};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const GramData data, MakeGramData(RandomMatrix(15, 2, 2)));
+  MarginalLikelihood objective(RandomMatrix(15, 3, 1), data, options, 0, {});
+  Eigen::VectorXd x(5), gradient;
+  x << -.3, .2, -1, -2, .8;
+  const double value = objective.Evaluate(x, &gradient);
+  EXPECT_NEAR(gradient[4], gradient[0], 1e-9 * std::abs(gradient[0]));
+  x[0] += x[4];
+  x[4] = 0;
+  EXPECT_NEAR(objective.Evaluate(x, nullptr), value, 1e-9 * std::abs(value));
+}
+
 // Outputs follow the first two columns; the other four say nothing.
 TEST(MarginalLikelihoodTest, WhatSaysNothingIsFoundOut) {
   const Eigen::MatrixXd x = RandomMatrix(80, 6, 1), x_new = RandomMatrix(60, 6, 2);

@@ -138,6 +138,34 @@ TEST(TrainSharedGplvmTest, OrderOfDetailsDoesNotMatter) {
   EXPECT_LT((first.latents - second.latents).norm(), 1e-5 * first.latents.norm());
 }
 
+TEST(DetailViewTest, ComponentsGiveTheGramMatrixOfTheDetails) {
+  const Eigen::MatrixXd details = RandomMatrix(12, 7, 4);
+  const PrincipalComponents all = ComputePca(details, {.max_components = 7, .min_energy = 1});
+  std::vector<Eigen::Index> rows(12);
+  std::iota(rows.begin(), rows.end(), 0);
+  for (const ViewScaling scaling : {ViewScaling::kOneScalar, ViewScaling::kPerColumn}) {
+    const DetailView expected = MakeDetailView(details, scaling);
+    const DetailView view = MakeDetailView(all, rows, scaling);
+    EXPECT_EQ(view.num_outputs, 7);
+    EXPECT_LT((view.gram - expected.gram).norm(), 1e-9 * expected.gram.norm());
+  }
+}
+
+// What few components leave out comes back on the diagonal, so that the energy is that of all.
+TEST(DetailViewTest, WhatComponentsLeaveOutIsSpreadOverTheRows) {
+  const Eigen::MatrixXd details = RandomMatrix(12, 7, 4);
+  const PrincipalComponents few = ComputePca(details, {.max_components = 2, .min_energy = 1});
+  ASSERT_LT(few.kept_energy, .9);
+  std::vector<Eigen::Index> rows(12);
+  std::iota(rows.begin(), rows.end(), 0);
+  const DetailView view = MakeDetailView(few, rows, ViewScaling::kOneScalar);
+  EXPECT_EQ(view.num_outputs, 7);
+  const Eigen::MatrixXd centered = details.rowwise() - details.colwise().mean();
+  EXPECT_NEAR(view.gram.trace(), centered.squaredNorm(), 1e-9 * centered.squaredNorm());
+  const Eigen::MatrixXd beside = view.gram - few.scores * few.scores.transpose();
+  EXPECT_LT((beside - beside(0, 0) * Eigen::MatrixXd::Identity(12, 12)).norm(), 1e-9);
+}
+
 TEST(TrainSharedGplvmTest, LbfgsDoesAtLeastAsWellWithAsManyEvaluations) {
   const SyntheticMotion motion = MakeSyntheticMotion(50, 12, 40, 2);
   SharedGplvmOptions options = SharedGplvmOptions::Paper();

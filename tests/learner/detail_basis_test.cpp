@@ -60,6 +60,41 @@ TEST(DetailBasisTest, ExpandsToTheDetail) {
             1e-4 * truth.detail.cwiseAbs().maxCoeff());
 }
 
+// Details that fill no block, one block, and one more than a block.
+TEST(DetailBasisTest, AnyNumberOfDetailsAndComponentsIsExpanded) {
+  for (const int num_details : {1, 3, 47, 48, 49, 96, 97}) {
+    for (const int num_components : {1, 2, 5}) {
+      const Eigen::VectorXf mean = RandomMatrix(num_details, 1, 1).cast<float>();
+      const Eigen::MatrixXd columns = RandomMatrix(num_details, num_components, 2);
+      PLEAT_ASSERT_OK_AND_ASSIGN(
+          const DetailBasis basis,
+          DetailBasis::Quantize(mean, columns, Eigen::VectorXd::Zero(num_components)));
+      EXPECT_EQ(basis.num_details(), num_details);
+      EXPECT_EQ(basis.num_components(), num_components);
+      EXPECT_EQ(basis.num_blocks(), (num_details + 47) / 48);
+      EXPECT_GE(basis.memory_bytes(), static_cast<size_t>(num_details * basis.num_planes()));
+      for (int k = 0; k < num_components; ++k) {
+        // One component alone is its column, whatever its sign and size.
+        for (const float size : {-3.f, 1e-20f, 1e20f}) {
+          const Eigen::VectorXf detail =
+              Expanded(basis, size * Eigen::VectorXf::Unit(num_components, k));
+          const Eigen::VectorXd expected = mean.cast<double>() + double(size) * columns.col(k);
+          EXPECT_LT((detail.cast<double>() - expected).cwiseAbs().maxCoeff(),
+                    1e-4 * expected.cwiseAbs().maxCoeff());
+        }
+      }
+    }
+  }
+}
+
+TEST(DetailBasisTest, CoefficientsThatOverflowGiveTheMean) {
+  const Truth truth;
+  const DetailBasis basis = Rounded(truth, 0);
+  Eigen::VectorXf coefficients = truth.coefficients;
+  coefficients[2] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(Expanded(basis, coefficients), truth.mean);
+}
+
 TEST(DetailBasisTest, ZeroCoefficientsGiveTheMean) {
   const Truth truth;
   const DetailBasis basis = Rounded(truth, 0);

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "learner_variants.h"
 #include "support/allocation_counter.h"
 #include "support/gplvm_data.h"
 #include "support/random_data.h"
@@ -17,29 +17,6 @@ namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-
-DetailModelOptions SmallOptions(Learner learner, bool back_constraints = true) {
-  DetailModelOptions options;
-  options.learner = learner;
-  options.sgplvm.latent_dimension = 4;
-  options.sgplvm.max_iterations = 40;
-  options.sgplvm.back_constraints = back_constraints;
-  return options;
-}
-
-// With two regions: the first half of features and details, and the second.
-DetailModelOptions WithRegions(DetailModelOptions options, const SyntheticMotion& motion) {
-  const int num_features = static_cast<int>(motion.features.cols());
-  const Eigen::Index num_details = motion.details.cols();
-  std::vector<int> all(num_features);
-  std::iota(all.begin(), all.end(), 0);
-  const std::vector<int> first(all.begin(), all.begin() + num_features / 2);
-  const std::vector<int> second(all.begin() + num_features / 2, all.end());
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(num_details);
-  weights.head(num_details / 2).setOnes();
-  options.regions = {{weights, {all, first}}, {weights.array() * -1 + 1, {all, second}}};
-  return options;
-}
 
 // RMS error per entry on `motion`, and the mean confidence.
 double HeldOutRms(const DetailModel& model, const SyntheticMotion& motion,
@@ -55,13 +32,7 @@ double HeldOutRms(const DetailModel& model, const SyntheticMotion& motion,
   return std::sqrt(squares / double(motion.details.size()));
 }
 
-struct Variant {
-  const char* name;
-  Learner learner;
-  bool back_constraints;
-};
-
-class DetailModelTest : public ::testing::TestWithParam<Variant> {
+class DetailModelTest : public ::testing::TestWithParam<LearnerVariant> {
  protected:
   DetailModelOptions Options(const SyntheticMotion& motion) const {
     return WithRegions(SmallOptions(GetParam().learner, GetParam().back_constraints), motion);
@@ -237,12 +208,7 @@ TEST_P(DetailModelTest, ReportsRisingProgress) {
   EXPECT_GT(num_updates, GetParam().learner == Learner::kRidge ? 2 : 5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Learners, DetailModelTest,
-                         ::testing::Values(Variant{"Gp", Learner::kGp, false},
-                                           Variant{"Sgplvm", Learner::kSgplvm, false},
-                                           Variant{"BackConstrained", Learner::kSgplvm, true},
-                                           Variant{"Regional", Learner::kRegional, false},
-                                           Variant{"Ridge", Learner::kRidge, false}),
+INSTANTIATE_TEST_SUITE_P(Learners, DetailModelTest, ::testing::ValuesIn(kVariants),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST(DetailModelParametersTest, RefusesWhatDoesNotFit) {

@@ -20,5 +20,18 @@ TEST(NearestTest, TakesTheCloserOfTwo) {
   EXPECT_EQ(NearestRows(rows, queries), (std::vector<int>{0, 0, 1}));
 }
 
+TEST(NearestTest, TheDistanceOfEveryRowIsTheSmallest) {
+  const Eigen::MatrixXd rows = RandomMatrix(40, 5, 1), queries = RandomMatrix(30, 5, 2);
+  const std::vector<int> nearest = NearestRows(rows, queries);
+  ASSERT_EQ(nearest.size(), 30u);
+  for (int q = 0; q < 30; ++q) {
+    for (int n = 0; n < 40; ++n) {
+      EXPECT_LE((rows.row(nearest[q]) - queries.row(q)).norm(),
+                (rows.row(n) - queries.row(q)).norm());
+    }
+  }
+  EXPECT_TRUE(NearestRows(rows, queries.topRows(0)).empty());
+}
+
 }  // namespace
 }  // namespace pleat

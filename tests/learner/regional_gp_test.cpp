@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "support/status_matchers.h"
+
 namespace pleat {
 namespace {
+
+using ::testing::HasSubstr;
 
 // Two limbs with three features each; output 0 hangs on the first limb, output 1 on the second, and
 // a little of both on their product. In training the limbs move together.
@@ -74,19 +79,6 @@ TEST(RegionalGpTest, NearFeaturesCarryOverToNewCombinationsOfLimbs) {
   EXPECT_LT(RmsError(*gp, unseen), .3 * RmsError(*without, unseen));
 }
 
-TEST(RegionalGpTest, SameBytesForAnyThreadCount) {
-  const TwoLimbs data = MakeTwoLimbs(40, .5);
-  RegionalGpOptions options;
-  options.num_threads = 1;
-  const absl::StatusOr<RegionalGp> one = RegionalGp::Train(data.inputs, data.regions, options);
-  options.num_threads = 7;
-  const absl::StatusOr<RegionalGp> seven = RegionalGp::Train(data.inputs, data.regions, options);
-  ASSERT_TRUE(one.ok() && seven.ok());
-  for (size_t r = 0; r < data.regions.size(); ++r) {
-    EXPECT_EQ(one->parameters().regions[r].alpha, seven->parameters().regions[r].alpha);
-  }
-}
-
 TEST(RegionalGpTest, FewerRowsThanGivenStillPredict) {
   const TwoLimbs data = MakeTwoLimbs(120, .5);
   RegionalGpOptions options;
@@ -133,22 +125,123 @@ TEST(RegionalGpTest, ScalesOfTheInputsAreUnitsOnly) {
             absl::StatusCode::kInvalidArgument);
 }
 
-TEST(RegionalGpTest, RefusesWhatDoesNotFitTogether) {
-  TwoLimbs data = MakeTwoLimbs(20, .5);
-  const absl::StatusOr<RegionalGp> gp = RegionalGp::Train(data.inputs, data.regions);
-  ASSERT_TRUE(gp.ok());
-  RegionalGpParameters p = gp->parameters();
-  p.regions[1].scales[0].columns.back() = 6;
-  EXPECT_EQ(RegionalGp::FromParameters(p).status().code(), absl::StatusCode::kInvalidArgument);
-  p = gp->parameters();
-  p.regions[0].alpha.conservativeResize(19, Eigen::NoChange);
-  EXPECT_EQ(RegionalGp::FromParameters(p).status().code(), absl::StatusCode::kInvalidArgument);
-  p = gp->parameters();
-  p.regions[0].bias = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(RegionalGp::FromParameters(p).status().code(), absl::StatusCode::kInvalidArgument);
-  data.regions[1].feature_sets[0] = {3, 2};
-  EXPECT_EQ(RegionalGp::Train(data.inputs, data.regions).status().code(),
-            absl::StatusCode::kInvalidArgument);
+TEST(RegionalGpTest, RefusesHostileParameters) {
+  const TwoLimbs data = MakeTwoLimbs(20, .5);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp gp, RegionalGp::Train(data.inputs, data.regions));
+  const auto refused = [&](auto change, const std::string& words) {
+    RegionalGpParameters p = gp.parameters();
+    change(p);
+    EXPECT_THAT(RegionalGp::FromParameters(std::move(p)),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(words)));
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  refused([](auto& p) { p = {}; }, "no rows");
+  refused([](auto& p) { p.regions.clear(); }, "or regions");
+  refused([](auto& p) { p.input_mean.conservativeResize(5); }, "mean or scales");
+  refused([](auto& p) { p.input_scales[2] = 0; }, "mean or scales");
+  refused([](auto& p) { p.input_scales[2] = kInf; }, "mean or scales");
+  refused([](auto& p) { p.inputs(4, 1) = kNan; }, "not finite");
+  refused([](auto& p) { p.output_mean[0] = kInf; }, "not finite");
+  refused([](auto& p) { p.regions[0].alpha.conservativeResize(19, Eigen::NoChange); }, "19 x 2");
+  refused([](auto& p) { p.regions[1].alpha(0, 0) = std::nanf(""); }, "not finite");
+  refused([](auto& p) { p.regions[0].scales.clear(); }, "without scales");
+  refused([](auto& p) { p.regions[0].bias = kNan; }, "bias");
+  refused([](auto& p) { p.regions[0].bias = -1; }, "bias");
+  refused([](auto& p) { p.regions[1].scales[0].columns.back() = 6; }, "ascend below 6");
+  refused([](auto& p) { p.regions[1].scales[0].columns.clear(); }, "ascend");
+  refused([](auto& p) { p.regions[1].scales[1].inverse_width = 0; }, "width");
+  refused([](auto& p) { p.regions[1].scales[1].amplitude = kNan; }, "amplitude");
+  refused([](auto& p) { p.regions[1].scales[1].linear = 1e31; }, "slope");
+}
+
+TEST(RegionalGpTest, RefusesDataThatDoNotFitTogether) {
+  const auto refused = [](auto change, const std::string& words) {
+    TwoLimbs data = MakeTwoLimbs(20, .5);
+    RegionalGpOptions options;
+    change(data, options);
+    EXPECT_THAT(RegionalGp::Train(data.inputs, data.regions, options),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(words)));
+  };
+  refused([](auto& d, auto&) { d.inputs.conservativeResize(1, 6); }, "1 x 6");
+  refused([](auto& d, auto&) { d.regions.clear(); }, "0 regions");
+  refused([](auto& d, auto&) { d.inputs(3, 2) = std::nan(""); }, "finite rows");
+  refused([](auto& d, auto&) { d.regions[1].outputs.conservativeResize(19, 2); }, "region 1");
+  refused([](auto& d, auto&) { d.regions[1].outputs.conservativeResize(20, 1); }, "20 x 2");
+  refused([](auto& d, auto&) { d.regions[0].outputs(3, 1) = std::nan(""); }, "region 0");
+  refused([](auto& d, auto&) { d.regions[1].feature_sets.clear(); }, "no feature sets");
+  refused([](auto& d, auto&) { d.regions[1].feature_sets[0] = {3, 2}; }, "does not ascend");
+  refused([](auto& d, auto&) { d.regions[0].feature_sets[1] = {-1, 2}; }, "below 6");
+  refused([](auto& d, auto&) { d.regions[0].feature_sets[1] = {}; }, "below 6");
+  refused([](auto&, auto& o) { o.input_scales = Eigen::VectorXd::Ones(5); }, "got 5");
+  refused([](auto&, auto& o) { o.input_scales = Eigen::VectorXd::Constant(6, -1); }, "positive");
+}
+
+// More regions than are trained at the same time, which see different sets.
+TEST(RegionalGpTest, ManyRegionsAreTheSameForAnyThreadCountAndTheirProgressRises) {
+  const TwoLimbs data = MakeTwoLimbs(30, .5);
+  std::vector<GpRegion> regions;
+  for (int r = 0; r < 7; ++r) {
+    regions.push_back(data.regions[r % 2]);
+    regions.back().outputs *= r + 1;
+    regions.back().feature_sets.push_back({r % 6});
+  }
+  RegionalGpOptions options{.max_iterations = 8, .num_threads = 1};
+  std::vector<double> fractions;
+  const Progress progress(
+      [&](const ProgressUpdate& update) { fractions.push_back(update.fraction); }, nullptr);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp one,
+                             RegionalGp::Train(data.inputs, regions, options, progress));
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.back(), 1);
+  for (const int num_threads : {2, 7}) {
+    options.num_threads = num_threads;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp many,
+                               RegionalGp::Train(data.inputs, regions, options));
+    const RegionalGpParameters a = one.parameters(), b = many.parameters();
+    for (size_t r = 0; r < regions.size(); ++r) {
+      EXPECT_EQ(a.regions[r].alpha, b.regions[r].alpha);
+      EXPECT_EQ(a.regions[r].bias, b.regions[r].bias);
+      for (size_t e = 0; e < a.regions[r].scales.size(); ++e) {
+        EXPECT_EQ(a.regions[r].scales[e].inverse_width, b.regions[r].scales[e].inverse_width);
+        EXPECT_EQ(a.regions[r].scales[e].amplitude, b.regions[r].scales[e].amplitude);
+        EXPECT_EQ(a.regions[r].scales[e].linear, b.regions[r].scales[e].linear);
+      }
+    }
+  }
+}
+
+// A region that is cut into parts with the same sets is the region: hyperparameters do not know
+// the unit of the outputs, and the mean is linear in them.
+TEST(RegionalGpTest, PartsOfARegionAddUpToIt) {
+  const TwoLimbs data = MakeTwoLimbs(50, .5);
+  const std::vector<GpRegion> whole = {data.regions[0]};
+  std::vector<GpRegion> parts(3, data.regions[0]);
+  parts[0].outputs *= .5;
+  parts[1].outputs *= .8;
+  parts[2].outputs *= -.3;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp one, RegionalGp::Train(data.inputs, whole));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp three, RegionalGp::Train(data.inputs, parts));
+  RegionalGp::Workspace workspace;
+  Eigen::VectorXd a(2), b(2);
+  for (const double step : {0.0, .2, 3.0}) {
+    const Eigen::VectorXd row = data.inputs.row(11).transpose().array() + step;
+    one.Predict(row, &workspace, a);
+    three.Predict(row, &workspace, b);
+    EXPECT_LT((a - b).norm(), 1e-4) << step;
+  }
+  EXPECT_GT(three.memory_bytes(), one.memory_bytes());
+}
+
+// A limb that never moves, alone in a set, and a region without any detail.
+TEST(RegionalGpTest, StillLimbsAndRegionsWithoutDetailAreLearned) {
+  TwoLimbs data = MakeTwoLimbs(40, .5);
+  data.inputs.rightCols(3).setConstant(.7);
+  data.regions[1].outputs.setZero();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp gp, RegionalGp::Train(data.inputs, data.regions));
+  data.outputs.col(1).setZero();
+  EXPECT_LT(RmsError(gp, data), .02);
 }
 
 TEST(RegionalGpTest, CancellationStops) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/gp_predictions.h"
 #include "support/random_data.h"
 #include "support/status_matchers.h"
@@ -57,6 +59,33 @@ TEST(RidgeTest, AsAGaussianProcessItPredictsTheSameAndKnowsItsVariance) {
   }
 }
 
+// The weights are where the gradient of |y - x w|^2 + penalty |x|^2 |w|^2 vanishes.
+TEST(RidgeTest, WeightsSolveTheirNormalEquations) {
+  for (const int num_inputs : {3, 40}) {
+    const Eigen::MatrixXd inputs = RandomMatrix(15, num_inputs, 1).array() + 4;
+    const Eigen::MatrixXd outputs = RandomMatrix(15, 2, 2).array() - 9;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge ridge, TrainRidge(inputs, outputs, {.penalty = .01}));
+    const Eigen::MatrixXd x = inputs.rowwise() - inputs.colwise().mean();
+    const Eigen::MatrixXd y = outputs.rowwise() - outputs.colwise().mean();
+    const Eigen::MatrixXd slope =
+        x.transpose() * (x * ridge.weights - y) + .01 * x.squaredNorm() * ridge.weights;
+    EXPECT_LT(slope.cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((ridge.Predict(inputs.colwise().mean()) - outputs.colwise().mean()).norm(), 1e-9);
+  }
+}
+
+TEST(RidgeTest, InputsThatNeverChangePredictTheMean) {
+  const Eigen::MatrixXd y = RandomMatrix(6, 2, 2);
+  for (const int num_rows : {1, 6}) {
+    const Eigen::MatrixXd x = Eigen::MatrixXd::Constant(num_rows, 3, 5);
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Ridge ridge, TrainRidge(x, y.topRows(num_rows)));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, TrainRidgeGp(x, y.topRows(num_rows)));
+    const Eigen::RowVectorXd mean = y.topRows(num_rows).colwise().mean();
+    EXPECT_LT((ridge.Predict(x.topRows(1)) - mean).norm(), 1e-9);
+    EXPECT_LT((PredictRows(gp, x.topRows(1)).means - mean).norm(), 1e-9);
+  }
+}
+
 TEST(RidgeTest, RefusesWrongDataWithWords) {
   const Eigen::MatrixXd x = RandomMatrix(10, 2, 1);
   EXPECT_THAT(TrainRidgeGp(RandomMatrix(5, 2, 1), RandomMatrix(4, 2, 2)),
@@ -65,6 +94,12 @@ TEST(RidgeTest, RefusesWrongDataWithWords) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("as many rows")));
   EXPECT_THAT(TrainRidge(x, x, {.penalty = 0}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("positive penalty")));
+  Eigen::MatrixXd hole = x;
+  hole(3, 1) = std::nan("");
+  EXPECT_FALSE(TrainRidge(hole, x).ok());
+  EXPECT_FALSE(TrainRidgeGp(x, hole).ok());
+  EXPECT_FALSE(TrainRidge(x, x, {.penalty = std::nan("")}).ok());
+  EXPECT_FALSE(TrainRidge(x.leftCols(0), x).ok());
 }
 
 }  // namespace

@@ -79,6 +79,38 @@ TEST(LbfgsTest, StopsWhereNoDescentIsPossible) {
   EXPECT_EQ((x - minimum).norm(), 0);
 }
 
+// A direction from few pairs is worse, but the line search makes every one of them work.
+TEST(LbfgsTest, AShortMemoryCostsIterationsOnly) {
+  Rosenbrock objective(2);
+  int last = 1 << 30;
+  for (const int history : {0, 1, 8}) {
+    OptimizationSummary summary;
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Eigen::VectorXd x,
+        MinimizeLbfgs(objective, Eigen::Vector2d(-1.2, 1),
+                      {.max_iterations = 50000, .gradient_tolerance = 1e-5, .history = history},
+                      &summary));
+    EXPECT_LT((x - Eigen::Vector2d(1, 1)).norm(), 1e-3) << history;
+    EXPECT_LT(summary.iterations, last) << history;
+    last = summary.iterations;
+  }
+}
+
+TEST(LbfgsTest, ALineSearchEndsAtItsOwnBudget) {
+  Rosenbrock objective(4);
+  for (const int budget : {1, 2, 5}) {
+    OptimizationSummary summary;
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const Eigen::VectorXd x,
+        MinimizeLbfgs(objective, Eigen::VectorXd::Constant(4, -1.0),
+                      {.max_iterations = 30, .max_line_search_evaluations = budget}, &summary));
+    // One more when the best point of the search has to be looked at again.
+    EXPECT_LE(summary.evaluations, 1 + summary.iterations * (budget + 1)) << budget;
+    EXPECT_LE(summary.final_objective, summary.initial_objective);
+    EXPECT_EQ(objective.Evaluate(x, nullptr), summary.final_objective);
+  }
+}
+
 TEST(LbfgsTest, StopsWhenCancelled) {
   Rosenbrock objective(4);
   bool cancelled = false;

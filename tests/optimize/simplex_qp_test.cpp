@@ -86,6 +86,39 @@ TEST(SimplexQp, NearlySingularMatricesStayFeasible) {
   }
 }
 
+// Which unknown comes first, and in which unit the objective is, must not matter.
+TEST(SimplexQp, OrderAndUnitDoNotMatter) {
+  Random random(8);
+  for (int trial = 0; trial < 50; ++trial) {
+    const SimplexQpMatrix hessian = RandomHessian(7, &random);
+    const SimplexQpVector linear = RandomVector(7, 2, &random);
+    SimplexQpVector x = SimplexQpVector::Constant(7, 1.0 / 7), reversed = x, scaled = x;
+    SolveSimplexQp(hessian, linear, &x);
+    SolveSimplexQp(hessian.reverse(), linear.reverse(), &reversed);
+    SolveSimplexQp(1e-9 * hessian, 1e-9 * linear, &scaled);
+    EXPECT_LT((reversed.reverse() - x).norm(), 1e-9);
+    EXPECT_LT((scaled - x).norm(), 1e-9);
+    // A constant on all of `linear` is the same everywhere on the simplex.
+    SimplexQpVector shifted = SimplexQpVector::Unit(7, 2);
+    SolveSimplexQp(hessian, linear + SimplexQpVector::Constant(7, 5), &shifted);
+    EXPECT_LT((shifted - x).norm(), 1e-9);
+  }
+}
+
+TEST(SimplexQp, SupportOfOneIsACorner) {
+  Random random(9);
+  for (int trial = 0; trial < 20; ++trial) {
+    const SimplexQpMatrix hessian = RandomHessian(5, &random);
+    const SimplexQpVector linear = RandomVector(5, .3, &random);
+    SimplexQpVector full = SimplexQpVector::Constant(5, .2), corner = full;
+    SolveSimplexQp(hessian, linear, &full);
+    SolveSparseSimplexQp(hessian, linear, 1, &corner);
+    Eigen::Index largest = 0;
+    full.maxCoeff(&largest);
+    EXPECT_EQ(corner, SimplexQpVector(SimplexQpVector::Unit(5, largest)));
+  }
+}
+
 TEST(SimplexQp, SparseSolutionIsOptimalAmongItsSupport) {
   Random random(6);
   for (int trial = 0; trial < 100; ++trial) {

@@ -72,6 +72,31 @@ TEST(EmbeddingSearchTest, FindsTheCheapestPlacementOfAll) {
   EXPECT_GE(num_found, 4);
 }
 
+// The search's bound relies on it: adding a joint never makes a placement cheaper.
+TEST(EmbeddingSearchTest, NoPenaltyIsNegative) {
+  Random random(3);
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    const SphereGraph graph = RandomGraph(seed, 12);
+    const SearchTree tree = MakeHumanSearchTree(1, .3 * static_cast<double>(seed));
+    const PenaltyModel model(graph, tree, 0, 1);
+    int num_finite = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+      std::vector<int> spheres;
+      for (size_t j = 0; j < tree.size(); ++j) spheres.push_back(random.UniformInt(12));
+      for (size_t k = 1; k < tree.size(); ++k) {
+        const int j = static_cast<int>(k);
+        const double pair = model.PairPenalty(j, spheres[k], spheres[tree[k].parent]);
+        EXPECT_GE(pair, 0);
+        if (!std::isfinite(pair)) continue;
+        const std::vector<int> before(spheres.begin(), spheres.begin() + j);
+        EXPECT_GE(model.ContextPenalty(model.MakeContext(j, before), spheres[k]), 0);
+        ++num_finite;
+      }
+    }
+    EXPECT_GT(num_finite, 20);
+  }
+}
+
 TEST(EmbeddingSearchTest, BoundsDecideWhatIsFound) {
   const SphereGraph graph = RandomGraph(2, 10);
   const SearchTree tree = MakeHumanSearchTree(1, 0);

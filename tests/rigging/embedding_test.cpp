@@ -114,6 +114,22 @@ TEST(EmbeddingTest, HoleCubeAndFlippedFacesDoNotMatter) {
   EXPECT_LT(LimbError(found.joints, figure.joints), .05);
 }
 
+TEST(EmbeddingTest, APlacedSkeletonIsStoodUprightFromAnyPosition) {
+  const Eigen::Matrix3Xd joints = HumanTemplate().RestPositions();
+  const Eigen::Matrix3d upright = UprightFromJoints(joints);
+  EXPECT_LT((upright * upright.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_GT(upright.determinant(), 0);
+  EXPECT_GT(upright(1, 1), .99);  // the template stands already
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, 2, -1)}) {
+    for (const double angle : {.5, 1.5708, 3.14159}) {
+      const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+      const Eigen::Matrix3Xd moved = (1.7 * turn * joints).colwise() + Eigen::Vector3d(3, -2, 1);
+      EXPECT_LT((UprightFromJoints(moved) * turn - upright).norm(), 1e-9);
+    }
+  }
+}
+
 TEST(EmbeddingTest, AQuadrupedIsNoHuman) {
   const absl::StatusOr<Embedding> embedding = Embed(MakeCapsuleQuadruped());
   EXPECT_TRUE(absl::IsNotFound(embedding.status()) || embedding->residual > .15)

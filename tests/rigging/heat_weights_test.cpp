@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/capsule_figure.h"
 #include "support/status_matchers.h"
 
@@ -61,6 +63,85 @@ TEST(HeatWeightsTest, MirroredBonesGetMirroredWeights) {
   EXPECT_NEAR(left / right, 1, .02);
 }
 
+// A straight tube around a chain of three bones along x.
+struct Tube {
+  TriangleMesh mesh = MakeCapsuleBody({{{0, 0, 0}, {3, 0, 0}, .2, .2}}, .08);
+  Skeleton skeleton = Skeleton::Create({{"root", -1, {0, 0, 0}},
+                                        {"first", 0, {1, 0, 0}},
+                                        {"second", 1, {2, 0, 0}},
+                                        {"third", 2, {3, 0, 0}}})
+                          .value();
+  Eigen::MatrixXd Weights(const HeatWeightsOptions& options = {}) const {
+    return ComputeHeatWeights(MakeTopology(mesh), mesh.positions, skeleton, options)->ToDense();
+  }
+};
+
+TEST(HeatWeightsTest, AlongATubeEveryBoneRisesAndFalls) {
+  const Tube tube;
+  const Eigen::MatrixXd dense = tube.Weights();
+  // Mean weights of slices across the tube.
+  constexpr int kNumSlices = 30;
+  Eigen::MatrixXd slices = Eigen::MatrixXd::Zero(kNumSlices, 4);
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(kNumSlices);
+  for (int v = 0; v < dense.rows(); ++v) {
+    const int slice = std::clamp(static_cast<int>(10 * tube.mesh.positions(0, v)), 0, 29);
+    slices.row(slice) += dense.row(v);
+    counts[slice] += 1;
+  }
+  for (int s = 0; s < kNumSlices; ++s) slices.row(s) /= counts[s];
+  for (int s = 1; s < kNumSlices; ++s) {
+    EXPECT_LT(slices(s, 1), slices(s - 1, 1) + .02) << s;  // only falls
+    EXPECT_GT(slices(s, 3), slices(s - 1, 3) - .02) << s;  // only rises
+    // From the other end it looks the same.
+    EXPECT_NEAR(slices(s, 1), slices(kNumSlices - 1 - s, 3), .08) << s;
+    EXPECT_NEAR(slices(s, 2), slices(kNumSlices - 1 - s, 2), .08) << s;
+  }
+  EXPECT_GT(slices(3, 1), .95);
+  EXPECT_GT(slices(15, 2), .9);
+  EXPECT_LT(slices(3, 3), .01);
+}
+
+TEST(HeatWeightsTest, MoreHeatMakesSharperTransitions) {
+  const Tube tube;
+  double last = 0;
+  for (const double heat_constant : {.1, 1.0, 10.0}) {
+    const Eigen::MatrixXd dense = tube.Weights({.heat_constant = heat_constant});
+    // Nearness to weights of 0 and 1.
+    const double sharpness = dense.array().square().rowwise().sum().mean();
+    EXPECT_GT(sharpness, last) << heat_constant;
+    last = sharpness;
+  }
+  EXPECT_LE(last, 1 + 1e-6);
+}
+
+// Heat has no sources between the bones: no weight leaves [0, 1], and all of them together are 1.
+TEST(HeatWeightsTest, TheEquilibriumItselfIsAPartitionOfOne) {
+  const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .04});
+  const Skeleton skeleton = FigureSkeleton(figure);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface surface,
+                             PrepareSolidSurface(MakeTopology(figure.mesh), figure.mesh.positions));
+  const TriangleTree tree(surface.positions, surface.triangles);
+  const WindingNumber winding_number(tree);
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const Eigen::MatrixXd weights,
+      SolveHeatEquilibrium(surface, {&tree, &winding_number, nullptr}, skeleton, figure.joints));
+  ASSERT_EQ(weights.rows(), surface.positions.cols());
+  ASSERT_EQ(weights.cols(), kNumHumanJoints);
+  EXPECT_EQ(weights.col(0).cwiseAbs().maxCoeff(), 0);
+  EXPECT_LT((weights.rowwise().sum().array() - 1).abs().maxCoeff(), 1e-6);
+  EXPECT_GT(weights.minCoeff(), -.02);  // obtuse triangles conduct backwards a little
+  EXPECT_LT(weights.maxCoeff(), 1.02);
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const SkinWeights cut,
+      WeightsOfInput(surface, weights, figure.mesh.positions, skeleton, figure.joints));
+  EXPECT_EQ(cut.num_vertices(), figure.mesh.positions.cols());
+  const Progress cancelled({}, [] { return true; });
+  EXPECT_TRUE(
+      absl::IsCancelled(SolveHeatEquilibrium(surface, {&tree, &winding_number, nullptr}, skeleton,
+                                             figure.joints, {}, nullptr, cancelled)
+                            .status()));
+}
+
 TEST(HeatWeightsTest, ScaleAndUnitDoNotMatter) {
   const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .04});
   const Topology topology = MakeTopology(figure.mesh);
@@ -110,6 +191,9 @@ TEST(HeatWeightsTest, RefusesASkeletonWithoutBone) {
   const Skeleton point = *Skeleton::Create({{"root", -1, {0, 0, 0}}});
   EXPECT_THAT(ComputeHeatWeights(MakeTopology(mesh), mesh.positions, point),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("need a bone")));
+  const Skeleton stick = *Skeleton::Create({{"root", -1, {0, 0, 0}}, {"tip", 0, {0, 1, 0}}});
+  EXPECT_THAT(ComputeHeatWeights(MakeTopology(mesh), 0 * mesh.positions, stick),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("area")));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "pleat/base/random.h"
 #include "pleat/skeleton/human_template.h"
 
@@ -82,6 +84,56 @@ TEST(RefinementTest, TheMiddleOfASkirtSaysLittle) {
            (refined - truth).col(kLeftUpperLeg).norm();
   };
   EXPECT_LT(drift(.03), .5 * drift(1));
+}
+
+// A start that is off, with the same medial surface for all of the following.
+struct Disturbed {
+  Disturbed() {
+    Random random(6);
+    for (double& x : start.reshaped()) x += random.Uniform(-.012, .012);
+  }
+  Eigen::Matrix3Xd truth = .9 * HumanTemplate().RestPositions();
+  Eigen::Matrix3Xd start = truth;
+};
+
+// Where the body stands and how it is turned must not matter: all energies are relative.
+TEST(RefinementTest, ATurnedAndMovedBodyIsRefinedAlike) {
+  const Disturbed body;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.2, Eigen::Vector3d(.3, 1, -.5).normalized()).toRotationMatrix();
+  const Eigen::Vector3d shift(.2, -.4, .1);
+  const auto moved = [&](const Eigen::Matrix3Xd& joints) {
+    return Eigen::Matrix3Xd((turn * joints).colwise() + shift);
+  };
+  const Eigen::Matrix3Xd here = RefineEmbedding(body.start, body.truth, SamplesOnBones(body.truth));
+  const Eigen::Matrix3Xd there =
+      RefineEmbedding(moved(body.start), moved(body.truth), SamplesOnBones(moved(body.truth)));
+  EXPECT_LT((there - moved(here)).colwise().norm().maxCoeff(), 2e-3);
+}
+
+TEST(RefinementTest, AMirroredBodyIsRefinedMirrored) {
+  const Disturbed body;
+  const auto mirrored = [](const Eigen::Matrix3Xd& joints) {
+    Eigen::Matrix3Xd result(3, kNumHumanJoints);
+    for (int j = 0; j < kNumHumanJoints; ++j) {
+      result.col(j) = Eigen::Vector3d(-1, 1, 1).cwiseProduct(joints.col(HumanMirror()[j]));
+    }
+    return result;
+  };
+  const Eigen::Matrix3Xd here = RefineEmbedding(body.start, body.truth, SamplesOnBones(body.truth));
+  const Eigen::Matrix3Xd there = RefineEmbedding(mirrored(body.start), mirrored(body.truth),
+                                                 SamplesOnBones(mirrored(body.truth)));
+  EXPECT_LT((there - mirrored(here)).colwise().norm().maxCoeff(), 2e-3);
+}
+
+TEST(RefinementTest, NoIterationsAndNoSurfaceLeaveWhatTheyMust) {
+  const Disturbed body;
+  EXPECT_EQ(
+      RefineEmbedding(body.start, body.truth, SamplesOnBones(body.truth), {.max_iterations = 0}),
+      body.start);
+  // Without a surface only the shape of the template is left to follow.
+  const Eigen::Matrix3Xd refined = RefineEmbedding(body.truth, body.truth, {}, {.proportions = 0});
+  EXPECT_LT((refined - body.truth).colwise().norm().maxCoeff(), .02);
 }
 
 TEST(RefinementTest, CoincidentJointsStayFinite) {

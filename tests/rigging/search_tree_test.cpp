@@ -38,6 +38,23 @@ TEST(SearchTreeTest, ChainsAddUpToTheJoint) {
   }
 }
 
+TEST(SearchTreeTest, SizeScalesLengthsAndWholeTurnsChangeNothing) {
+  const SearchTree one = MakeHumanSearchTree(1, .7);
+  const SearchTree twice = MakeHumanSearchTree(2, .7 + 2 * std::numbers::pi);
+  for (size_t j = 0; j < one.size(); ++j) {
+    EXPECT_LT((twice[j].position - 2 * one[j].position).norm(), 1e-12);
+    EXPECT_NEAR(twice[j].length, 2 * one[j].length, 1e-12);
+    EXPECT_EQ(twice[j].is_leaf, one[j].is_leaf);
+    if (one[j].parent < 0) continue;
+    EXPECT_LT((twice[j].directions - one[j].directions).norm(), 1e-12);
+    EXPECT_NEAR(one[j].bone_lengths.sum(), one[j].length, 1e-12);
+    EXPECT_LT((one[j].directions.colwise().norm().array() - 1).abs().maxCoeff(), 1e-12);
+    if (one[j].mirror >= 0) {
+      EXPECT_NEAR(one[one[j].mirror].length, one[j].length, 1e-9);
+    }
+  }
+}
+
 TEST(SearchTreeTest, YawTurnsFromPlusZTowardsPlusX) {
   const SearchTree ahead = MakeHumanSearchTree(1, 0);
   const SearchTree side = MakeHumanSearchTree(1, std::numbers::pi / 2);

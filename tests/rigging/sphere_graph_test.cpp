@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "pleat/base/random.h"
 #include "pleat/geometry/triangle_tree.h"
 #include "pleat/geometry/winding_number.h"
 #include "support/status_matchers.h"
@@ -28,6 +30,55 @@ TEST(SphereGraphTest, FindsShortestPaths) {
   EXPECT_THAT(graph.Path(3, 3), ElementsAre(3));
   EXPECT_TRUE(std::isinf(graph.PathLength(0, 5)));
   EXPECT_THAT(graph.Path(0, 5), IsEmpty());
+}
+
+// Against the algorithm of Floyd and Warshall, which is three loops.
+TEST(SphereGraphTest, ShortestPathsOfRandomGraphsAreShortest) {
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    Random random(seed);
+    constexpr int kNumSpheres = 25;
+    std::vector<Sphere> spheres;
+    for (int i = 0; i < kNumSpheres; ++i) {
+      spheres.push_back({{random.Uniform(), random.Uniform(), random.Uniform()}, .1});
+    }
+    Eigen::MatrixXd lengths = Eigen::MatrixXd::Constant(kNumSpheres, kNumSpheres, INFINITY);
+    lengths.diagonal().setZero();
+    std::vector<std::pair<int, int>> edges;
+    for (int k = 0; k < 30; ++k) {
+      const int a = random.UniformInt(kNumSpheres), b = random.UniformInt(kNumSpheres);
+      if (a == b || std::isfinite(lengths(a, b))) continue;
+      edges.push_back({a, b});
+      lengths(a, b) = lengths(b, a) = (spheres[a].center - spheres[b].center).norm();
+    }
+    const SphereGraph graph(spheres, edges);
+    for (int k = 0; k < kNumSpheres; ++k) {
+      for (int i = 0; i < kNumSpheres; ++i) {
+        for (int j = 0; j < kNumSpheres; ++j) {
+          lengths(i, j) = std::min(lengths(i, j), lengths(i, k) + lengths(k, j));
+        }
+      }
+    }
+    for (int i = 0; i < kNumSpheres; ++i) {
+      for (int j = 0; j < kNumSpheres; ++j) {
+        const std::vector<int> path = graph.Path(i, j);
+        if (!std::isfinite(lengths(i, j))) {
+          EXPECT_TRUE(path.empty());
+          EXPECT_EQ(graph.PathLength(i, j), lengths(i, j));
+          EXPECT_EQ(graph.Predecessor(i, j), -1);
+          continue;
+        }
+        EXPECT_NEAR(graph.PathLength(i, j), lengths(i, j), 1e-12);
+        double walked = 0;
+        for (size_t n = 1; n < path.size(); ++n) {
+          EXPECT_THAT(graph.neighbors(path[n - 1]), ::testing::Contains(path[n]));
+          walked += (spheres[path[n]].center - spheres[path[n - 1]].center).norm();
+        }
+        EXPECT_NEAR(walked, lengths(i, j), 1e-12);
+        EXPECT_EQ(path.front(), i);
+        EXPECT_EQ(path.back(), j);
+      }
+    }
+  }
 }
 
 TEST(SphereGraphTest, JoinsOverlapsAndClearSightOnly) {

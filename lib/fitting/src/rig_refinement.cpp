@@ -199,8 +199,10 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
                                                      rig.skeleton.num_joints(), " joints"));
     }
   }
-  const double smallest_pull = std::min({options.weight_smoothness, options.weight_prior,
-                                         options.rest_smoothness, options.rest_prior});
+  const double smallest_pull =
+      std::min({options.weight_smoothness, options.weight_prior, options.rest_smoothness,
+                options.rest_prior},
+               [](double a, double b) { return std::isnan(a) || a < b; });  // a NaN is the smallest
   if (!(options.joint_prior > 0) || !(smallest_pull >= 0) || options.num_rounds < 1 ||
       options.max_frames < 1) {
     return absl::InvalidArgumentError(

@@ -96,9 +96,11 @@ absl::StatusOr<GpRegression> BackConstraintStage(const Eigen::Ref<const Eigen::M
   KernelLogs logs{.inverse_width = model.back_log_inverse_width,
                   .amplitude = 0,
                   .noise = std::log(options.back_noise)};
-  // Normalizing rescales the inputs; the kernel's width follows.
+  // Normalizing rescales the inputs; the kernel's width follows. Poses that never differ have no
+  // scale and stay as they are.
   const Eigen::MatrixXd centered = features.rowwise() - features.colwise().mean();
-  logs.inverse_width += std::log(centered.squaredNorm() / double(centered.rows()));
+  const double mean_square = centered.squaredNorm() / double(centered.rows());
+  if (mean_square > 0) logs.inverse_width += std::log(mean_square);
   PLEAT_ASSIGN_OR_RETURN(const GpRegression fitted,
                          GpRegression::Condition(features, model.latents, logs,
                                                  {.kernel = {.bias = false, .linear = false}}));

@@ -60,6 +60,7 @@ class RefinementObjective {
   // the medial surface, and a step that does not lower the energy is refused.
   double Centering(const Eigen::Matrix3Xd& joints, int b, Eigen::MatrixXd* hessian,
                    Eigen::VectorXd* gradient) const {
+    if (samples_.empty()) return 0;
     const Eigen::Vector3d direction = (joints.col(b) - joints.col(Parent(b))).normalized();
     Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
     if (!IsLeaf(b)) across -= direction * direction.transpose();

@@ -1,0 +1,109 @@
+#include "pleat/local/local_sequences.h"
+
+#include <gtest/gtest.h>
+
+#include "data_folder.h"
+#include "pleat/formats/sequence_file.h"
+#include "support/fake_training.h"
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::_;
+using ::testing::HasSubstr;
+
+class LocalSequencesTest : public testing::Test {
+ protected:
+  LocalSequencesTest() { folder_.Open(); }
+  LocalSequences& sequences() { return folder_.sequences(); }
+  // Uploads in pieces; the status of the end.
+  absl::Status UploadBytes(const std::string& id, const std::string& bytes) {
+    auto upload = sequences().BeginUpload(id, bytes.size(), 0);
+    if (!upload.ok()) return upload.status();
+    for (size_t at = 0; at < bytes.size(); at += 1000) {
+      if (absl::Status status = (*upload)->Append(bytes.substr(at, 1000)); !status.ok()) {
+        return status;
+      }
+    }
+    return (*upload)->Finish().status();
+  }
+
+  DataFolder folder_;
+  const MeshSequence tube_ = MakeSwayingTube(4);
+  const std::string bytes_ = EncodeSequence(tube_);
+  const std::string id_ = SequenceId(bytes_);
+};
+
+TEST_F(LocalSequencesTest, WhatIsLoadedIsWhatCameIn) {
+  ASSERT_THAT(UploadBytes(id_, bytes_), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence loaded, sequences().Load(id_));
+  EXPECT_TRUE(EncodeSequence(loaded) == bytes_);
+  EXPECT_EQ(sequences().Upload(tube_, {})->id, id_);
+  EXPECT_EQ(sequences().List()->size(), 1u);
+}
+
+TEST_F(LocalSequencesTest, AnUploadThatIsNotWholeIsNoSequence) {
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, sequences().BeginUpload(id_, bytes_.size(), 0));
+    ASSERT_THAT(upload->Append(bytes_.substr(0, 500)), IsOk());
+    EXPECT_EQ(upload->received_bytes(), 500u);
+    EXPECT_THAT(upload->Finish(), HasStatus(absl::StatusCode::kFailedPrecondition, _));
+  }
+  EXPECT_EQ(sequences().QueryUpload(id_)->received_bytes, 500u);  // it may go on
+  EXPECT_THAT(sequences().BeginUpload(id_, bytes_.size(), 499),
+              HasStatus(absl::StatusCode::kOutOfRange, _));
+  std::string wrong = bytes_;
+  wrong[700] ^= 1;
+  EXPECT_THAT(UploadBytes(id_, wrong), HasStatus(absl::StatusCode::kDataLoss, HasSubstr("SHA")));
+  EXPECT_THAT(sequences().Get(id_), HasStatus(absl::StatusCode::kNotFound, _));
+  EXPECT_THAT(UploadBytes(id_, bytes_), IsOk());  // starts again
+}
+
+TEST_F(LocalSequencesTest, ACancelledUploadStoresNothing) {
+  EXPECT_THAT(sequences().Upload(tube_, Progress({}, [] { return true; })),
+              HasStatus(absl::StatusCode::kCancelled, _));
+  EXPECT_TRUE(sequences().List()->empty());
+}
+
+TEST_F(LocalSequencesTest, EachLimitIsNamedAtBothDoors) {
+  const int64_t size = static_cast<int64_t>(bytes_.size());
+  for (const auto& [limits, flag] :
+       {std::pair(ServiceLimits{.max_vertices = 95}, "max-vertices"),
+        std::pair(ServiceLimits{.max_frames = 3}, "max-frames"),
+        std::pair(ServiceLimits{.max_upload_bytes = size - 1}, "max-upload-bytes")}) {
+    folder_.Open(limits);
+    EXPECT_THAT(sequences().Upload(tube_, {}),
+                HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr(flag)));
+    EXPECT_FALSE(UploadBytes(id_, bytes_).ok()) << flag;
+    EXPECT_EQ(sequences().QueryUpload(id_)->received_bytes, 0u) << flag;
+    EXPECT_TRUE(sequences().List()->empty()) << flag;
+  }
+  // At the limit itself all is well.
+  folder_.Open({.max_upload_bytes = size, .max_vertices = 96, .max_frames = 4});
+  EXPECT_THAT(UploadBytes(id_, bytes_), IsOk());
+  EXPECT_THAT(sequences().Upload(tube_, {}), IsOk());
+}
+
+TEST_F(LocalSequencesTest, ErrorsOfTheStoreArePassedOn) {
+  ASSERT_THAT(sequences().Upload(tube_, {}), IsOk());
+  ASSERT_THAT(folder_.files().catalogue().Put(EntryKind::kSequence, {id_, "\xff\xff"}), IsOk());
+  for (const absl::Status& status :
+       {sequences().Get(id_).status(), sequences().List().status(), sequences().Load(id_).status(),
+        sequences().QueryUpload(id_).status()}) {
+    EXPECT_THAT(status, HasStatus(absl::StatusCode::kDataLoss, _));
+  }
+  EXPECT_THAT(sequences().Upload(tube_, {}), IsOk());  // a new record mends it
+  EXPECT_THAT(sequences().Get(id_), IsOk());
+  const MeshSequence other = MakeSwayingTube(6);
+  const std::string bytes = EncodeSequence(other), id = SequenceId(bytes);
+  folder_.Block(id);
+  EXPECT_THAT(sequences().Upload(other, {}).status().message(), HasSubstr("cannot create"));
+  EXPECT_THAT(UploadBytes(id, bytes).message(), HasSubstr("cannot create"));
+  EXPECT_EQ(sequences().List()->size(), 1u);
+  folder_.Unblock(id);
+  EXPECT_THAT(UploadBytes(id, bytes), IsOk());
+}
+
+}  // namespace
+}  // namespace pleat
