@@ -56,6 +56,26 @@ TEST(TrainOptionsTest, EachBadValueIsNamedWithItsRange) {
   expect_refused({.max_components = 0}, "max_components");
 }
 
+TEST(TrainOptionsTest, TheEndsOfEveryRangeAreAllowed) {
+  for (const TrainOptions& options : std::vector<TrainOptions>{{.history = 1},
+                                                               {.history = 8},
+                                                               {.resolution_percent = 1},
+                                                               {.rest_frame = 0},
+                                                               {.yaw_degrees = 0},
+                                                               {.yaw_degrees = 360},
+                                                               {.bend_stiffness = 1},
+                                                               {.smoothness = 1},
+                                                               {.latent_dimensions = 32},
+                                                               {.iterations = 10000},
+                                                               {.dynamics_weight = 1e6},
+                                                               {.detail_energy = 0},
+                                                               {.max_components = 1024},
+                                                               {.seed = 0}}) {
+    EXPECT_THAT(ValidateTrainOptions(options), IsOk()) << FormatTrainOptions(options);
+    EXPECT_EQ(ParseTrainOptions(FormatTrainOptions(options)).value(), options);
+  }
+}
+
 TEST(TrainOptionsTest, EveryNameRoundTripsThroughText) {
   int num_choices = 0;
   ForEachChoice(

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "pleat/base/random.h"
 #include "pleat/geometry/triangle_tree.h"
 #include "pleat/geometry/winding_number.h"
 #include "support/status_matchers.h"
+#include "support/test_meshes.h"
 #include "support/triangle_shapes.h"
 
 namespace pleat {
@@ -88,6 +90,71 @@ TEST(SolidSurfaceTest, RefusesAMeshWithoutArea) {
   const TriangleMesh flat{Eigen::Matrix3Xd::Zero(3, 3), Eigen::Vector3i(0, 1, 2)};
   EXPECT_THAT(Prepare(flat),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("encloses nothing")));
+}
+
+TEST(SolidSurfaceTest, NeitherFacesNorVerticesOfAMeshHaveToBeInOrder) {
+  // A torus with random faces turned: genus 1, one component, closed.
+  const TestMesh torus = MakeTorus(12, 8, 2);
+  TriangleMesh mesh{torus.positions.cast<double>(), torus.topology.triangles()};
+  Random random(4);
+  for (int f = 0; f < mesh.triangles.cols(); ++f) {
+    if (random.UniformInt(2) == 0) Flip(&mesh, f);
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface surface, Prepare(mesh));
+  EXPECT_TRUE(surface.report.closed());
+  EXPECT_EQ(surface.report.num_components, 1);
+  EXPECT_GT(surface.report.num_flipped_triangles, 0);
+  EXPECT_TRUE(IsInside(surface, {1, 0, 0}));
+  EXPECT_FALSE(IsInside(surface, {0, 0, 0}));
+}
+
+// Two boxes that share an edge: four triangles meet there, and each box is still turned outward.
+TEST(SolidSurfaceTest, PatchesThatMeetInANonManifoldEdgeAreOrientedEachForItself) {
+  TriangleMesh mesh = JoinMeshes(MakeBox({0, 0, 0}, {1, 1, 1}), MakeBox({1, 1, 0}, {2, 2, 1}));
+  for (int f = 12; f < 24; ++f) Flip(&mesh, f);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface surface, Prepare(mesh));
+  EXPECT_EQ(surface.report.num_welded_vertices, 2);
+  EXPECT_EQ(surface.report.num_non_manifold_edges, 1);
+  EXPECT_EQ(surface.report.num_boundary_edges, 0);
+  EXPECT_FALSE(surface.report.closed());
+  EXPECT_EQ(surface.report.num_flipped_triangles, 12);
+  EXPECT_EQ(surface.report.num_components, 1);
+  EXPECT_TRUE(IsInside(surface, {.5, .5, .5}));
+  EXPECT_TRUE(IsInside(surface, {1.5, 1.5, .5}));
+  EXPECT_FALSE(IsInside(surface, {1.5, .5, .5}));
+}
+
+TEST(SolidSurfaceTest, VerticesNearerThanAMillionthOfTheDiagonalAreOne) {
+  for (const bool near : {true, false}) {
+    const TriangleMesh left = MakeBox({0, 0, 0}, {1, 1, 1});
+    TriangleMesh mesh = JoinMeshes(left, left);
+    mesh.positions.rightCols(8).row(0).array() += near ? 1e-8 : 1e-3;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface surface, Prepare(mesh));
+    EXPECT_EQ(surface.positions.cols(), near ? 8 : 16);
+    EXPECT_EQ(surface.report.num_components, near ? 1 : 2);
+  }
+}
+
+TEST(SolidSurfaceTest, OpenPatchesFaceAwayFromTheirOwnCenter) {
+  TriangleMesh dome = MakeSphere({5, 5, 5}, 1, 12);
+  int kept = 0;
+  for (int f = 0; f < dome.triangles.cols(); ++f) {
+    if (dome.positions(1, dome.triangles(0, f)) > 5) {
+      dome.triangles.col(kept++) = dome.triangles.col(f);
+    }
+  }
+  dome.triangles.conservativeResize(3, kept);
+  for (int f = 0; f < kept; ++f) Flip(&dome, f);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface surface, Prepare(dome));
+  EXPECT_EQ(surface.report.num_flipped_triangles, kept);
+  EXPECT_GT(surface.report.num_boundary_edges, 0);
+  EXPECT_TRUE(IsInside(surface, {5, 5.5, 5}));
+}
+
+TEST(SolidSurfaceTest, CountsMustAgree) {
+  const TriangleMesh box = MakeBox({0, 0, 0}, {1, 1, 1});
+  EXPECT_THAT(PrepareSolidSurface(MakeTopology(box), box.positions.leftCols(7)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("7 positions")));
 }
 
 }  // namespace

@@ -54,5 +54,58 @@ TEST(SurfaceHierarchyTest, SmoothFieldsBecomeSmallCoefficients) {
   EXPECT_LT(std::sqrt(fine / count), 0.05 * std::sqrt(mesh.positions.squaredNorm() / 800));
 }
 
+// Both ways keep what they must: sums of constants, and columns that know nothing of each other.
+TEST(SurfaceHierarchyTest, AConstantHasNoCoefficientsButTheCoarsest) {
+  const TestMesh mesh = MakeTorus(24, 12, 5);
+  const SurfaceHierarchy hierarchy(mesh.topology, &mesh.positions);
+  FieldMatrix fields = FieldMatrix::Constant(mesh.positions.cols(), 2, 3.f);
+  hierarchy.Analyze(&fields);
+  for (const int v : hierarchy.order()) {
+    const float expected = hierarchy.neighbors(v).empty() ? 3.f : 0.f;
+    EXPECT_NEAR(fields(v, 0), expected, 1e-5) << v;
+  }
+}
+
+TEST(SurfaceHierarchyTest, ColumnsAreIndependentAndTheTransformIsLinear) {
+  const TestMesh mesh = MakeTorus(16, 8, 5);
+  const SurfaceHierarchy hierarchy(mesh.topology, &mesh.positions);
+  const FieldMatrix a = FieldMatrix::Random(mesh.positions.cols(), 3);
+  const FieldMatrix b = FieldMatrix::Random(mesh.positions.cols(), 3);
+  FieldMatrix of_a = a, of_b = b, of_sum = 2 * a - b, alone = a.col(1);
+  for (FieldMatrix* fields : {&of_a, &of_b, &of_sum, &alone}) hierarchy.Analyze(fields);
+  EXPECT_EQ(FieldMatrix(of_a.col(1)), alone);  // to the bit, for any number of columns
+  EXPECT_LT((of_sum - (2 * of_a - of_b)).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST(SurfaceHierarchyTest, PredictsLinearFunctionsOfTheRestShapeBetterThanTheMeanDoes) {
+  const TestMesh mesh = MakeTorus(30, 15, 5);
+  const auto size_of_finest = [&](const Eigen::Matrix3Xf* rest) {
+    const SurfaceHierarchy hierarchy(mesh.topology, rest);
+    FieldMatrix fields = (Eigen::RowVector3f(1, -2, .5f) * mesh.positions).transpose();
+    hierarchy.Analyze(&fields);
+    double sum = 0;
+    for (const int v : hierarchy.order()) {
+      if (hierarchy.level(v) == 0) sum += fields.row(v).squaredNorm();
+    }
+    return sum;
+  };
+  EXPECT_LT(size_of_finest(&mesh.positions), size_of_finest(nullptr));
+}
+
+TEST(SurfaceHierarchyTest, MeshesThatHardlyHaveLevelsComeBackToo) {
+  for (const TestMesh& mesh :
+       {MakeTorus(3, 3, 1), WithExtra(MakeTorus(5, 5, 1), 3, {}),
+        TestMesh{*Topology::Create(40, {}, {}), Eigen::Matrix3Xf::Zero(3, 40)},
+        TestMesh{*Topology::Create(1, {}, {}), Eigen::Matrix3Xf::Zero(3, 1)}}) {
+    const SurfaceHierarchy hierarchy(mesh.topology, &mesh.positions);
+    EXPECT_EQ(static_cast<int>(hierarchy.order().size()), mesh.topology.num_vertices());
+    const FieldMatrix fields = FieldMatrix::Random(mesh.positions.cols(), 2);
+    FieldMatrix changed = fields;
+    hierarchy.Analyze(&changed);
+    hierarchy.Synthesize(&changed);
+    EXPECT_LT((changed - fields).cwiseAbs().maxCoeff(), 1e-5);
+  }
+}
+
 }  // namespace
 }  // namespace pleat

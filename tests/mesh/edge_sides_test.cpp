@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "support/mesh_shapes.h"
+
 namespace pleat {
 namespace {
 
@@ -27,6 +29,17 @@ TEST(EdgeSidesTest, EndOfEdgeCountsTheFacesOfAnEdge) {
 
 TEST(EdgeSidesTest, ARepeatedCornerMakesNoEdge) {
   EXPECT_EQ(SortedEdgeSides(*Topology::Create(3, {0, 1, 1, 2}, {4})).size(), 3u);
+}
+
+TEST(EdgeSidesTest, AClosedSurfaceRunsAlongEveryEdgeBothWays) {
+  const MeshShape sphere = MakeUvSphere(1, 5, 8);
+  const std::vector<EdgeSide> sides = SortedEdgeSides(sphere.topology);
+  EXPECT_EQ(sides.size(), static_cast<size_t>(sphere.topology.num_corners()));
+  for (size_t begin = 0; begin < sides.size(); begin += 2) {
+    ASSERT_EQ(EndOfEdge(sides, begin), begin + 2);
+    EXPECT_NE(sides[begin].forward, sides[begin + 1].forward);
+    EXPECT_LT(sides[begin].face, sides[begin + 1].face);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "support/mesh_shapes.h"
 
 namespace pleat {
@@ -49,6 +51,32 @@ TEST(NormalsTest, AreTheGradientOfTheVolume) {
     coordinate = x;
     EXPECT_NEAR(normals.data()[&coordinate - box.positions.data()] / 6, slope, 1e-9);
   }
+}
+
+// The area vectors of a closed surface cancel, each triangle counted at its three corners.
+TEST(NormalsTest, OfAClosedSurfaceAddUpToNothingAndMeasureItsArea) {
+  const MeshShape box = MakeBox({1, 2, 3});
+  const Eigen::Matrix3Xd normals = SumTriangleNormals(box.positions, box.topology.triangles());
+  EXPECT_LT(normals.rowwise().sum().norm(), 1e-12);
+  const MeshShape grid = MakeGrid(3, 4, 2, 5);
+  EXPECT_NEAR(SumTriangleNormals(grid.positions, grid.topology.triangles()).row(1).sum(),
+              3 * 2 * 2 * 5, 1e-12);  // three corners, twice the area
+}
+
+TEST(NormalsTest, TurnWithTheMeshAndFlipWithItsFaces) {
+  const MeshShape sphere = MakeUvSphere(1, 5, 7);
+  const Eigen::Matrix3Xi& triangles = sphere.topology.triangles();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1, Eigen::Vector3d(1, -2, 1).normalized()).toRotationMatrix();
+  const Eigen::Matrix3Xd normals = SumTriangleNormals(sphere.positions, triangles);
+  EXPECT_LT((SumTriangleNormals(turn * sphere.positions, triangles) - turn * normals).norm(),
+            1e-12);
+  EXPECT_LT((SumTriangleNormals(sphere.positions, triangles.colwise().reverse()) + normals).norm(),
+            1e-12);
+  // Triangles without area add nothing.
+  Eigen::Matrix3Xi more(3, triangles.cols() + 2);
+  more << triangles, Eigen::Vector3i(0, 0, 1), Eigen::Vector3i(2, 2, 2);
+  EXPECT_EQ(SumTriangleNormals(sphere.positions, more), normals);
 }
 
 }  // namespace

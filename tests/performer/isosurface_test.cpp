@@ -60,5 +60,33 @@ TEST(IsosurfaceTest, CancellationIsHeard) {
               HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 
+// Two balls, one of them beyond the other's reach: every part of the surface is closed in itself.
+TEST(IsosurfaceTest, SeparatePartsAreSeparateSurfaces) {
+  const auto two_balls = [](const Vector3d& p) {
+    return std::min((p - Vector3d(-.7, 0, 0)).norm() - .4, (p - Vector3d(.7, .2, 0)).norm() - .5);
+  };
+  PLEAT_ASSERT_OK_AND_ASSIGN(const TriangleSoup soup,
+                             ExtractIsosurface(two_balls, kLow, kHigh, .08, {}));
+  EXPECT_TRUE(IsClosedManifold(soup));
+  EXPECT_EQ(EulerCharacteristic(soup), 4);  // twice that of a sphere
+  const double expected = 4 / 3. * std::numbers::pi * (.4 * .4 * .4 + .5 * .5 * .5);
+  EXPECT_NEAR(Volume(soup), expected, .05 * expected);
+}
+
+// Neither where the grid lies nor how the solid is turned decides what comes out.
+TEST(IsosurfaceTest, ATurnedTorusHasTheSameVolume) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(.8, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const auto turned = [&](const Vector3d& p) {
+    return Torus(turn * (p - Vector3d(.03, -.02, .01)));
+  };
+  PLEAT_ASSERT_OK_AND_ASSIGN(const TriangleSoup soup,
+                             ExtractIsosurface(turned, kLow, kHigh, .07, {}));
+  EXPECT_TRUE(IsClosedManifold(soup));
+  EXPECT_EQ(EulerCharacteristic(soup), 0);
+  const double expected = 2 * std::numbers::pi * std::numbers::pi * .35 * .35;  // Pappus
+  EXPECT_NEAR(Volume(soup), expected, .03 * expected);
+}
+
 }  // namespace
 }  // namespace pleat

@@ -309,5 +309,33 @@ TEST(Performer, StopsWhenCancelledAndReportsRisingProgress) {
   EXPECT_DOUBLE_EQ(fractions.back(), 1);
 }
 
+TEST(Performer, TheSkirtIsWhereSkirtsAre) {
+  const Performer& performer = SmallPerformer();
+  const Eigen::Matrix3Xd& rest = performer.truth.rig.rest_positions;
+  int num_skirt = 0;
+  for (int v = 0; v < rest.cols(); ++v) {
+    ASSERT_LE(performer.truth.is_skirt[v], 1);
+    if (performer.truth.is_skirt[v] == 0) continue;
+    ++num_skirt;
+    EXPECT_GT(rest(1, v), .25 * 1.7) << "not below the knees";
+    EXPECT_LT(rest(1, v), .65 * 1.7) << "not above the waist";
+  }
+  EXPECT_GT(num_skirt, .1 * static_cast<double>(rest.cols()));
+  EXPECT_LT(num_skirt, .6 * static_cast<double>(rest.cols()));
+}
+
+TEST(Performer, StandsAtFirstWithTheArmsAwayFromTheBody) {
+  const Performer& performer = SmallPerformer();
+  const Skeleton& skeleton = performer.truth.rig.skeleton;
+  for (const int hand : {kLeftHand, kRightHand}) {
+    const int shoulder = hand == kLeftHand ? kLeftUpperArm : kRightUpperArm;
+    const Eigen::Vector3d arm = skeleton.rest_position(hand) - skeleton.rest_position(shoulder);
+    EXPECT_GT(std::abs(arm.x()), .15) << "meters to the side";
+    EXPECT_GT(std::abs(skeleton.rest_position(hand).x()),
+              std::abs(skeleton.rest_position(shoulder).x()));
+  }
+  EXPECT_GT(skeleton.rest_position(kLeftHand).x(), 0) << "facing +z, the left is at +x";
+}
+
 }  // namespace
 }  // namespace pleat

@@ -67,5 +67,85 @@ TEST(MakeDecodeSession, RefusesARangeThatIsNotInside) {
   }
 }
 
+TEST(CompressMeasured, EveryGoalIsMeasuredOnTheFileItGives) {
+  const MeshSequence tube = MakeSwayingTube(6);
+  for (const CompressOptions& options :
+       {CompressOptions{.goal = CompressionGoal::kMaxError, .max_error_mm = .5},
+        CompressOptions{.goal = CompressionGoal::kKg, .kg_percent = 2},
+        CompressOptions{.goal = CompressionGoal::kGrid, .grid_bits = 11}}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const MeasuredCompression measured,
+                               CompressMeasured(tube, options, {}));
+    EXPECT_EQ(measured.record.summary.num_bytes, measured.bytes.size());
+    EXPECT_LT(measured.record.summary.num_topology_bytes, measured.bytes.size());
+    if (options.goal == CompressionGoal::kMaxError) {
+      EXPECT_LE(measured.record.summary.max_error_mm, .5);
+    }
+    if (options.goal == CompressionGoal::kKg) {
+      EXPECT_LE(measured.record.summary.kg_percent, 2);
+    }
+    PLEAT_ASSERT_OK_AND_ASSIGN(SequenceDecoder decoder, SequenceDecoder::Open(measured.bytes));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence back, decoder.DecodeAll());
+    double worst_mm = 0;
+    for (int t = 0; t < back.num_frames(); ++t) {
+      const double off = (back.frame(t) - tube.frame(t)).colwise().norm().maxCoeff();
+      worst_mm = std::max(worst_mm, 1000 * off);
+    }
+    EXPECT_NEAR(worst_mm, measured.record.summary.max_error_mm, 1e-3);
+  }
+}
+
+TEST(CompressMeasured, RefusesAnOptionOutOfRange) {
+  EXPECT_THAT(CompressMeasured(MakeSwayingTube(2), {.max_error_mm = 0}, {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("max_error_mm")));
+}
+
+TEST(CompressMeasured, FractionsRiseAndEveryStageCanBeCancelled) {
+  std::vector<std::string> stages;
+  double last = 0;
+  const Progress progress(
+      [&](const ProgressUpdate& update) {
+        EXPECT_GE(update.fraction, last) << update.stage;
+        last = update.fraction;
+        if (stages.empty() || stages.back() != update.stage) stages.push_back(update.stage);
+      },
+      {});
+  const MeshSequence tube = MakeSwayingTube(6);
+  ASSERT_THAT(CompressMeasured(tube, {}, progress), IsOk());
+  EXPECT_GE(last, .9);  // "decode" covers the rest
+  ASSERT_GE(stages.size(), 3u);
+  EXPECT_THAT((std::vector<std::string>{stages.end() - 3, stages.end()}),
+              testing::ElementsAre("encode", "check", "decode"));
+  for (const std::string& stage : stages) {
+    bool reached = false;
+    const Progress stopping(
+        [&](const ProgressUpdate& update) { reached = reached || update.stage == stage; },
+        [&] { return reached; });
+    // The last report of the last stage has nothing after it that could be stopped.
+    if (stage == stages.back()) continue;
+    EXPECT_THAT(CompressMeasured(tube, {}, stopping),
+                HasStatus(absl::StatusCode::kCancelled, testing::_))
+        << stage;
+  }
+}
+
+TEST(MakeDecodeSession, StaysAtItsEnd) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, MakeDecodeSession(Compressed(8), {6, 8}));
+  for (const bool is_frame : {true, true, false, false}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::Matrix3Xf* frame, session->Next());
+    EXPECT_EQ(frame != nullptr, is_frame);
+  }
+}
+
+TEST(MakeDecodeSession, TheShapeTakesNoFrameAndHasTheNamesOfTheSequence) {
+  const MeshSequence tube = MakeSwayingTube(8);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, MakeDecodeSession(Compressed(8), {5, 6}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence shape, session->Shape());
+  EXPECT_TRUE(shape.topology() == tube.topology());
+  EXPECT_EQ(shape.frame_rate(), tube.frame_rate());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Eigen::Matrix3Xf* frame, session->Next());
+  ASSERT_NE(frame, nullptr);
+  EXPECT_EQ(*frame, shape.frame(0));
+}
+
 }  // namespace
 }  // namespace pleat

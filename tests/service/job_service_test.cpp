@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <set>
+#include <thread>
+
 #include "support/mock_services.h"
 #include "support/scripted_jobs.h"
 #include "support/status_matchers.h"
@@ -77,6 +81,109 @@ TEST_F(WatchJobTest, PassesOnThatThereIsNone) {
       .WillOnce(testing::Return(testing::ByMove(absl::NotFoundError("none"))));
   EXPECT_THAT(WatchJob(jobs_, "job-1", [](const JobInfo&) { return true; }),
               HasStatus(absl::StatusCode::kNotFound, "none"));
+}
+
+TEST(JobState, EveryStateHasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (const JobState state : {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
+                               JobState::kFailed, JobState::kCancelled}) {
+    names.insert(JobStateName(state));
+  }
+  EXPECT_EQ(names,
+            (std::set<std::string>{"cancelled", "failed", "queued", "running", "succeeded"}));
+  EXPECT_STREQ(JobStateName(static_cast<JobState>(99)), "unknown");
+  EXPECT_FALSE(IsFinal(static_cast<JobState>(99)));
+}
+
+// A job whose state the test sets, from any thread.
+struct HeldJob {
+  std::atomic<JobState> state = JobState::kRunning;
+  std::atomic<uint64_t> revision = 1;
+  std::atomic<bool> ended = false;  // the subscription, without a final state
+};
+
+class HeldSubscription final : public JobSubscription {
+ public:
+  explicit HeldSubscription(const HeldJob& job) : job_(job) {}
+  JobUpdate current() const override { return {Job(job_.state), job_.revision}; }
+  absl::Status status() const override {
+    return job_.ended ? absl::UnavailableError("gone") : absl::OkStatus();
+  }
+
+ private:
+  const HeldJob& job_;
+};
+
+class HeldJobTest : public testing::Test {
+ protected:
+  HeldJobTest() {
+    EXPECT_CALL(jobs_, Subscribe)
+        .WillOnce([this](const std::string&, std::function<void()> listener) {
+          listener_ = std::move(listener);
+          return std::make_unique<HeldSubscription>(held_);
+        });
+  }
+
+  testing::StrictMock<MockJobService> jobs_;
+  std::function<void()> listener_;
+  HeldJob held_;
+};
+
+// Without news the observer is asked again, so that one who wants to stop is heard.
+TEST_F(HeldJobTest, AnObserverWithoutNewsCanStop) {
+  int num_looks = 0;
+  EXPECT_THAT(WatchJob(jobs_, "job-1", [&](const JobInfo&) { return ++num_looks < 2; }), IsOk());
+  EXPECT_EQ(num_looks, 2);
+}
+
+TEST_F(HeldJobTest, NewsFromAnotherThreadAreSeen) {
+  std::thread worker;
+  std::vector<JobState> seen;
+  EXPECT_THAT(WatchJob(jobs_, "job-1",
+                       [&](const JobInfo& job) {
+                         seen.push_back(job.state);
+                         if (seen.size() > 1) return true;
+                         worker = std::thread([&] {
+                           held_.state = JobState::kSucceeded;
+                           ++held_.revision;
+                           listener_();
+                         });
+                         return true;
+                       }),
+              IsOk());
+  worker.join();
+  EXPECT_EQ(seen.front(), JobState::kRunning);
+  EXPECT_EQ(seen.back(), JobState::kSucceeded);
+}
+
+TEST_F(HeldJobTest, ALastChangeIsShownThoughTheSubscriptionHasEnded) {
+  std::vector<JobState> seen;
+  EXPECT_THAT(WatchJob(jobs_, "job-1",
+                       [&](const JobInfo& job) {
+                         seen.push_back(job.state);
+                         held_.state = JobState::kFailed;
+                         ++held_.revision;
+                         held_.ended = true;
+                         return true;
+                       }),
+              IsOk());
+  EXPECT_THAT(seen, ElementsAre(JobState::kRunning, JobState::kFailed));
+}
+
+TEST_F(HeldJobTest, AnEndWithoutNewsIsItsError) {
+  EXPECT_THAT(WatchJob(jobs_, "job-1",
+                       [&](const JobInfo&) {
+                         held_.ended = true;
+                         listener_();
+                         return true;
+                       }),
+              HasStatus(absl::StatusCode::kUnavailable, "gone"));
+}
+
+// A service may ring for a moment after the subscription is gone.
+TEST_F(HeldJobTest, AListenerThatRingsTooLateHarmsNothing) {
+  EXPECT_THAT(WatchJob(jobs_, "job-1", [](const JobInfo&) { return false; }), IsOk());
+  listener_();
 }
 
 }  // namespace

@@ -25,7 +25,16 @@ class StreamClipTest : public testing::Test {
     EXPECT_CALL(poses_, OpenClip("m", _, _)).WillOnce(Return(testing::ByMove(std::move(clip))));
   }
 
+  // A door for frames that counts them and says `answer` to each.
+  auto Counted(absl::Status answer = absl::OkStatus()) {
+    return [this, answer](int, std::string_view, const FrameMark&, double) {
+      ++num_frames_;
+      return answer;
+    };
+  }
+
   testing::StrictMock<MockPoseService> poses_;
+  int num_frames_ = 0;
   const StreamHeader header_;
   const ClipQuery query_{.model_id = "m", .track = {}, .bone_scales = {}};
 };
@@ -50,15 +59,9 @@ TEST_F(StreamClipTest, GivesHeaderAndFramesInOrder) {
 
 TEST_F(StreamClipTest, TheSinkMayStopIt) {
   ExpectClip({{.draco = "a"}, {.draco = "b"}});
-  int num_frames = 0;
-  EXPECT_THAT(StreamClip(poses_, query_, {},
-                         {.on_frame =
-                              [&](int, std::string_view, const FrameMark&, double) {
-                                ++num_frames;
-                                return absl::AbortedError("enough");
-                              }}),
+  EXPECT_THAT(StreamClip(poses_, query_, {}, {.on_frame = Counted(absl::AbortedError("enough"))}),
               HasStatus(absl::StatusCode::kAborted, "enough"));
-  EXPECT_EQ(num_frames, 1);
+  EXPECT_EQ(num_frames_, 1);
 }
 
 TEST_F(StreamClipTest, ASinkWithoutTheRightDoorIsRefusedBeforeAnythingIsAsked) {
@@ -76,6 +79,98 @@ TEST_F(StreamClipTest, AStreamOfParametersMustHaveThem) {
   EXPECT_THAT(StreamClip(poses_, query_, {.content = StreamContent::kParameters},
                          {.on_parameters = ignore}),
               HasStatus(absl::StatusCode::kDataLoss, _));
+}
+
+TEST_F(StreamClipTest, AsksForTheClipAsTheQueryAndTheEncodingSay) {
+  ClipQuery query{.model_id = "m", .track = {}, .bone_scales = {1, 2}, .skinned_only = true};
+  const FrameEncoderOptions encoding{.encoding = FrameEncoding::kDracoMesh, .position_bits = 15};
+  EXPECT_CALL(poses_, OpenClip("m", _, _))
+      .WillOnce(
+          [&](const std::string&, const PoseTrack&,
+              const PoseSessionOptions& options) -> absl::StatusOr<std::unique_ptr<ClipSession>> {
+            EXPECT_EQ(options.bone_scales, query.bone_scales);
+            EXPECT_TRUE(options.skinned_only);
+            EXPECT_EQ(options.encoder.encoding, FrameEncoding::kDracoMesh);
+            EXPECT_EQ(options.encoder.position_bits, 15);
+            return absl::NotFoundError("no such model");
+          });
+  EXPECT_THAT(StreamClip(poses_, query, encoding, {.on_frame = Counted()}),
+              HasStatus(absl::StatusCode::kNotFound, "no such model"));
+}
+
+TEST_F(StreamClipTest, PassesOnMarksAndConfidence) {
+  ExpectClip({{.draco = "a", .confidence = .25, .mark = {.keyframe = true, .checksum = 7}},
+              {.draco = "b", .confidence = .5, .mark = {.keyframe = false, .checksum = 8}}});
+  std::vector<FrameMark> marks;
+  std::vector<double> confidences;
+  EXPECT_THAT(StreamClip(poses_, query_, {},
+                         {.on_frame =
+                              [&](int, std::string_view, const FrameMark& mark, double confidence) {
+                                marks.push_back(mark);
+                                confidences.push_back(confidence);
+                                return absl::OkStatus();
+                              }}),
+              IsOk());
+  EXPECT_EQ(marks, (std::vector<FrameMark>{{true, 7}, {false, 8}}));
+  EXPECT_EQ(confidences, (std::vector<double>{.25, .5}));
+}
+
+TEST_F(StreamClipTest, AHeaderThatIsNotWantedEndsItBeforeTheFirstFrame) {
+  ExpectClip({{.draco = "a"}});
+  EXPECT_THAT(StreamClip(poses_, query_, {},
+                         {.on_header = [](const StreamHeader&) { return absl::AbortedError("no"); },
+                          .on_frame = Counted()}),
+              HasStatus(absl::StatusCode::kAborted, "no"));
+  EXPECT_EQ(num_frames_, 0);
+}
+
+TEST_F(StreamClipTest, AFrameThatFailsEndsItAfterThoseBefore) {
+  auto clip = std::make_unique<testing::NiceMock<MockClipSession>>();
+  ON_CALL(*clip, header).WillByDefault(testing::ReturnRef(header_));
+  EXPECT_CALL(*clip, Next)
+      .WillOnce(Return(EncodedFrame{.draco = "a"}))
+      .WillOnce(Return(absl::InternalError("lost")));
+  EXPECT_CALL(poses_, OpenClip).WillOnce(Return(testing::ByMove(std::move(clip))));
+  EXPECT_THAT(StreamClip(poses_, query_, {}, {.on_frame = Counted()}),
+              HasStatus(absl::StatusCode::kInternal, "lost"));
+  EXPECT_EQ(num_frames_, 1);
+}
+
+TEST_F(StreamClipTest, ParametersGoToTheirOwnDoor) {
+  FrameParameters first, second;
+  first.confidence = .5;
+  second.coefficients = Eigen::VectorXf::Ones(3);
+  ExpectClip({{.parameters = first}, {.parameters = second}});
+  std::vector<FrameParameters> seen;
+  EXPECT_THAT(StreamClip(poses_, query_, {.content = StreamContent::kParameters},
+                         {.on_frame =
+                              [](int, std::string_view, const FrameMark&, double) {
+                                return absl::InternalError("a frame in a stream of parameters");
+                              },
+                          .on_parameters =
+                              [&](int t, const FrameParameters& parameters) {
+                                EXPECT_EQ(t, static_cast<int>(seen.size()));
+                                seen.push_back(parameters);
+                                return absl::OkStatus();
+                              }}),
+              IsOk());
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_EQ(seen[0].confidence, .5);
+  EXPECT_EQ(seen[1].coefficients, second.coefficients);
+}
+
+TEST_F(StreamClipTest, AnEmptyClipIsAHeader) {
+  ExpectClip({});
+  int num_headers = 0;
+  EXPECT_THAT(StreamClip(poses_, query_, {},
+                         {.on_header =
+                              [&](const StreamHeader&) {
+                                ++num_headers;
+                                return absl::OkStatus();
+                              },
+                          .on_frame = Counted()}),
+              IsOk());
+  EXPECT_EQ(num_headers, 1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <numeric>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -137,6 +138,78 @@ TEST_F(FrameSkinningTest, PartsGiveTheWhole) {
 }
 
 TEST_F(FrameSkinningTest, EveryKernelGivesTheSameBits) { CompareKernels(); }
+
+TEST_F(FrameSkinningTest, EveryNumberOfVerticesFillsItsMatrixAndNothingElse) {
+  for (const int count : {1, 15, 16, 17, 31, 32, 33}) {
+    Rig rig{figure_.rig.skeleton, {}, figure_.rig.rest_positions.leftCols(count)};
+    const std::vector<VertexInfluences>& all = figure_.rig.weights.influences();
+    rig.weights = SkinWeights::Create(18, {all.begin(), all.begin() + count}).value();
+    const FrameSkinning skinning(rig);
+    EXPECT_EQ(skinning.num_blocks(), (count + 15) / 16);
+    for (const float* details : {static_cast<const float*>(nullptr), details_.data()}) {
+      const Eigen::Matrix3Xf expected = Skin(details).leftCols(count);
+      for (const auto& [set, skin_block] : SkinBlockVariants()) {
+        Eigen::Matrix3Xf positions(3, count);
+        skinning.SkinBlocksWith(skin_block, motions_, 0, skinning.num_blocks(), details,
+                                &positions);
+        EXPECT_EQ(positions, expected) << NameOf(set) << " " << count;
+      }
+    }
+  }
+}
+
+// The bone of an unused entry may be anything in a file, and kernels read the bones of all entries.
+TEST_F(FrameSkinningTest, BonesOfUnusedEntriesDoNotMatter) {
+  std::vector<VertexInfluences> odd = figure_.rig.weights.influences();
+  for (VertexInfluences& vertex : odd) {
+    for (int k = 0; k < kMaxInfluences; ++k) {
+      if (vertex.weights[k] == 0) vertex.bones[k] = 65535;
+    }
+  }
+  const Eigen::Matrix3Xf expected = Skin(details_.data());
+  figure_.rig.weights = SkinWeights::Create(18, odd).value();
+  skinning_ = FrameSkinning(figure_.rig);
+  skinning_.SetMotions(transforms_, transforms_.rotation, &motions_);
+  EXPECT_EQ(Skin(details_.data()), expected);
+  CompareKernels();
+}
+
+// More bones than the processor can look up in registers.
+TEST(ManyBonesTest, KernelsAgreeWithDoublePrecisionBeyondTheTables) {
+  for (const int num_joints : {kLookupBones, kLookupBones + 1, 200}) {
+    std::vector<Joint> joints = {{"root", -1, {0, 0, 0}}};
+    for (int j = 1; j < num_joints; ++j) {
+      joints.push_back({std::to_string(j), j - 1, {0, .1 * j, 0}});
+    }
+    Rig rig{Skeleton::Create(joints).value(), {}, Eigen::Matrix3Xd::Random(3, 40)};
+    std::vector<VertexInfluences> influences(40);
+    for (int v = 0; v < 40; ++v) {
+      for (int k = 0; k < 3; ++k) {
+        influences[v].bones[k] = static_cast<uint16_t>(num_joints - 1 - (v + 7 * k) % 25);
+        influences[v].weights[k] = std::array{.5f, .25f, .25f}[k];
+      }
+    }
+    rig.weights = SkinWeights::Create(num_joints, influences).value();
+    Pose pose = Pose::Rest(rig.skeleton);
+    for (Eigen::Quaterniond& rotation : pose.rotations) {
+      rotation = QuaternionFromExponentialMap({.02, -.01, .03});
+    }
+    BoneTransforms transforms;
+    ComputeBoneTransforms(rig.skeleton, pose, {}, &transforms);
+    Eigen::Matrix3Xd expected;
+    SkinVertices(rig.weights, rig.rest_positions, transforms, &expected);
+    const FrameSkinning skinning(rig);
+    BoneMotions motions;
+    skinning.SetMotions(transforms, transforms.rotation, &motions);
+    EXPECT_EQ(motions.tables.empty(), num_joints > kLookupBones);
+    for (const auto& [set, skin_block] : SkinBlockVariants()) {
+      Eigen::Matrix3Xf positions(3, 40);
+      skinning.SkinBlocksWith(skin_block, motions, 0, skinning.num_blocks(), nullptr, &positions);
+      EXPECT_LT((positions.cast<double>() - expected).cwiseAbs().maxCoeff(), 2e-5)
+          << NameOf(set) << " " << num_joints;
+    }
+  }
+}
 
 }  // namespace
 }  // namespace pleat

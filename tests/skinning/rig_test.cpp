@@ -102,5 +102,84 @@ TEST_F(RigTest, NoAllocationOnceWarm) {
   EXPECT_EQ(positions.data(), memory);
 }
 
+// Positions are linear in the rest shape: that of a mean is the mean.
+TEST_F(RigTest, SkinningIsLinearInTheRestShape) {
+  Skin(MakeSmoothPoses(figure_.rig.skeleton, 6, 4).pose(5), &transforms_);
+  const Eigen::Matrix3Xd a = figure_.rig.rest_positions;
+  const Eigen::Matrix3Xd b = a + .1 * Eigen::Matrix3Xd::Random(3, a.cols());
+  const auto skin = [&](const Eigen::Matrix3Xd& rest) {
+    Eigen::Matrix3Xd positions;
+    SkinVertices(figure_.rig.weights, rest, transforms_, &positions);
+    return positions;
+  };
+  const Eigen::Matrix3Xd mean = .25 * skin(a) + .75 * skin(b);
+  EXPECT_LT((skin(.25 * a + .75 * b) - mean).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// The blend of rigid motions stays within the box of what each bone alone would do.
+TEST_F(RigTest, AVertexLiesBetweenTheWaysOfItsBones) {
+  const Eigen::Matrix3Xd skinned =
+      Skin(MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).pose(5), &transforms_);
+  for (int v = 0; v < skinned.cols(); ++v) {
+    const VertexInfluences& influences = figure_.rig.weights.vertex(v);
+    Eigen::AlignedBox3d box;
+    for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
+      const int b = influences.bones[k];
+      box.extend(Eigen::Vector3d(transforms_.linear[b] * figure_.rig.rest_positions.col(v) +
+                                 transforms_.translation[b]));
+    }
+    // Float weights add up to 1 within rounding.
+    EXPECT_LT(box.exteriorDistance(Eigen::Vector3d(skinned.col(v))), 1e-6) << v;
+  }
+}
+
+// d position / d angle of the bone that turns = axis x (position - pivot), by central differences.
+TEST_F(RigTest, TheDerivativeInABonesAngleIsTheLeverArm) {
+  const Skeleton& skeleton = figure_.rig.skeleton;
+  const double step = 1e-6;
+  std::vector<VertexInfluences> rigid(all_.size());
+  for (auto& vertex : rigid) vertex = {{kLeftHand}, {1}};
+  figure_.rig.weights = SkinWeights::Create(18, rigid).value();
+  const Pose pose = MakeSmoothPoses(skeleton, 6, 4).pose(5);
+  BoneTransforms here;
+  const Eigen::Matrix3Xd positions = Skin(pose, &here);
+  // Every bone on the way from the root moves the hand; each turns about its parent joint.
+  for (int bone = kLeftHand; bone > 0; bone = skeleton.parent(bone)) {
+    const int parent = skeleton.parent(bone);
+    const Eigen::Vector3d axis = here.rotation[parent] * Eigen::Vector3d::UnitY();
+    const Eigen::Vector3d pivot = here.joint_positions.col(parent);
+    const auto turned = [&](double angle) {
+      Pose other = pose;
+      other.rotations[bone] =
+          Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()) * pose.rotations[bone];
+      return Skin(other, &transforms_);
+    };
+    const Eigen::Matrix3Xd slope = (turned(step) - turned(-step)) / (2 * step);
+    for (int v = 0; v < positions.cols(); v += 37) {
+      const Eigen::Vector3d expected = axis.cross(Eigen::Vector3d(positions.col(v)) - pivot);
+      EXPECT_LT((slope.col(v) - expected).norm(), 1e-8) << skeleton.joint(bone).name << " " << v;
+    }
+  }
+}
+
+TEST_F(RigTest, BlendRotationsAreUnitAndNearestToTheStrongest) {
+  Skin(MakeSmoothPoses(figure_.rig.skeleton, 6, 4, 1.2).pose(5), &transforms_);
+  std::vector<Eigen::Quaterniond> rotations;
+  BlendRotations(figure_.rig.weights, all_, transforms_, &rotations);
+  for (const int v : all_) {
+    const VertexInfluences& influences = figure_.rig.weights.vertex(v);
+    EXPECT_NEAR(rotations[v].norm(), 1, 1e-12);
+    // Not farther from the strongest bone than the farthest of the others.
+    const Eigen::Quaterniond strongest(transforms_.rotation[influences.bones[0]]);
+    double farthest = 0;
+    for (int k = 1; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
+      farthest = std::max(
+          farthest,
+          strongest.angularDistance(Eigen::Quaterniond(transforms_.rotation[influences.bones[k]])));
+    }
+    EXPECT_LE(rotations[v].angularDistance(strongest), farthest + 1e-7) << v;
+  }
+}
+
 }  // namespace
 }  // namespace pleat

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <map>
 
+#include "pleat/base/random.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -52,6 +55,7 @@ TEST(SkinWeightsTest, CreateChecksEveryInfluence) {
   };
   EXPECT_THAT(create({1, 4, 2, 3}, {.4f, .3f, .2f, .1f}), IsOk());
   EXPECT_THAT(create({1, 99}, {1, 0}), IsOk());  // the bone of an unused entry does not matter
+  EXPECT_EQ(create({1, 99}, {1, 0})->vertex(1).bones[1], 0);  // but kernels read it
   auto refused = HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex 1"));
   EXPECT_THAT(create({0}, {1}), refused);              // the root has no bone
   EXPECT_THAT(create({5}, {1}), refused);              // out of range
@@ -59,6 +63,67 @@ TEST(SkinWeightsTest, CreateChecksEveryInfluence) {
   EXPECT_THAT(create({1}, {nan}), refused);            // not a number
   EXPECT_THAT(create({1, 2}, {.5f, .4f}), refused);    // sum
   EXPECT_THAT(create({}, {}), refused);                // nothing
+  EXPECT_THAT(create({1, 2}, {0, 1}), refused);        // the strongest is not the first
+  EXPECT_THAT(create({1, 2, 3}, {.5f, 0, .5f}), refused);
+  EXPECT_THAT(create({1}, {1 + 2e-4f}), refused);
+  EXPECT_THAT(create({1}, {1 + 5e-5f}), IsOk());
+}
+
+TEST(SkinWeightsTest, FromDenseRefusesANanWhereverItStands) {
+  for (int bone = 1; bone < 9; ++bone) {
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Constant(2, 9, .1);
+    dense(1, bone) = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(SkinWeights::FromDense(dense),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex 1")))
+        << bone;
+  }
+}
+
+TEST(SkinWeightsTest, EqualWeightsGoToTheLowerBones) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights,
+                             SkinWeights::FromDense(Eigen::MatrixXd::Constant(1, 8, .3)));
+  EXPECT_EQ(weights.vertex(0).bones, (std::array<uint16_t, 4>{1, 2, 3, 4}));
+  std::map<int, double> equal;
+  for (const int bone : {6, 5, 3, 2, 1}) equal[bone] = .2;
+  EXPECT_EQ(StrongestInfluences(equal).bones, (std::array<uint16_t, 4>{1, 2, 3, 5}));
+}
+
+// Whatever is pruned: what stays is what was strongest, in its old proportions.
+TEST(SkinWeightsTest, PruningKeepsTheLargestInTheirProportions) {
+  Random random(5);
+  for (int round = 0; round < 100; ++round) {
+    const int num_joints = 2 + random.UniformInt(12);
+    Eigen::MatrixXd dense(1, num_joints);
+    std::map<int, double> by_bone;
+    for (int b = 0; b < num_joints; ++b) {
+      dense(0, b) = random.UniformInt(3) == 0 ? 0 : random.Uniform();
+      if (b > 0 && dense(0, b) > 0) by_bone[b] = dense(0, b);
+    }
+    if (by_bone.empty()) continue;
+    PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights, SkinWeights::FromDense(dense));
+    const VertexInfluences& kept = weights.vertex(0);
+    const VertexInfluences same = StrongestInfluences(by_bone);
+    EXPECT_EQ(kept.bones, same.bones);
+    EXPECT_EQ(kept.weights, same.weights);
+    const size_t count = std::min<size_t>(kMaxInfluences, by_bone.size());
+    float sum = 0;
+    for (size_t k = 0; k < kMaxInfluences; ++k) {
+      sum += kept.weights[k];
+      EXPECT_EQ(kept.weights[k] > 0, k < count);
+      EXPECT_EQ(kept.bones[k] == 0, k >= count);
+      EXPECT_LE(kept.weights[k], kept.weights[k == 0 ? 0 : k - 1]);
+      if (k > 0 && k < count) {
+        EXPECT_NEAR(kept.weights[k] / kept.weights[0],
+                    by_bone[kept.bones[k]] / by_bone[kept.bones[0]], 1e-6);
+      }
+    }
+    EXPECT_NEAR(sum, 1, 1e-6);
+    for (const auto& [bone, weight] : by_bone) {
+      if (std::find(kept.bones.begin(), kept.bones.end(), bone) != kept.bones.end()) continue;
+      EXPECT_LE(weight, by_bone[kept.bones[kMaxInfluences - 1]]);
+    }
+    EXPECT_THAT(SkinWeights::Create(num_joints, {kept}), IsOk());
+  }
 }
 
 }  // namespace

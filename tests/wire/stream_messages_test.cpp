@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/status_matchers.h"
-#include "wire/message_samples.h"
+#include "wire/full_samples.h"
 
 namespace pleat {
 namespace {
@@ -11,14 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(StreamMessagesTest, StreamsComeBack) {
-  StreamHeader header;
-  header.encoding = FrameEncoding::kDracoMesh;
-  header.num_vertices = 3;
-  header.num_points = 4;
-  header.num_triangles = 1;
-  header.box = {{1, -2, .5f}, 2.5f, 14};
-  header.topology = std::string("\0DRACO", 6);
-  header.vertex_order = {2, 0, 1};
+  const StreamHeader header = FullHeader();
   PLEAT_ASSERT_OK_AND_ASSIGN(const StreamHeader h, FromProto(Reparse(ToProto(header))));
   EXPECT_EQ(h.encoding, header.encoding);
   EXPECT_EQ(h.box, header.box);
@@ -56,8 +49,6 @@ TEST(StreamMessagesTest, StreamsComeBack) {
   bad.set_encoding(static_cast<v1::FrameEncoding>(99));
   EXPECT_FALSE(FromProto(bad).ok());
 
-  header.content = StreamContent::kControlMesh;
-  header.control_vertices = {4, 7, 9};
   EXPECT_EQ(FromProto(Reparse(ToProto(header)))->control_vertices, header.control_vertices);
   EXPECT_EQ(FromProto(ToProto(header))->content, StreamContent::kControlMesh);
   EXPECT_EQ(FromProto(v1::StreamOptions())->content, StreamContent::kMesh);

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "option_values.h"
 #include "pleat/base/status.h"
+#include "pleat/skinning/user_rig.h"
 
 namespace pleat {
 namespace {
@@ -46,6 +47,11 @@ absl::Status CheckParts(const CharacterModel::Parts& parts) {
   const int num_vertices = parts.topology.num_vertices();
   const int num_joints = parts.rig.skeleton.num_joints();
   if (num_joints < 2) return Mismatch("the number of joints", num_joints, 2);
+  // Scratch memory of skinning is made for this many, and tables of pairs grow with the square.
+  if (num_joints > kMaxUserJoints) {
+    return absl::InvalidArgumentError(absl::StrCat("character model: the skeleton has ", num_joints,
+                                                   " joints, the limit is ", kMaxUserJoints));
+  }
   if (parts.rig.rest_positions.cols() != num_vertices) {
     return Mismatch("the number of rest positions", parts.rig.rest_positions.cols(), num_vertices);
   }

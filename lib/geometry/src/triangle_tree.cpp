@@ -12,6 +12,27 @@ double SquaredDistanceToBox(const Eigen::Vector3d& point, const TriangleTree::No
   return (node.low - point).cwiseMax(point - node.high).cwiseMax(0.0).squaredNorm();
 }
 
+// A triangle whose sine at the first corner is below 1e-6 is a line or a point.
+constexpr double kSquaredSineOfLine = 1e-12;
+
+Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& start,
+                                      const Eigen::Vector3d& end) {
+  const Eigen::Vector3d along = end - start;
+  const double squared = along.squaredNorm();
+  const double share = squared > 0 ? std::clamp(along.dot(point - start) / squared, 0.0, 1.0) : 0;
+  return start + share * along;
+}
+
+Eigen::Vector3d ClosestPointOnEdges(const Eigen::Vector3d& point,
+                                    const std::array<Eigen::Vector3d, 3>& corners) {
+  Eigen::Vector3d nearest = ClosestPointOnSegment(point, corners[2], corners[0]);
+  for (int k = 0; k < 2; ++k) {
+    const Eigen::Vector3d other = ClosestPointOnSegment(point, corners[k], corners[k + 1]);
+    if ((other - point).squaredNorm() < (nearest - point).squaredNorm()) nearest = other;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 Eigen::Vector3d ClosestPointOnTriangle(const Eigen::Vector3d& point,
@@ -24,7 +45,8 @@ Eigen::Vector3d ClosestPointOnTriangle(const Eigen::Vector3d& point,
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
   if (d3 >= 0 && d4 <= d3) return b;
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 > d3 ? d1 / (d1 - d3) : 0.0) * ab;
+  // Not an edge when a and b are one point: c decides then.
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return a + d1 / (d1 - d3) * ab;
   const Eigen::Vector3d cp = point - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
   if (d6 >= 0 && d5 <= d6) return c;
@@ -35,7 +57,11 @@ Eigen::Vector3d ClosestPointOnTriangle(const Eigen::Vector3d& point,
     const double along = (d4 - d3) + (d5 - d6);
     return b + (along > 0 ? (d4 - d3) / along : 0.0) * (c - b);
   }
-  const double scale = 1 / (va + vb + vc);
+  const double squared_normal = va + vb + vc;  // |ab x ac|^2; below: |ab|^2 |ac|^2
+  if (!(squared_normal > kSquaredSineOfLine * (d1 - d3) * (d2 - d6))) {
+    return ClosestPointOnEdges(point, corners);
+  }
+  const double scale = 1 / squared_normal;
   return a + vb * scale * ab + vc * scale * ac;
 }
 

@@ -22,7 +22,10 @@ absl::StatusOr<SkinWeights> SkinWeights::FromDense(const Eigen::Ref<const Eigen:
                      [&](int a, int b) { return dense(v, a) > dense(v, b); });
     double total = 0;
     for (size_t k = 0; k < kept; ++k) total += std::max(0.0, dense(v, order[k]));
-    if (!(total > 0) || !std::isfinite(total)) {
+    // A NaN compares with nothing, so it may stand anywhere in the order.
+    const bool is_number = std::none_of(order.begin(), order.end(),
+                                        [&](int bone) { return std::isnan(dense(v, bone)); });
+    if (!is_number || !(total > 0) || !std::isfinite(total)) {
       return absl::InvalidArgumentError(
           absl::StrCat("vertex ", v, " has no positive, finite skinning weight"));
     }
@@ -43,12 +46,15 @@ absl::StatusOr<SkinWeights> SkinWeights::Create(int num_joints,
     for (int k = 0; k < kMaxInfluences; ++k) {
       const float weight = influences[v].weights[k];
       const int bone = influences[v].bones[k];
-      if (!std::isfinite(weight) || weight < 0 ||
+      const bool after_unused = k > 0 && weight > 0 && influences[v].weights[k - 1] == 0;
+      if (!std::isfinite(weight) || weight < 0 || after_unused ||
           (weight > 0 && (bone < 1 || bone >= num_joints))) {
         return absl::InvalidArgumentError(absl::StrCat("vertex ", v, ": influence ", k, " (bone ",
                                                        bone, ", weight ", weight, ") is invalid"));
       }
       total += weight;
+      // Kernels read the bones of all entries, whatever their weight.
+      if (weight == 0) influences[v].bones[k] = 0;
     }
     if (std::abs(total - 1) > 1e-4f) {
       return absl::InvalidArgumentError(

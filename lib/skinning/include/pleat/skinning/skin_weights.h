@@ -31,8 +31,9 @@ class SkinWeights {
   // column 0 ignored) and normalizes them. The error is kInvalidArgument and names the first vertex
   // without weight.
   static absl::StatusOr<SkinWeights> FromDense(const Eigen::Ref<const Eigen::MatrixXd>& dense);
-  // Checks `influences` and takes them as they are (sums within 1e-4 of 1). The error is
-  // kInvalidArgument and names the first bad vertex.
+  // Checks `influences` and takes them as they are (sums within 1e-4 of 1, used entries first),
+  // but for the bones of unused entries, which become 0. The error is kInvalidArgument and names
+  // the first bad vertex.
   static absl::StatusOr<SkinWeights> Create(int num_joints,
                                             std::vector<VertexInfluences> influences);
 
