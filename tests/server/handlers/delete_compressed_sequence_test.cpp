@@ -3,9 +3,10 @@
 namespace pleat {
 namespace {
 
-INSTANTIATE_TYPED_TEST_SUITE_P(
-    DeleteCompressedSequence, DeleteHandlerTest,
-    HandlerCase<DeleteCompressedSequence, &MockContext::compressed_sequences>);
+using DeleteCompressedSequenceCase =
+    HandlerCase<DeleteCompressedSequence, &MockContext::compressed_sequences>;
+INSTANTIATE_TYPED_TEST_SUITE_P(DeleteCompressedSequence, DeleteHandlerTest,
+                               DeleteCompressedSequenceCase);
 
 }  // namespace
 }  // namespace pleat

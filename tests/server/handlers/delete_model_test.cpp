@@ -3,8 +3,8 @@
 namespace pleat {
 namespace {
 
-INSTANTIATE_TYPED_TEST_SUITE_P(DeleteModel, DeleteHandlerTest,
-                               HandlerCase<DeleteModel, &MockContext::models>);
+using DeleteModelCase = HandlerCase<DeleteModel, &MockContext::models>;
+INSTANTIATE_TYPED_TEST_SUITE_P(DeleteModel, DeleteHandlerTest, DeleteModelCase);
 
 }  // namespace
 }  // namespace pleat

@@ -3,8 +3,8 @@
 namespace pleat {
 namespace {
 
-INSTANTIATE_TYPED_TEST_SUITE_P(DeleteSequence, DeleteHandlerTest,
-                               HandlerCase<DeleteSequence, &MockContext::sequences>);
+using DeleteSequenceCase = HandlerCase<DeleteSequence, &MockContext::sequences>;
+INSTANTIATE_TYPED_TEST_SUITE_P(DeleteSequence, DeleteHandlerTest, DeleteSequenceCase);
 
 }  // namespace
 }  // namespace pleat

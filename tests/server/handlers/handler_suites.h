@@ -1,8 +1,8 @@
 // What handlers of one kind have in common, whatever they get, list or delete. The file of each
 // handler names it:
 //
-//   INSTANTIATE_TYPED_TEST_SUITE_P(DeleteModel, DeleteHandlerTest,
-//                                  HandlerCase<DeleteModel, &MockContext::models>);
+//   using DeleteModelCase = HandlerCase<DeleteModel, &MockContext::models>;
+//   INSTANTIATE_TYPED_TEST_SUITE_P(DeleteModel, DeleteHandlerTest, DeleteModelCase);
 #pragma once
 
 #include <string>

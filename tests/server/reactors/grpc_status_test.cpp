@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "absl/strings/str_cat.h"
+
 namespace pleat {
 namespace {
 
@@ -20,7 +22,8 @@ TEST(GrpcStatus, CodesAreTheSameByNumber) {
 TEST(GrpcStatus, LongMessagesFitIntoATrailer) {
   const std::string longest(2000, 'x');
   EXPECT_EQ(ToGrpcStatus(absl::NotFoundError(longest)).error_message(), longest);
-  EXPECT_EQ(ToGrpcStatus(absl::NotFoundError(longest + "yz")).error_message(), longest + "...");
+  EXPECT_EQ(ToGrpcStatus(absl::NotFoundError(absl::StrCat(longest, "yz"))).error_message(),
+            longest + "...");
 }
 
 // gRPC ends the connection over a message that is no UTF-8, such as one that quotes hostile bytes
@@ -32,7 +35,8 @@ TEST(GrpcStatus, MessagesAreAlwaysUtf8) {
             "a\xef\xbf\xbd"
             "b");
   const std::string cut =
-      ToGrpcStatus(absl::NotFoundError(std::string(1999, 'x') + "\xc3\xa9 end")).error_message();
+      ToGrpcStatus(absl::NotFoundError(absl::StrCat(std::string(1999, 'x'), "\xc3\xa9 end")))
+          .error_message();
   EXPECT_EQ(cut.substr(0, 1999), std::string(1999, 'x'));
   EXPECT_EQ(cut.find('\xc3'), std::string::npos);
 }
