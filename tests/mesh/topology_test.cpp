@@ -66,7 +66,8 @@ TEST(TopologyTest, AppearanceNamesWhatIsThere) {
   const MeshAppearance good{.texcoords = {{0, 0}, {1, 1}},
                             .corner_texcoords = {0, 1, -1, 1},
                             .material_names = {"cloth"},
-                            .face_materials = {0}};
+                            .face_materials = {0},
+                            .material_library = {}};
   EXPECT_THAT(CheckAppearance(good, quad), IsOk());
   EXPECT_THAT(CheckAppearance({}, quad), IsOk());
   const auto refused = [&](auto spoil, const char* words) {

@@ -146,7 +146,8 @@ TEST_F(FrameSkinningTest, EveryNumberOfVerticesFillsItsMatrixAndNothingElse) {
     rig.weights = SkinWeights::Create(18, {all.begin(), all.begin() + count}).value();
     const FrameSkinning skinning(rig);
     EXPECT_EQ(skinning.num_blocks(), (count + 15) / 16);
-    for (const float* details : {static_cast<const float*>(nullptr), details_.data()}) {
+    for (const bool with_details : {false, true}) {
+      const float* details = with_details ? details_.data() : nullptr;
       const Eigen::Matrix3Xf expected = Skin(details).leftCols(count);
       for (const auto& [set, skin_block] : SkinBlockVariants()) {
         Eigen::Matrix3Xf positions(3, count);
