@@ -52,6 +52,11 @@ void AddTrainFlags(CLI::App* verb, TrainFlags* flags) {
         ->type_name("")
         ->group(group);
   });
+  verb->add_flag_callback(
+          "--allow-jumps",
+          [flags] { flags->values["jumps"] = ChoiceName(JumpPolicy::kAllow); },
+          "the same as --jumps allow")
+      ->group(group);
 }
 
 absl::StatusOr<TrainOptions> ResolveTrainFlags(const TrainFlags& flags) {

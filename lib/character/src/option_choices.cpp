@@ -94,6 +94,15 @@ std::span<const NamedChoice<Upsampling>> ChoicesOf() {
   return kChoices;
 }
 
+template <>
+std::span<const NamedChoice<JumpPolicy>> ChoicesOf() {
+  static constexpr NamedChoice<JumpPolicy> kChoices[] = {
+      {JumpPolicy::kRefuse, "refuse", "training is refused, with the frame numbers"},
+      {JumpPolicy::kAllow, "allow", "they are taken as they are"},
+  };
+  return kChoices;
+}
+
 std::span<const OptionText> OptionTexts() {
   static constexpr OptionText kTexts[] = {
       {"learner", nullptr, "what predicts the details"},
@@ -118,6 +127,7 @@ std::span<const OptionText> OptionTexts() {
       {"detail_energy", nullptr, "share of the details' energy that the basis keeps, 0 to 1"},
       {"max_components", nullptr, "upper bound of the detail basis, 1 to 1024"},
       {"seed", nullptr, "seed of everything random"},
+      {"jumps", nullptr, "clips with frames that jump to another size or vertex order"},
   };
   return kTexts;
 }

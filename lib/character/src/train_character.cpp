@@ -9,6 +9,7 @@
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/character/train_with_rig.h"
 #include "pleat/mesh/bounds.h"
+#include "pleat/mesh/frame_jumps.h"
 #include "training_steps.h"
 
 namespace pleat {
@@ -100,6 +101,9 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
   PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, JoinClips(clips));
+  if (options.jumps == JumpPolicy::kRefuse) {
+    for (const MeshSequence& clip : clips) PLEAT_RETURN_IF_ERROR(RefuseFrameJumps(clip));
+  }
   const double diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
 
   const Progress rigging = progress.Stage("rig", 0, .25);

@@ -116,6 +116,9 @@ absl::Status ValidateTrainOptions(const TrainOptions& options) {
 std::string FormatTrainOptions(const TrainOptions& options) {
   std::string text;
   VisitTrainOptions(options, [&text](const char* name, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, JumpPolicy>) {
+      if (value == TrainOptions().jumps) return;  // younger than the first models
+    }
     absl::StrAppend(&text, name, "=", FormatValue(value), "\n");
   });
   return text;

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
+#include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -58,6 +59,9 @@ absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes, const Me
 
 absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshLimits& limits) {
   if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
+  if (const std::string other = DescribeForeignBytes(bytes); !other.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat("this is ", other));
+  }
   ByteReader reader(bytes);
   PLEAT_ASSIGN_OR_RETURN(const Header header, ReadHeader(&reader));
   PLEAT_RETURN_IF_ERROR(CheckSizes(header, reader.remaining(), limits));

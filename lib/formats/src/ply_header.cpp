@@ -29,6 +29,31 @@ std::optional<PlyScalar> ScalarFromName(std::string_view name) {
   return std::nullopt;
 }
 
+// The lines of the header. When the first one ends with a bare CR, the header was written with
+// those, and an LF behind the last of them is the first byte of a binary body.
+class HeaderLines {
+ public:
+  explicit HeaderLines(std::string_view bytes)
+      : bytes_(bytes), begin_(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0) {
+    const size_t end = bytes_.find_first_of("\r\n");
+    has_bare_cr_ = end != std::string_view::npos && bytes_[end] == '\r' &&
+                   (end + 1 == bytes_.size() || bytes_[end + 1] != '\n');
+  }
+  std::optional<std::string_view> Next() {
+    const size_t end = bytes_.find_first_of(has_bare_cr_ ? "\r\n" : "\n", begin_);
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::string_view line = bytes_.substr(begin_, end - begin_);
+    begin_ = end + 1;
+    return line;
+  }
+  size_t body_offset() const { return begin_; }
+
+ private:
+  std::string_view bytes_;
+  size_t begin_;
+  bool has_bare_cr_ = false;
+};
+
 std::vector<std::string_view> SplitWords(std::string_view line) {
   std::vector<std::string_view> words;
   constexpr std::string_view kSpace = " \t\r";
@@ -107,12 +132,11 @@ int PlyElement::FindProperty(std::string_view property_name) const {
 absl::StatusOr<PlyHeader> ParsePlyHeader(std::string_view bytes, const std::string& file) {
   PlyHeader header;
   bool has_format = false;
-  size_t begin = 0;
+  HeaderLines lines(bytes);
   while (header.num_lines < kMaxHeaderLines) {
-    const size_t end = bytes.find('\n', begin);
-    if (end == std::string_view::npos) break;
-    const std::vector<std::string_view> words = SplitWords(bytes.substr(begin, end - begin));
-    begin = end + 1;
+    const std::optional<std::string_view> line = lines.Next();
+    if (!line) break;
+    const std::vector<std::string_view> words = SplitWords(*line);
     ++header.num_lines;
     std::string fault;
     const std::string_view keyword = words.empty() ? "" : words[0];
@@ -126,7 +150,7 @@ absl::StatusOr<PlyHeader> ParsePlyHeader(std::string_view bytes, const std::stri
     } else if (keyword == "property") {
       fault = ParseProperty(words, &header);
     } else if (keyword == "end_header") {
-      header.body_offset = begin;
+      header.body_offset = lines.body_offset();
       if (has_format) return header;
       fault = "the header names no format";
     } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {

@@ -36,8 +36,8 @@ struct PlyHeader {
   int64_t num_lines = 0;   // the number of lines in the header
 };
 
-// kInvalidArgument says "file:line" and what is wrong with the header. `file` is the name used in
-// messages.
+// Lines end with LF, CR or CR LF, and a byte order mark before them is skipped. kInvalidArgument
+// says "file:line" and what is wrong with the header. `file` is the name used in messages.
 absl::StatusOr<PlyHeader> ParsePlyHeader(std::string_view bytes, const std::string& file);
 
 }  // namespace pleat

@@ -2,109 +2,28 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "pleat/base/file.h"
+#include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
+#include "ply_body.h"
 #include "ply_header.h"
 
 namespace pleat {
 namespace {
 
-// Reads the values of the body one after the other, whatever the encoding. They all become double,
-// which holds every scalar type of PLY exactly.
-class PlyBody {
- public:
-  PlyBody(std::string_view bytes, const PlyHeader& header)
-      : begin_(bytes.data()),
-        cursor_(bytes.data() + header.body_offset),
-        end_(bytes.data() + bytes.size()),
-        encoding_(header.encoding),
-        first_line_(header.num_lines + 1) {}
+constexpr std::string_view kFaceLists[] = {"vertex_indices", "vertex_index"};
 
-  // Returns false when the value is not there or not a number.
-  bool Read(PlyScalar type, double* value) {
-    return encoding_ == PlyEncoding::kAscii ? ReadText(value) : ReadBinary(type, value);
-  }
-  size_t remaining() const { return static_cast<size_t>(end_ - cursor_); }
-  // Returns the smallest number of bytes that one value takes.
-  size_t MinBytes(PlyScalar type) const {
-    return encoding_ == PlyEncoding::kAscii ? 1 : static_cast<size_t>(PlyScalarBytes(type));
-  }
-  // Returns where the cursor stands, for messages.
-  std::string Place() const {
-    if (encoding_ != PlyEncoding::kAscii) return absl::StrCat("byte ", cursor_ - begin_);
-    const auto body_lines = std::count(body_begin_, cursor_, '\n');
-    return absl::StrCat("line ", first_line_ + body_lines);
-  }
-
- private:
-  bool ReadText(double* value) {
-    while (cursor_ < end_ && (*cursor_ == ' ' || (*cursor_ >= '\t' && *cursor_ <= '\r'))) ++cursor_;
-    if (cursor_ < end_ && *cursor_ == '+') ++cursor_;
-    const std::from_chars_result result = std::from_chars(cursor_, end_, *value);
-    if (result.ec != std::errc()) return false;
-    cursor_ = result.ptr;
-    return true;
-  }
-
-  bool ReadBinary(PlyScalar type, double* value) {
-    const auto size = static_cast<size_t>(PlyScalarBytes(type));
-    if (remaining() < size) return false;
-    std::array<char, 8> raw{};
-    std::memcpy(raw.data(), cursor_, size);
-    if (encoding_ == PlyEncoding::kBigEndian) std::reverse(raw.begin(), raw.begin() + size);
-    cursor_ += size;
-    switch (type) {
-      case PlyScalar::kInt8:
-        *value = As<int8_t>(raw);
-        break;
-      case PlyScalar::kUint8:
-        *value = As<uint8_t>(raw);
-        break;
-      case PlyScalar::kInt16:
-        *value = As<int16_t>(raw);
-        break;
-      case PlyScalar::kUint16:
-        *value = As<uint16_t>(raw);
-        break;
-      case PlyScalar::kInt32:
-        *value = As<int32_t>(raw);
-        break;
-      case PlyScalar::kUint32:
-        *value = As<uint32_t>(raw);
-        break;
-      case PlyScalar::kFloat32:
-        *value = As<float>(raw);
-        break;
-      case PlyScalar::kFloat64:
-        *value = As<double>(raw);
-        break;
-    }
-    return true;
-  }
-
-  template <typename T>
-  static double As(const std::array<char, 8>& raw) {
-    T value;
-    std::memcpy(&value, raw.data(), sizeof(T));
-    return static_cast<double>(value);
-  }
-
-  const char* begin_;
-  const char* cursor_;
-  const char* body_begin_ = cursor_;
-  const char* end_;
-  PlyEncoding encoding_;
-  int64_t first_line_;
-};
+// Strips run through their vertices; each vertex from the third on closes a triangle with the two
+// before it, every second one turned around. -1 begins a new strip.
+constexpr double kStripEnd = -1;
 
 // Reads the elements in the order of the header. The body has no index: an element that is not
 // needed must still be read value by value, since its lists may have any length.
@@ -120,6 +39,8 @@ class PlyParser {
       PLEAT_RETURN_IF_ERROR(CheckSize(element));
       if (element.name == "vertex") {
         PLEAT_RETURN_IF_ERROR(ParseVertices(element));
+      } else if (element.name == "tristrips") {
+        PLEAT_RETURN_IF_ERROR(ParseStrips(element));
       } else {
         PLEAT_RETURN_IF_ERROR(ParseLists(element));
       }
@@ -157,6 +78,18 @@ class PlyParser {
                               " bytes follow; the file is cut off"));
   }
 
+  // Of text: an element without lists is one line, so a line with other values than declared is
+  // named before they are taken for those of the next.
+  absl::Status CheckLine(const PlyElement& element) {
+    if (!body_.is_text()) return absl::OkStatus();
+    const int64_t found = body_.NumValuesOnLine();
+    const auto declared = static_cast<int64_t>(element.properties.size());
+    if (found == declared || found == 0) return absl::OkStatus();
+    return Error(absl::StrCat(body_.Place(), ": ", found, found == 1 ? " value" : " values",
+                              " where the header declares ", declared, " for element '",
+                              EscapeControls(element.name), "'"));
+  }
+
   // Reads one property of one item. `values` receives its scalars.
   absl::Status ReadProperty(const PlyElement& element, int64_t item, const PlyProperty& property,
                             std::vector<double>* values) {
@@ -189,8 +122,11 @@ class PlyParser {
     const std::array<int, 2> uv = FindTexcoord(element);
     mesh_.positions.resize(3, element.count);
     if (uv[0] >= 0) mesh_.appearance.texcoords.resize(element.count);
+    NoteDropped(element, axes, uv);
     std::vector<double> values;
+    const bool has_list = std::ranges::any_of(element.properties, &PlyProperty::is_list);
     for (int64_t v = 0; v < element.count; ++v) {
+      if (!has_list) PLEAT_RETURN_IF_ERROR(CheckLine(element));
       for (int p = 0; p < static_cast<int>(element.properties.size()); ++p) {
         PLEAT_RETURN_IF_ERROR(ReadProperty(element, v, element.properties[p], &values));
         for (int axis = 0; axis < 3; ++axis) {
@@ -219,11 +155,65 @@ class PlyParser {
     return {-1, -1};
   }
 
+  // Names the properties of the vertices that are not taken.
+  void NoteDropped(const PlyElement& element, const std::array<int, 3>& axes,
+                   const std::array<int, 2>& uv) {
+    for (int p = 0; p < static_cast<int>(element.properties.size()); ++p) {
+      if (std::ranges::count(axes, p) + std::ranges::count(uv, p) > 0) continue;
+      dropped_.push_back(EscapeControls(element.properties[static_cast<size_t>(p)].name));
+    }
+  }
+
+  static int FindFaceList(const PlyElement& element) {
+    for (const std::string_view name : kFaceLists) {
+      const int list = element.FindProperty(name);
+      if (list >= 0) return list;
+    }
+    return -1;
+  }
+
+  absl::Status ParseStrips(const PlyElement& element) {
+    const int list = FindFaceList(element);
+    if (list < 0 || !element.properties[list].is_list) {
+      return Error("element 'tristrips' has no list vertex_indices or vertex_index");
+    }
+    if (!face_sizes_.empty()) return Error("faces and triangle strips in one file");
+    std::vector<double> values, strip;
+    for (int64_t item = 0; item < element.count; ++item) {
+      for (int p = 0; p < static_cast<int>(element.properties.size()); ++p) {
+        PLEAT_RETURN_IF_ERROR(
+            ReadProperty(element, item, element.properties[p], p == list ? &strip : &values));
+      }
+      PLEAT_RETURN_IF_ERROR(AddStrip(item, strip));
+    }
+    Note("strips_read", absl::StrCat("triangle strips read as ", face_sizes_.size(), " triangles"));
+    return absl::OkStatus();
+  }
+
+  // Strips repeat vertices to turn corners; the triangles without area that this makes are none.
+  absl::Status AddStrip(int64_t item, const std::vector<double>& strip) {
+    size_t begin = 0;
+    for (size_t i = 0; i < strip.size(); ++i) {
+      if (strip[i] == kStripEnd) begin = i + 1;
+      if (strip[i] == kStripEnd || i < begin + 2) continue;
+      const bool turned = (i - begin) % 2 == 1;
+      const std::vector<double> corners = {strip[turned ? i - 1 : i - 2],
+                                           strip[turned ? i - 2 : i - 1], strip[i]};
+      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2])
+        continue;
+      if (static_cast<int64_t>(face_sizes_.size()) >= limits_.max_faces) {
+        return absl::ResourceExhaustedError(absl::StrCat(
+            file_, ": more triangles in strips than the limit of ", limits_.max_faces));
+      }
+      PLEAT_RETURN_IF_ERROR(AddFace(item, corners, {}));
+    }
+    return absl::OkStatus();
+  }
+
   // Reads the faces, or skips another element, whose values must be read to find its end.
   absl::Status ParseLists(const PlyElement& element) {
     const bool is_face = element.name == "face";
-    int corners = element.FindProperty("vertex_indices");
-    if (corners < 0) corners = element.FindProperty("vertex_index");
+    const int corners = FindFaceList(element);
     if (is_face && (corners < 0 || !element.properties[corners].is_list)) {
       return Error("element 'face' has no list vertex_indices or vertex_index");
     }
@@ -237,17 +227,28 @@ class PlyParser {
                                                        : values;
         PLEAT_RETURN_IF_ERROR(ReadProperty(element, f, element.properties[p], &target));
       }
+      if (body_.is_text() && !body_.AtLineEnd()) {
+        return Error(absl::StrCat(body_.Place(), ": more values than the header declares for ",
+                                  EscapeControls(element.name), " ", f));
+      }
       if (is_face) PLEAT_RETURN_IF_ERROR(AddFace(f, corner_values, texcoord_values));
+    }
+    if (!is_face && element.count > 0) {
+      dropped_.push_back(absl::StrCat("element '", EscapeControls(element.name), "'"));
     }
     return absl::OkStatus();
   }
 
   absl::Status AddFace(int64_t f, const std::vector<double>& corners,
                        const std::vector<double>& texcoords) {
-    if (corners.size() < 3 ||
-        corner_vertices_.size() + corners.size() > std::numeric_limits<int32_t>::max()) {
-      return Error(absl::StrCat("face ", f, " (", body_.Place(), ") has ", corners.size(),
-                                " corners; a face needs at least 3"));
+    if (corners.size() < 3) {
+      small_face_corners_ = num_small_faces_++ == 0 || small_face_corners_ == corners.size()
+                                ? corners.size()
+                                : kMixedCorners;
+      return absl::OkStatus();
+    }
+    if (corner_vertices_.size() + corners.size() > std::numeric_limits<int32_t>::max()) {
+      return Error("more corners than an index can hold");
     }
     face_sizes_.push_back(static_cast<int32_t>(corners.size()));
     const bool has_texcoords = texcoords.size() == 2 * corners.size();
@@ -266,11 +267,34 @@ class PlyParser {
     return absl::OkStatus();
   }
 
+  void Note(const char* kind, std::string text) {
+    mesh_.notes.push_back({.kind = kind, .text = std::move(text)});
+  }
+
+  void NoteLeftOut() {
+    if (num_small_faces_ > 0) {
+      const std::string corners =
+          small_face_corners_ == kMixedCorners
+              ? "fewer than 3 corners"
+              : absl::StrCat(small_face_corners_,
+                             small_face_corners_ == 1 ? " corner" : " corners");
+      Note("faces_left_out",
+           absl::StrCat(num_small_faces_, num_small_faces_ == 1 ? " face" : " faces", " with ",
+                        corners, " left out"));
+    }
+    if (!dropped_.empty()) {
+      Note("not_kept", absl::StrCat("not kept: ", absl::StrJoin(dropped_, ", ")));
+    }
+  }
+
   absl::StatusOr<MeshFile> Finish() {
     if (mesh_.positions.cols() == 0 || face_sizes_.empty()) {
-      return Error(absl::StrCat("no mesh: ", mesh_.positions.cols(), " vertices and ",
-                                face_sizes_.size(), " faces"));
+      const bool is_empty = mesh_.positions.cols() == 0 && face_sizes_.empty();
+      return Error(absl::StrCat(
+          is_empty ? "the mesh is empty: " : "no mesh: ", mesh_.positions.cols(), " vertices and ",
+          face_sizes_.size(), " faces", mesh_.positions.cols() > 0 ? ", a point cloud" : ""));
     }
+    NoteLeftOut();
     if (!face_texcoords_.empty()) {
       mesh_.appearance.texcoords = std::move(face_texcoords_);
       mesh_.appearance.corner_texcoords = std::move(corner_texcoords_);
@@ -292,6 +316,11 @@ class PlyParser {
   MeshFile mesh_;
   std::vector<int32_t> corner_vertices_, face_sizes_, corner_texcoords_;
   std::vector<Eigen::Vector2f> face_texcoords_;
+
+  static constexpr size_t kMixedCorners = 3;
+  int64_t num_small_faces_ = 0;
+  size_t small_face_corners_ = 0;     // of each, kMixedCorners = different numbers
+  std::vector<std::string> dropped_;  // names of properties and elements
 };
 
 }  // namespace
@@ -299,6 +328,7 @@ class PlyParser {
 absl::StatusOr<MeshFile> DecodePly(std::string_view bytes, const std::string& file,
                                    const MeshLimits& limits) {
   if (bytes.empty()) return absl::InvalidArgumentError(absl::StrCat(file, ": the file is empty"));
+  PLEAT_RETURN_IF_ERROR(RefuseForeignBytes(bytes, file));
   PLEAT_ASSIGN_OR_RETURN(const PlyHeader header, ParsePlyHeader(bytes, file));
   return PlyParser(bytes, header, file, limits).Parse();
 }

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
+#include "pleat/base/foreign_file.h"
 #include "pleat/base/sealed_file.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
@@ -112,6 +113,7 @@ absl::StatusOr<MeshSequence> DecodeSequence(std::string_view bytes, const MeshLi
 
 absl::StatusOr<MeshSequence> ReadSequenceFile(const std::string& path, const MeshLimits& limits) {
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_file_bytes));
+  PLEAT_RETURN_IF_ERROR(RefuseForeignBytes(bytes, path));
   return WithContext(path, DecodeSequence(bytes, limits));
 }
 

@@ -5,12 +5,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/math/array_io.h"
 
 namespace pleat {
 
 void WriteName(std::string_view name, ByteWriter* writer) {
-  writer->WriteString(name.substr(0, kMaxNameBytes));
+  writer->WriteString(Utf8Prefix(name, kMaxNameBytes));
 }
 
 absl::StatusOr<std::string> ReadName(ByteReader* reader, absl::string_view what) {

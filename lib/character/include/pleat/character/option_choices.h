@@ -29,6 +29,9 @@ enum class DetailCoordinates { kOffsets, kDifferential };
 // How the details of the control vertices spread to all vertices.
 enum class Upsampling { kRefined, kRbf };
 
+// What happens to clips whose frames jump (pleat/mesh/frame_jumps.h).
+enum class JumpPolicy { kRefuse, kAllow };
+
 template <typename Choice>
 struct NamedChoice {
   Choice value;
@@ -58,6 +61,8 @@ template <>
 std::span<const NamedChoice<HistoryForm>> ChoicesOf();
 template <>
 std::span<const NamedChoice<Upsampling>> ChoicesOf();
+template <>
+std::span<const NamedChoice<JumpPolicy>> ChoicesOf();
 
 // Returns the name of a value, or null for a number that is no value of the enum.
 template <typename Choice>

@@ -28,7 +28,8 @@ struct TrainSummary {
 // Trains one character from one or more clips with the same connectivity and frame rate. The rest
 // frame is a frame of the first clip. `summary` may be null. Errors: kInvalidArgument for bad
 // options or clips (it names the clip and the first face that differs), kFailedPrecondition when no
-// human-like rig fits, kCancelled when `progress` was cancelled.
+// human-like rig fits or the frames of a clip jump (options.jumps), kCancelled when `progress` was
+// cancelled.
 absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
     const std::vector<MeshSequence>& clips, const TrainOptions& options,
     const TrainResources& resources = {}, TrainSummary* summary = nullptr,

@@ -37,6 +37,7 @@ struct TrainOptions {
   double detail_energy = 0.99999;  // share of the details' energy that the PCA basis keeps, 0..1
   int max_components = 128;        // upper bound of the PCA basis, 1..1024
   uint64_t seed = 1;               // for everything random
+  JumpPolicy jumps = JumpPolicy::kRefuse;  // of clips whose frames jump
 
   // The published settings: the SGPLVM on a control mesh of 5 %, the pose fit "walk" and world axes
   // (paper, section IV).
@@ -54,6 +55,8 @@ absl::Status ValidateTrainOptions(const TrainOptions& options);
 
 // Returns one line "name=value" per option, in a fixed order. ParseTrainOptions restores exactly
 // the same options from it.
+// Options that came after version 1 of the model file have no line while they have their default,
+// so that the bytes of models stay what they were.
 std::string FormatTrainOptions(const TrainOptions& options);
 
 // Parses such lines. Options that are not mentioned keep their defaults. kInvalidArgument names an
@@ -85,6 +88,7 @@ void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("detail_energy", options.detail_energy);
   visit("max_components", options.max_components);
   visit("seed", options.seed);
+  visit("jumps", options.jumps);
 }
 
 }  // namespace pleat

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
+#include "pleat/mesh/input_note.h"
 #include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/topology.h"
 
@@ -13,8 +15,9 @@ namespace pleat {
 // them and names frame and vertex.
 struct MeshFile {
   Topology topology;
-  Eigen::Matrix3Xf positions;  // 3 x V, in the file's units and axes
-  MeshAppearance appearance;
+  Eigen::Matrix3Xf positions;      // 3 x V, in the file's units and axes
+  MeshAppearance appearance;       // names are UTF-8
+  std::vector<InputNote> notes{};  // what was left out, one for each kind, without the file's name
 };
 
 }  // namespace pleat

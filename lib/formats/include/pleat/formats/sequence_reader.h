@@ -10,13 +10,14 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/formats/mesh_file.h"
+#include "pleat/mesh/input_note.h"
 #include "pleat/mesh/mesh_sequence.h"
 
 namespace pleat {
 
 struct ReadSequenceOptions {
   // Unset: the rate of the input where it has one (.pseq), otherwise 30 fps. The "rate" of a point
-  // cache is not a frame rate and is not used.
+  // cache is frames of its host's timeline per sample; it is named in a note and not used.
   std::optional<FrameRate> frame_rate{};
   MeshLimits limits{};
   // The threads that read folders and globs, 0 = one per core. The result does not depend on it.
@@ -35,10 +36,12 @@ struct ReadSequenceOptions {
 // - a Pleat sequence file (.pseq).
 //
 // Topology and appearance are those of the first frame. The errors name the file and the fault: the
-// first frame whose connectivity differs and its first face that differs, numbers that are missing
-// or there twice, the frame and vertex of a NaN, wrong counts, empty files, unknown extensions.
+// first frame whose connectivity differs and its first face that differs, numbers that are there
+// twice, the frame and vertex of a NaN, wrong counts, empty files, unknown extensions. What does not
+// matter is left out or decided, and `report` (may be null) says so (docs/formats/mesh.md).
 absl::StatusOr<MeshSequence> ReadSequence(const std::string& input,
                                           const ReadSequenceOptions& options = {},
-                                          const Progress& progress = {});
+                                          const Progress& progress = {},
+                                          InputReport* report = nullptr);
 
 }  // namespace pleat

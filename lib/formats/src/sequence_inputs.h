@@ -1,0 +1,47 @@
+// The kinds of input behind sequence_reader.h.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "pleat/base/progress.h"
+#include "pleat/formats/mesh_file.h"
+#include "pleat/formats/sequence_reader.h"
+#include "pleat/mesh/mesh_sequence.h"
+
+namespace pleat {
+
+// What every kind of input is read with.
+struct InputReading {
+  const ReadSequenceOptions& options;
+  const Progress& progress;
+  InputReport* report;  // never null
+};
+
+std::string LowerExtension(const std::filesystem::path& path);
+bool IsMeshFile(const std::filesystem::path& path);  // by its extension
+// The name without its folders, fit for messages and for UTF-8 strings.
+std::string DisplayName(const std::filesystem::path& path);
+
+absl::StatusOr<MeshFile> ReadMesh(const std::string& path, const ReadSequenceOptions& options);
+
+// Takes topology and appearance of `mesh`. options.name may be any bytes.
+absl::StatusOr<MeshSequence> CreateSequence(MeshFile mesh, std::vector<Eigen::Matrix3Xf> frames,
+                                            MeshSequenceOptions options, const std::string& input);
+
+// One mesh file per frame. name: of the sequence. input: for messages.
+absl::StatusOr<MeshSequence> ReadFrameFiles(const std::vector<std::string>& paths,
+                                            const std::string& name, const std::string& input,
+                                            const InputReading& reading);
+
+// A point cache (.pc2) with the mesh beside it.
+absl::StatusOr<MeshSequence> ReadPointCacheSequence(const std::string& path,
+                                                    const InputReading& reading);
+
+// The files that a pattern (*, ?, [...]) names. Brackets in the name of a folder or file that is
+// there stand for themselves.
+absl::StatusOr<std::vector<std::string>> ExpandPattern(const std::string& pattern);
+
+}  // namespace pleat
