@@ -6,6 +6,7 @@
 
 #include "CLI/CLI.hpp"
 #include "cli/verbs/verbs.h"
+#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {
@@ -60,7 +61,8 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& sess
     return ExitCode::kOk;
   } catch (const CLI::ParseError& error) {
     const std::string prefix = Prefix(arguments, *app);
-    *session.err << prefix << ": " << error.what() << "\nTry '" << prefix << " --help'.\n";
+    *session.err << prefix << ": " << EscapeControls(error.what(), true) << "\nTry '" << prefix
+                 << " --help'.\n";
     return ExitCode::kUsage;
   }
 
@@ -74,7 +76,9 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& sess
     status = absl::InternalError(exception.what());
   }
   if (!status.ok()) {
-    *session.err << "pleat " << session.verb << ": " << std::string(status.message()) << "\n";
+    // Messages quote files and their names, which may hold anything.
+    *session.err << "pleat " << session.verb << ": " << EscapeControls(status.message(), true)
+                 << "\n";
   }
   session.out->flush();
   return ExitCodeOf(status);

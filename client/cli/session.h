@@ -27,6 +27,7 @@ struct Session {
   std::string tls_key;
   bool json = false;
   bool quiet = false;
+  bool strict = false;  // warnings are errors
 
   // The callback of the chosen verb in the parser sets these two.
   std::string verb;
@@ -36,7 +37,7 @@ struct Session {
   std::string ServerAddress() const;
   // Returns the folder of the local store.
   std::string DataFolder() const;
-  // Says whether progress and notes are printed at all.
+  // Says whether progress is printed at all.
   bool talkative() const { return !quiet && !json; }
 };
 

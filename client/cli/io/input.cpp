@@ -1,16 +1,23 @@
 #include "cli/io/input.h"
 
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
 #include "cli/io/draco_folder.h"
 #include "cli/io/draco_process.h"
 #include "cli/io/frame_rate.h"
 #include "cli/show/progress_display.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/formats/sequence_reader.h"
+#include "pleat/mesh/frame_jumps.h"
 
 namespace pleat {
+namespace {
 
-absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string& input,
-                                       const std::string& fps) {
+absl::StatusOr<MeshSequence> ReadWithProgress(const Session& session, const std::string& input,
+                                              const std::string& fps, InputReport* report) {
   ReadSequenceOptions options;
   if (!fps.empty()) {
     PLEAT_ASSIGN_OR_RETURN(options.frame_rate, ParseFrameRate(fps));
@@ -21,7 +28,28 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
   options.read_draco = [&progress](const std::string& path) {
     return ReadDracoMesh(path, progress);
   };
-  return ReadSequence(input, options, progress);
+  return ReadSequence(input, options, progress, report);
+}
+
+}  // namespace
+
+absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string& input,
+                                       const std::string& fps, std::vector<InputNote>* notes) {
+  InputReport report;
+  absl::StatusOr<MeshSequence> sequence = ReadWithProgress(session, input, fps, &report);
+  if (!sequence.ok()) return sequence;
+  for (InputNote& jump : DescribeJumps(FindFrameJumps(*sequence), report.frame_names)) {
+    report.notes.push_back(std::move(jump));
+  }
+  for (const InputNote& note : report.notes) {
+    *session.err << SeverityName(note.severity) << ": " << EscapeControls(note.text) << "\n";
+  }
+  if (notes != nullptr) notes->insert(notes->end(), report.notes.begin(), report.notes.end());
+  const auto refused = std::ranges::count_if(report.notes, IsRefusedWhenStrict);
+  if (!session.strict || refused == 0) return sequence;
+  return absl::FailedPreconditionError(
+      absl::StrCat("'", input, "' is refused because of --strict: see the ", refused,
+                   refused == 1 ? " line above" : " lines above"));
 }
 
 }  // namespace pleat

@@ -2,16 +2,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "cli/session.h"
+#include "pleat/mesh/input_note.h"
 #include "pleat/mesh/mesh_sequence.h"
 
 namespace pleat {
 
 // Reads what ReadSequence reads, and folders of Draco frames (draco_folder.h). fps: the text of
-// --fps, empty when it was not given.
+// --fps, empty when it was not given. What the reader noticed and frames that jump are printed on
+// session.err and appended to `notes` (may be null). kFailedPrecondition when --strict refuses one
+// of them.
 absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string& input,
-                                       const std::string& fps = "");
+                                       const std::string& fps = "",
+                                       std::vector<InputNote>* notes = nullptr);
 
 }  // namespace pleat

@@ -8,9 +8,11 @@
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
 #include "cli/session.h"
+#include "cli/show/input_notes_json.h"
 #include "cli/show/mesh_report_json.h"
 #include "cli/show/report_json.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/character/train_options.h"
 #include "pleat/fitting/pose_fit.h"
 #include "pleat/fitting/rig_refinement.h"
@@ -141,7 +143,8 @@ absl::StatusOr<RigMeasurement> MeasureRig(const std::string& input, const MeshSe
 
 nlohmann::ordered_json RigMeasurementJson(const RigMeasurement& measurement) {
   nlohmann::ordered_json json;
-  json["input"] = measurement.input;
+  json["input"] = ToValidUtf8(measurement.input);
+  json["input_notes"] = InputNotesJson(measurement.input_notes);
   json["num_frames"] = measurement.num_frames;
   json["num_vertices"] = measurement.num_vertices;
   json["diagonal_m"] = measurement.diagonal_m;

@@ -4,10 +4,12 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "cli/io/joint_truth.h"
 #include "pleat/base/progress.h"
+#include "pleat/mesh/input_note.h"
 #include "pleat/mesh/mesh_report.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/rigging/auto_rig.h"
@@ -22,6 +24,7 @@ struct RigMeasurementOptions {
 
 struct RigMeasurement {
   std::string input;
+  std::vector<InputNote> input_notes;  // filled by those who read the input
   int num_frames = 0, num_vertices = 0;
   double diagonal_m = 0;  // bounding-box diagonal of the first frame that is used
   double height_m = 0;    // the extent of that frame along y

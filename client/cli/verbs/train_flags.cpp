@@ -53,8 +53,7 @@ void AddTrainFlags(CLI::App* verb, TrainFlags* flags) {
         ->group(group);
   });
   verb->add_flag_callback(
-          "--allow-jumps",
-          [flags] { flags->values["jumps"] = ChoiceName(JumpPolicy::kAllow); },
+          "--allow-jumps", [flags] { flags->values["jumps"] = ChoiceName(JumpPolicy::kAllow); },
           "the same as --jumps allow")
       ->group(group);
 }

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "cli/verbs/verbs.h"
 
 namespace pleat {
@@ -9,11 +10,22 @@ CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
   CLI::App* verb = app.add_subcommand(name, description);
   verb->add_flag("--json", session.json, "print the result as JSON on stdout, nothing else");
   verb->add_flag("--quiet,-q", session.quiet, "no progress");
+  verb->add_flag(
+      "--strict", session.strict,
+      "end with exit code 5 where there would be a warning, or a doubt about which files "
+      "are meant");
   verb->callback([&session, name, run = std::move(run)] {
     session.verb = name;
     session.run = run;
   });
   return verb;
+}
+
+absl::Status RefuseWarningsWhenStrict(const Session& session, size_t num_warnings) {
+  if (!session.strict || num_warnings == 0) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat("the result has ", num_warnings,
+                                                    num_warnings == 1 ? " warning" : " warnings",
+                                                    " (refused because of --strict)"));
 }
 
 void AddServerFlags(CLI::App* verb, Session& session) {

@@ -3,11 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
 #include "cli/service.h"
+#include "cli/show/input_notes_json.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
@@ -98,13 +100,16 @@ void PrintText(const CompressVerbOptions& flags, const MeshSequence& sequence,
 
 absl::Status RunCompress(const CompressVerbOptions& flags, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, ChooseGoal(flags));
-  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, flags.input, flags.fps));
+  std::vector<InputNote> notes;
+  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
+                         ReadInput(session, flags.input, flags.fps, &notes));
   PLEAT_ASSIGN_OR_RETURN(const Compressed compressed,
                          RunsOnService(session) ? CompressOnService(sequence, options, session)
                                                 : CompressHere(sequence, options, session));
   PLEAT_RETURN_IF_ERROR(WriteFile(flags.output, compressed.bytes));
-  const nlohmann::ordered_json json =
+  nlohmann::ordered_json json =
       CompressReportJson(compressed.record, sequence.num_frames(), sequence.num_vertices());
+  json["input_notes"] = InputNotesJson(notes);
   if (!flags.report.empty()) {
     PLEAT_RETURN_IF_ERROR(WriteFile(flags.report, JsonText(json)));
   }

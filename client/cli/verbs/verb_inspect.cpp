@@ -2,14 +2,18 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
 #include "cli/io/frame_rate.h"
 #include "cli/io/input.h"
+#include "cli/show/input_notes_json.h"
 #include "cli/show/json_text.h"
 #include "cli/show/mesh_report_json.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/mesh/bounds.h"
 #include "pleat/mesh/mesh_report.h"
@@ -36,6 +40,7 @@ struct Findings {
   Eigen::AlignedBox3d bounds;  // the bounds of all frames, meters
   double diagonal_m = 0;       // the diagonal of frame 0
   MeshReport report;           // the report on frame 0
+  std::vector<InputNote> notes;
 };
 
 void PrintJson(const MeshSequence& sequence, const Findings& findings, std::ostream& out) {
@@ -53,12 +58,13 @@ void PrintJson(const MeshSequence& sequence, const Findings& findings, std::ostr
                     {"max_m", VectorJson(findings.bounds.max())}};
   json["sequence_id"] = SequenceId(EncodeSequence(sequence));
   json["mesh_report"] = MeshReportJson(findings.report);
+  json["input_notes"] = InputNotesJson(findings.notes);
   out << JsonText(json);
 }
 
 void PrintText(const MeshSequence& sequence, const Findings& findings, std::ostream& out) {
   const Eigen::Vector3d size = findings.bounds.sizes(), low = findings.bounds.min();
-  out << absl::StrFormat("name        %s\n", sequence.name())
+  out << absl::StrFormat("name        %s\n", EscapeControls(sequence.name()))
       << absl::StrFormat("frames      %d at %s per second, %.2f s\n", sequence.num_frames(),
                          FormatFrameRate(sequence.frame_rate()),
                          sequence.num_frames() / sequence.frame_rate().fps())
@@ -80,10 +86,12 @@ void PrintText(const MeshSequence& sequence, const Findings& findings, std::ostr
 }
 
 absl::Status RunInspect(const InspectOptions& options, const Session& session) {
+  std::vector<InputNote> notes;
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
-                         ReadInput(session, options.input, options.fps));
+                         ReadInput(session, options.input, options.fps, &notes));
   const Findings findings = {BoundsOfAllFrames(sequence), BoundsDiagonal(sequence.FrameAsDouble(0)),
-                             InspectMesh(sequence.topology(), sequence.FrameAsDouble(0))};
+                             InspectMesh(sequence.topology(), sequence.FrameAsDouble(0)),
+                             std::move(notes)};
   if (session.json) {
     PrintJson(sequence, findings, *session.out);
   } else {

@@ -78,7 +78,9 @@ void PrintText(const std::vector<RigMeasurement>& rows, std::ostream& out) {
 absl::StatusOr<RigMeasurement> MeasureInput(const RigVerbOptions& options, size_t i,
                                             const Session& session) {
   const std::string& input = options.inputs[i];
-  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, input, options.fps));
+  std::vector<InputNote> notes;
+  PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
+                         ReadInput(session, input, options.fps, &notes));
   const std::string truth_path =
       i < options.truths.size() ? options.truths[i] : FindJointTruth(input);
   std::optional<JointTruth> truth;
@@ -86,8 +88,11 @@ absl::StatusOr<RigMeasurement> MeasureInput(const RigVerbOptions& options, size_
     PLEAT_ASSIGN_OR_RETURN(truth, ReadJointTruth(truth_path));
   }
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  return MeasureRig(input, sequence, truth ? &*truth : nullptr, options.measurement,
-                    InterruptibleProgress(&display));
+  PLEAT_ASSIGN_OR_RETURN(RigMeasurement row,
+                         MeasureRig(input, sequence, truth ? &*truth : nullptr, options.measurement,
+                                    InterruptibleProgress(&display)));
+  row.input_notes = std::move(notes);
+  return row;
 }
 
 absl::Status RunRig(RigVerbOptions options, const Session& session) {
@@ -126,7 +131,11 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
   } else if (!session.quiet) {
     PrintText(rows, *session.out);
   }
-  if (num_refused == 0) return absl::OkStatus();
+  if (num_refused == 0) {
+    size_t num_warnings = 0;
+    for (const RigMeasurement& row : rows) num_warnings += row.summary.warnings.size();
+    return RefuseWarningsWhenStrict(session, num_warnings);
+  }
   if (rows.size() == 1) return rows[0].status;
   return absl::FailedPreconditionError(
       absl::StrCat(num_refused, " of ", rows.size(), " inputs were refused"));

@@ -18,6 +18,7 @@
 #include "cli/service.h"
 #include "cli/show/error_text.h"
 #include "cli/show/info_json.h"
+#include "cli/show/input_notes_json.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
@@ -183,8 +184,9 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions train, ResolveTrainFlags(options.flags));
   const double start_seconds = MonotonicSeconds();
   std::vector<MeshSequence> clips;
+  std::vector<InputNote> notes;
   for (const std::string& input : options.inputs) {
-    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, input, options.fps));
+    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, input, options.fps, &notes));
     clips.push_back(std::move(clip));
   }
   const double read_seconds = MonotonicSeconds() - start_seconds;
@@ -206,9 +208,10 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   trained.seconds["total"] = MonotonicSeconds() - start_seconds;
 
   if (!options.output.empty()) PLEAT_RETURN_IF_ERROR(WriteFile(options.output, trained.bytes));
-  const nlohmann::ordered_json report = TrainReportJson(
+  nlohmann::ordered_json report = TrainReportJson(
       *trained.model,
       {trained.seconds, PeakMemoryBytes(), trained.bytes.size(), ModelId(trained.bytes)});
+  report["input_notes"] = InputNotesJson(notes);
   if (!options.report.empty()) {
     PLEAT_RETURN_IF_ERROR(WriteFile(options.report, JsonText(report)));
   }
@@ -217,7 +220,7 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   } else if (!session.quiet) {
     PrintText(trained, options.output, *session.out);
   }
-  return absl::OkStatus();
+  return RefuseWarningsWhenStrict(session, trained.model->record().warnings.size());
 }
 
 }  // namespace

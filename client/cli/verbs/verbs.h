@@ -16,6 +16,10 @@ namespace pleat {
 CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
                   const std::string& description, std::function<absl::Status()> run);
 
+// With --strict, kFailedPrecondition when a result has warnings. What was asked for is written
+// nevertheless.
+absl::Status RefuseWarningsWhenStrict(const Session& session, size_t num_warnings);
+
 // Adds --server, --local, --data-dir and the flags of TLS, for verbs that can run on a server.
 void AddServerFlags(CLI::App* verb, Session& session);
 // Does the same for verbs that run in this process unless --server or --data-dir is given.

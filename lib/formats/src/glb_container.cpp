@@ -62,6 +62,24 @@ int64_t Size(const json& object, const char* name, int64_t fallback) {
   return found->get<int64_t>();
 }
 
+// Extensions without which the positions of a skinned mesh cannot be read. Others may be required
+// as well (materials, textures): they do not concern a rig.
+absl::Status CheckExtensions(const json& root) {
+  static constexpr std::string_view kCompressions[] = {
+      "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_draco_mesh_compression"};
+  const auto required = root.find("extensionsRequired");
+  if (required == root.end() || !required->is_array()) return absl::OkStatus();
+  for (const json& extension : *required) {
+    for (const std::string_view name : kCompressions) {
+      if (extension == std::string(name)) {
+        return Fault(absl::StrCat("the file needs ", std::string(name),
+                                  ", which is not read: export it without compression"));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 double GlbAccessor::At(size_t i, int k) const {
@@ -106,6 +124,7 @@ absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes) {
     at += 8 + size;
   }
   if (!has_json || !glb.root_.is_object()) return Fault("the JSON chunk is missing or damaged");
+  PLEAT_RETURN_IF_ERROR(CheckExtensions(glb.root_));
   return glb;
 }
 
@@ -128,14 +147,13 @@ absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_
     return Fault(absl::StrCat("an accessor of type ", std::string(type), " is missing"));
   }
   if (accessor.contains("sparse") || !accessor.contains("bufferView")) {
-    return absl::UnimplementedError("GLB: sparse accessors are not supported");
+    return Fault("sparse accessors are not supported");
   }
   const json& view = Entry("bufferViews", accessor["bufferView"]);
   if (!view.is_object()) return Fault("an accessor's buffer view is missing");
   const json& buffer = Entry("buffers", view.value("buffer", json()));
   if (view.value("buffer", json()) != 0 || !buffer.is_object() || buffer.contains("uri")) {
-    return absl::UnimplementedError(
-        "GLB: only the file's own binary chunk is read, no other files");
+    return Fault("only the file's own binary chunk is read, no other files");
   }
   GlbAccessor result;
   const int64_t component = Size(accessor, "componentType", 0);

@@ -35,8 +35,8 @@ class GlbContainer {
   const nlohmann::json& List(const char* name) const;
   // Returns an entry of such a list, or null when `index` is not an index of it.
   const nlohmann::json& Entry(const char* name, const nlohmann::json& index) const;
-  // Returns the accessor `index`. kInvalidArgument when it is not of `type` ("VEC3", ...) or
-  // reaches beyond the file, kUnimplemented when it is sparse or its buffer is not the file's own.
+  // Returns the accessor `index`. kInvalidArgument when it is not of `type` ("VEC3", ...), reaches
+  // beyond the file or is sparse, or when its buffer is not the file's own.
   absl::StatusOr<GlbAccessor> Access(const nlohmann::json& index, std::string_view type) const;
 
  private:

@@ -10,7 +10,9 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "gltf_file.h"
 #include "pleat/base/file.h"
+#include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -233,8 +235,23 @@ absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file) {
 
 absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits) {
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_document_bytes));
-  const bool is_glb = absl::EndsWith(absl::AsciiStrToLower(path), ".glb");
-  return WithContext(path, is_glb ? DecodeRigGlb(bytes, limits) : DecodeRigJson(bytes, limits));
+  if (std::string_view(bytes).starts_with("glTF")) {
+    return WithContext(path, DecodeRigGlb(bytes, limits));
+  }
+  PLEAT_RETURN_IF_ERROR(RefuseForeignBytes(bytes, path));
+  const std::string ending = absl::AsciiStrToLower(path);
+  if (absl::EndsWith(ending, ".gltf") || IsGltfText(bytes)) {
+    absl::StatusOr<std::string> packed = PackGltf(bytes, path, limits);
+    if (!packed.ok()) return WithContext(path, packed.status());
+    absl::StatusOr<RigFile> rig = DecodeRigGlb(*packed, limits);
+    if (rig.ok()) return rig;
+    return absl::Status(rig.status().code(),
+                        absl::StrCat(path, ": ", rig.status().message(),
+                                     " (glTF text is read with the buffers beside it; export as "
+                                     "GLB to have mesh and skeleton in one file)"));
+  }
+  return WithContext(path, absl::EndsWith(ending, ".glb") ? DecodeRigGlb(bytes, limits)
+                                                          : DecodeRigJson(bytes, limits));
 }
 
 std::string EncodeRig(const UserRig& rig) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "compressed_format.h"
@@ -38,6 +40,13 @@ struct Extent {
       squared_spread += (frame.colwise() - center).squaredNorm();
     }
   }
+  // Coordinates are large against the size, so that little of float32 is left for the shape.
+  bool IsFar() const {
+    const double size = (high - low).maxCoeff();
+    return size > 0 && Largest() > 8 * size;
+  }
+  // The middle, in float32.
+  Eigen::Vector3d Middle() const { return ((low + high) / 2).cast<float>().cast<double>(); }
   double Largest() const { return std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff()); }
 };
 
@@ -153,10 +162,11 @@ absl::StatusOr<std::string> EncodeForMaxError(const SequenceEncoder& encoder, co
   return EncodeSmallest(encoder, grid, 8 * bound_m, progress);
 }
 
-ResidualGrid GridOf(const Extent& extent, int bits) {
+// origin_m: of the encoded positions.
+ResidualGrid GridOf(const Extent& extent, int bits, const Eigen::Vector3d& origin_m) {
   ResidualGrid grid;
   grid.kind = ResidualKind::kGrid;
-  grid.origin_m = extent.low;
+  grid.origin_m = extent.low - origin_m;
   grid.step_m = std::max((extent.high - extent.low).maxCoeff(), 1e-6) / ((1 << bits) - 1);
   return grid;
 }
@@ -164,6 +174,7 @@ ResidualGrid GridOf(const Extent& extent, int bits) {
 absl::StatusOr<std::string> EncodeForGoal(const SequenceEncoder& encoder,
                                           const MeshSequence& sequence, const Extent& extent,
                                           const CompressOptions& options,
+                                          const Eigen::Vector3d& origin_m,
                                           const Progress& progress) {
   if (options.goal == CompressionGoal::kKg) {
     return EncodeForKg(encoder, sequence, extent, options.kg_percent, progress);
@@ -171,8 +182,41 @@ absl::StatusOr<std::string> EncodeForGoal(const SequenceEncoder& encoder,
   if (options.goal == CompressionGoal::kMaxError) {
     return EncodeForMaxError(encoder, extent, options.max_error_mm * 1e-3, progress);
   }
-  const ResidualGrid grid = GridOf(extent, options.grid_bits);
+  const ResidualGrid grid = GridOf(extent, options.grid_bits, origin_m);
   return EncodeSmallest(encoder, grid, 4 * grid.step_m, progress);
+}
+
+struct Encoded {
+  std::string bytes;
+  uint64_t num_topology_bytes = 0;
+};
+
+// Encodes the positions minus origin_m, which the file holds.
+absl::StatusOr<Encoded> EncodeAround(const Eigen::Vector3d& origin_m, const MeshSequence& sequence,
+                                     const Extent& extent, const CompressOptions& options,
+                                     const Progress& progress) {
+  std::optional<MeshSequence> moved;
+  if (!origin_m.isZero(0)) {
+    std::vector<Eigen::Matrix3Xf> frames;
+    for (int t = 0; t < sequence.num_frames(); ++t) {
+      frames.emplace_back((sequence.FrameAsDouble(t).colwise() - origin_m).cast<float>());
+    }
+    PLEAT_ASSIGN_OR_RETURN(
+        moved,
+        MeshSequence::Create(sequence.topology(), std::move(frames),
+                             {sequence.name(), sequence.frame_rate(), sequence.appearance(), {}}));
+  }
+  const MeshSequence& encoded = moved ? *moved : sequence;
+  PLEAT_ASSIGN_OR_RETURN(
+      SequenceAnalysis analysis,
+      AnalyzeSequence(encoded, options.num_threads, progress.Stage("analyse", 0, 0.2)));
+  const SequenceEncoder encoder(encoded, std::move(analysis), origin_m, options.keep_face_order,
+                                options.num_threads);
+  Encoded result;
+  PLEAT_ASSIGN_OR_RETURN(result.bytes, EncodeForGoal(encoder, sequence, extent, options, origin_m,
+                                                     progress.Stage("encode", 0.2, 1)));
+  result.num_topology_bytes = encoder.topology_bytes();
+  return result;
 }
 
 // The promise, on what a decoder gives.
@@ -181,8 +225,8 @@ absl::Status CheckPromise(const CompressOptions& options, const Measured& measur
   double bound_m = std::numeric_limits<double>::infinity();
   if (options.goal == CompressionGoal::kMaxError) bound_m = options.max_error_mm * 1e-3;
   if (options.goal == CompressionGoal::kGrid) {
-    bound_m =
-        std::sqrt(0.75) * GridOf(extent, options.grid_bits).step_m + 2 * Ulp(extent.Largest());
+    const double step_m = GridOf(extent, options.grid_bits, Eigen::Vector3d::Zero()).step_m;
+    bound_m = std::sqrt(0.75) * step_m + 2 * Ulp(extent.Largest());
   }
   if (measured.max_error_m <= bound_m) return absl::OkStatus();
   return absl::InternalError(absl::StrCat("the decoded sequence is wrong by ",
@@ -209,27 +253,29 @@ absl::StatusOr<std::string> CompressSequence(const MeshSequence& sequence,
                                              CompressSummary* summary, const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
   const Extent extent(sequence);
-  PLEAT_ASSIGN_OR_RETURN(
-      SequenceAnalysis analysis,
-      AnalyzeSequence(sequence, options.num_threads, progress.Stage("analyse", 0, 0.2)));
-  const SequenceEncoder encoder(sequence, std::move(analysis), options.keep_face_order,
-                                options.num_threads);
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes, EncodeForGoal(encoder, sequence, extent, options,
-                                                          progress.Stage("encode", 0.2, 0.95)));
+  absl::StatusOr<Encoded> encoded =
+      EncodeAround(Eigen::Vector3d::Zero(), sequence, extent, options, progress.Stage("", 0, 0.9));
+  // Where the sequence lies cannot be quantized as finely as its shape: that is subtracted first.
+  if (absl::IsInvalidArgument(encoded.status()) && extent.IsFar()) {
+    encoded =
+        EncodeAround(extent.Middle(), sequence, extent, options, progress.Stage("", 0.9, 0.95));
+  }
+  PLEAT_RETURN_IF_ERROR(encoded.status());
+  const std::string& bytes = encoded->bytes;
   PLEAT_ASSIGN_OR_RETURN(const Measured measured,
                          Measure(sequence, bytes, extent, progress.Stage("check", 0.95, 1)));
   PLEAT_RETURN_IF_ERROR(CheckPromise(options, measured, extent));
   if (summary != nullptr) {
     const double num_values = static_cast<double>(sequence.num_vertices()) * sequence.num_frames();
     summary->num_bytes = bytes.size();
-    summary->num_topology_bytes = encoder.topology_bytes();
+    summary->num_topology_bytes = encoded->num_topology_bytes;
     summary->bpvf = 8.0 * static_cast<double>(bytes.size()) / num_values;
     summary->bpvf_without_topology =
-        8.0 * static_cast<double>(bytes.size() - encoder.topology_bytes()) / num_values;
+        8.0 * static_cast<double>(bytes.size() - encoded->num_topology_bytes) / num_values;
     summary->kg_percent = measured.kg_percent;
     summary->max_error_mm = measured.max_error_m * 1e3;
   }
-  return bytes;
+  return std::move(encoded->bytes);
 }
 
 }  // namespace pleat

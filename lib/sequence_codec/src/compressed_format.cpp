@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -13,11 +14,16 @@ namespace pleat {
 namespace {
 
 constexpr uint32_t kMaxMaterials = 1 << 20;
+constexpr uint32_t kHasOrigin = 4;  // beside the flags of the appearance
 
 uint32_t FirstBytes(const Sha256Digest& digest) {
   uint32_t result;
   std::memcpy(&result, digest.data(), sizeof(result));
   return result;
+}
+
+bool IsOrigin(const Eigen::Vector3d& origin_m) {
+  return (origin_m.array().abs() <= std::numeric_limits<float>::max()).all();
 }
 
 bool IsStep(double step) { return step > 0 && step < 1e12; }
@@ -104,7 +110,8 @@ std::string EncodeHeader(const CompressedHeader& header) {
         static_cast<uint32_t>(header.materials.material_names.size())}) {
     writer.Write(count);
   }
-  writer.Write(static_cast<uint8_t>(header.appearance_flags));
+  const bool has_origin = !header.origin_m.isZero(0);
+  writer.Write(static_cast<uint8_t>(header.appearance_flags | (has_origin ? kHasOrigin : 0)));
   writer.Write(static_cast<uint8_t>(header.grid.kind));
   for (const float step : {header.steps.field_m, header.steps.rest_m, header.steps.rotation,
                            header.steps.translation_m}) {
@@ -119,6 +126,7 @@ std::string EncodeHeader(const CompressedHeader& header) {
   for (const uint32_t count : header.segment_frames) writer.Write(static_cast<uint16_t>(count));
   WriteName(header.name, &writer);
   WriteMaterialNames(header.materials, &writer);
+  for (int c = 0; has_origin && c < 3; ++c) writer.Write(header.origin_m[c]);
   return writer.Release();
 }
 
@@ -152,8 +160,9 @@ absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload, const Me
   ByteReader reader(payload);
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_materials, ReadCounts(&reader, limits, &header));
   PLEAT_ASSIGN_OR_RETURN(const uint8_t flags, reader.Read<uint8_t>("flags"));
-  PLEAT_RETURN_IF_ERROR(CheckAppearanceFlags(flags, header.num_corners, header.num_faces));
-  header.appearance_flags = flags;
+  header.appearance_flags = flags & ~kHasOrigin;
+  PLEAT_RETURN_IF_ERROR(
+      CheckAppearanceFlags(header.appearance_flags, header.num_corners, header.num_faces));
   PLEAT_RETURN_IF_ERROR(ReadQuantization(&reader, &header));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_segments, reader.Read<uint32_t>("segments"));
   PLEAT_RETURN_IF_ERROR(reader.Require(num_segments, 2, "segments"));
@@ -172,6 +181,10 @@ absl::StatusOr<CompressedHeader> DecodeHeader(std::string_view payload, const Me
   }
   PLEAT_ASSIGN_OR_RETURN(header.name, ReadName(&reader, "name"));
   PLEAT_RETURN_IF_ERROR(ReadMaterialNames(&reader, num_materials, &header.materials));
+  if ((flags & kHasOrigin) != 0) {
+    PLEAT_RETURN_IF_ERROR(reader.ReadArray(std::span(header.origin_m.data(), size_t{3}), "origin"));
+    if (!IsOrigin(header.origin_m)) return absl::InvalidArgumentError("the origin is out of range");
+  }
   if (reader.remaining() != 0) return absl::DataLossError("the header is too long");
   return header;
 }

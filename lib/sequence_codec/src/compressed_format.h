@@ -36,6 +36,9 @@ struct CompressedHeader {
   uint32_t num_vertices = 0, num_faces = 0, num_corners = 0, num_frames = 0;
   FrameRate frame_rate;
   uint32_t num_texcoords = 0, appearance_flags = 0;
+  // What is added to every decoded position, for sequences far from the origin of their axes; zero
+  // for all others.
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
   MotionSteps steps;
   ResidualGrid grid;
   std::string name;

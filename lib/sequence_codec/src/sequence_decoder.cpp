@@ -161,7 +161,10 @@ struct SequenceDecoder::State {
           absl::StrCat("the frames from ", places[index].first_frame + group * kGroupFrames,
                        " on are not the ones that were encoded: their checksum does not agree"));
     }
-    for (const Eigen::Matrix3Xf& frame : frames) {
+    for (Eigen::Matrix3Xf& frame : frames) {
+      if (!header.origin_m.isZero(0)) {
+        frame = (frame.cast<double>().colwise() + header.origin_m).cast<float>();
+      }
       if (!frame.allFinite()) return absl::DataLossError("a decoded position is not finite");
     }
     loaded_group = group;

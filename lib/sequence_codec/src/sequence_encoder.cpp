@@ -133,8 +133,12 @@ struct SequenceEncoder::Shared {
 };
 
 SequenceEncoder::SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis,
-                                 bool keep_face_order, int num_threads)
-    : sequence_(sequence), analysis_(std::move(analysis)), num_threads_(num_threads) {
+                                 const Eigen::Vector3d& origin_m, bool keep_face_order,
+                                 int num_threads)
+    : sequence_(sequence),
+      analysis_(std::move(analysis)),
+      origin_m_(origin_m),
+      num_threads_(num_threads) {
   BinaryCoder coder = BinaryCoder::ForEncoding();
   const Faces faces =
       keep_face_order ? Faces{sequence.topology(), sequence.appearance()} : Reordered(sequence);
@@ -208,6 +212,7 @@ absl::StatusOr<std::string> SequenceEncoder::Encode(double step_m, const Residua
   CompressedHeader header = MakeHeader(sequence_, analysis_);
   header.steps = StepsFor(step_m, analysis_, sequence_.num_frames());
   header.grid = grid;
+  header.origin_m = origin_m_;
   ByteWriter writer;
   WriteFileKind(kCompressedKind, &writer);
   WriteSection(SectionKind::kHeader, EncodeHeader(header), &writer);

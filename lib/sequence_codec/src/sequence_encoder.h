@@ -15,8 +15,9 @@ namespace pleat {
 class SequenceEncoder {
  public:
   // Codes what does not depend on the rate. num_threads: 0 = one per core.
-  SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis, bool keep_face_order,
-                  int num_threads);
+  // origin_m: what a decoder adds to the positions of `sequence`.
+  SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis,
+                  const Eigen::Vector3d& origin_m, bool keep_face_order, int num_threads);
 
   // The whole file. step_m: of the fields, the one number that sets the rate; grid: of the residual
   // layer. Errors: see CompressSequence.
@@ -36,6 +37,7 @@ class SequenceEncoder {
 
   const MeshSequence& sequence_;
   const SequenceAnalysis analysis_;
+  const Eigen::Vector3d origin_m_;
   const int num_threads_;
   std::string topology_, appearance_;
   bool is_face_list_ = false;  // the topology is coded in the order of the file

@@ -8,6 +8,7 @@
 #include "draco/compression/point_cloud/point_cloud_kd_tree_decoder.h"
 #include "draco/compression/point_cloud/point_cloud_sequential_decoder.h"
 #include "draco_guard.h"
+#include "pleat/base/foreign_file.h"
 
 namespace pleat {
 namespace {
@@ -127,6 +128,9 @@ absl::Status CheckCounts(const DracoHeader& header, const MeshLimits& limits, By
 }  // namespace
 
 absl::StatusOr<DracoGeometry> DecodeDracoFile(std::string_view bytes, const MeshLimits& limits) {
+  if (const std::string other = DescribeForeignBytes(bytes); !other.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat("this is ", other));
+  }
   ByteReader reader(bytes);
   PLEAT_ASSIGN_OR_RETURN(const DracoHeader header, ReadDracoHeader(&reader));
   PLEAT_RETURN_IF_ERROR(CheckCounts(header, limits, &reader));

@@ -50,8 +50,15 @@ inline absl::StatusOr<DracoHeader> ReadDracoHeader(ByteReader* reader) {
   PLEAT_ASSIGN_OR_RETURN(header.flags, reader->Read<uint16_t>("Draco flags"));
   // Draco has written these versions of the bitstream since its release 1.1.
   const uint8_t minor = header.type == static_cast<uint8_t>(DracoType::kMesh) ? 2 : 3;
+  const bool is_older = header.major < 2 || (header.major == 2 && header.minor < minor);
+  if (is_older) {
+    return absl::DataLossError(absl::StrCat("Draco bitstream ", header.major, ".", header.minor,
+                                            " is too old, encode again with Draco 1.x"));
+  }
   if (header.major != 2 || header.minor != minor) {
-    return MalformedDraco(absl::StrCat("bitstream version ", header.major, ".", header.minor));
+    return absl::DataLossError(absl::StrCat("Draco bitstream ", header.major, ".", header.minor,
+                                            " is newer than 2.", minor,
+                                            ", the last that is known"));
   }
   return header;
 }

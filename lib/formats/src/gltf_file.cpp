@@ -1,0 +1,157 @@
+// Khronos, glTF 2.0 specification, sections 3.6.1 (buffers) and 4.4 (binary files).
+#include "gltf_file.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "pleat/base/bytes.h"
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
+
+namespace pleat {
+namespace {
+
+using nlohmann::json;
+
+constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr int kMaxDepth = 64;
+
+absl::Status Fault(const std::string& what) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("glTF: ", what, "; export as GLB to have all in one file"));
+}
+
+// %20 and the like.
+std::string PercentDecoded(std::string_view uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    std::string byte;
+    if (uri[i] == '%' && i + 2 < uri.size() &&
+        absl::HexStringToBytes(uri.substr(i + 1, 2), &byte)) {
+      text += byte;
+      i += 2;
+    } else {
+      text.push_back(uri[i]);
+    }
+  }
+  return text;
+}
+
+// Below the folder of the document, whatever the name says.
+bool IsInside(const std::filesystem::path& name) {
+  if (name.empty() || name.is_absolute()) return false;
+  for (const std::filesystem::path& part : name.lexically_normal()) {
+    if (part == "..") return false;
+  }
+  return true;
+}
+
+absl::StatusOr<std::string> ReadBuffer(const json& buffer, size_t index, const std::string& path,
+                                       const MeshLimits& limits) {
+  const auto uri = buffer.is_object() ? buffer.find("uri") : buffer.end();
+  if (!buffer.is_object() || uri == buffer.end() || !uri->is_string()) {
+    return Fault(absl::StrCat("buffer ", index, " names no file"));
+  }
+  const std::string text = uri->get<std::string>();
+  if (text.starts_with("data:")) {
+    const size_t comma = text.find(";base64,");
+    std::string bytes;
+    if (comma == std::string::npos || !absl::Base64Unescape(text.substr(comma + 8), &bytes)) {
+      return Fault(absl::StrCat("buffer ", index, ": its data URI is not base64"));
+    }
+    return bytes;
+  }
+  const std::filesystem::path name = PercentDecoded(text);
+  if (!IsInside(name)) {
+    return Fault(absl::StrCat("buffer ", index, " is '", EscapeControls(text),
+                              "', which is not beside the file"));
+  }
+  absl::StatusOr<std::string> bytes = ReadFile(
+      (std::filesystem::path(path).parent_path() / name).string(), limits.max_document_bytes);
+  if (absl::IsNotFound(bytes.status())) {
+    return Fault(absl::StrCat("its buffer '", EscapeControls(text), "' is not beside it"));
+  }
+  return bytes;
+}
+
+// One buffer instead of many: the views move with their bytes.
+absl::Status JoinBuffers(const std::string& path, const MeshLimits& limits, json* root,
+                         std::string* binary) {
+  std::vector<size_t> starts;
+  const json buffers = root->value("buffers", json::array());
+  if (!buffers.is_array()) return Fault("'buffers' is not a list");
+  for (const json& buffer : buffers) {
+    PLEAT_ASSIGN_OR_RETURN(const std::string bytes,
+                           ReadBuffer(buffer, starts.size(), path, limits));
+    starts.push_back(binary->size());
+    binary->append(bytes);
+    binary->resize((binary->size() + 3) / 4 * 4);
+    if (binary->size() > limits.max_document_bytes) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("glTF: the buffers have more than ", limits.max_document_bytes, " bytes"));
+    }
+  }
+  const auto views = root->find("bufferViews");
+  if (views != root->end() && views->is_array()) {
+    for (json& view : *views) {
+      if (!view.is_object()) return Fault("a buffer view is not an object");
+      const json buffer = view.value("buffer", json()), offset = view.value("byteOffset", json(0));
+      if (!buffer.is_number_integer() || buffer < 0 || buffer >= starts.size() ||
+          !offset.is_number_integer() || offset < 0 || offset > int64_t{1} << 40) {
+        return Fault("a buffer view is outside its buffer");
+      }
+      view["byteOffset"] = starts[buffer.get<size_t>()] + offset.get<size_t>();
+      view["buffer"] = 0;
+    }
+  }
+  (*root)["buffers"] = json::array({json::object({{"byteLength", binary->size()}})});
+  return absl::OkStatus();
+}
+
+void WriteChunk(uint32_t kind, std::string_view bytes, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(bytes.size()));
+  writer->Write(kind);
+  writer->WriteRaw(bytes);
+}
+
+}  // namespace
+
+bool IsGltfText(std::string_view bytes) {
+  const size_t begin = bytes.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  return begin != std::string_view::npos && bytes[begin] == '{' &&
+         bytes.find("\"asset\"") != std::string_view::npos &&
+         bytes.find("pleat.rig_file") == std::string_view::npos;
+}
+
+absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& path,
+                                     const MeshLimits& limits) {
+  // A callback that refuses depth keeps hostile nesting from filling the stack and the memory.
+  bool is_deep = false;
+  json root = json::parse(
+      text,
+      [&](int depth, json::parse_event_t, json&) {
+        is_deep |= depth > kMaxDepth;
+        return !is_deep;
+      },
+      false);
+  if (is_deep) return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
+  if (!root.is_object()) return Fault("the file is not a JSON object");
+  std::string binary;
+  PLEAT_RETURN_IF_ERROR(JoinBuffers(path, limits, &root, &binary));
+  std::string document = root.dump(-1, ' ', false, json::error_handler_t::replace);
+  document.resize((document.size() + 3) / 4 * 4, ' ');
+  ByteWriter writer;
+  writer.Write(kMagic);
+  writer.Write(uint32_t{2});
+  writer.Write(static_cast<uint32_t>(28 + document.size() + binary.size()));
+  WriteChunk(kJsonChunk, document, &writer);
+  WriteChunk(kBinaryChunk, binary, &writer);
+  return writer.Release();
+}
+
+}  // namespace pleat
