@@ -11,10 +11,28 @@ using testing::HasSubstr;
 
 constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
 
-absl::Status Sort(std::vector<std::string> paths, std::vector<std::string>* sorted = nullptr) {
-  const absl::Status status = SortFrameFiles(&paths);
-  if (sorted) *sorted = paths;
-  return status;
+absl::Status Sort(const std::vector<std::string>& paths,
+                  std::vector<std::string>* sorted = nullptr) {
+  const absl::StatusOr<FrameFiles> files = SortFrameFiles(paths);
+  if (sorted && files.ok()) *sorted = files->paths;
+  return files.status();
+}
+
+// "severity kind: text" of every note, and the names in their order.
+struct Sorted {
+  std::vector<std::string> paths;
+  std::string notes;
+};
+Sorted SortedWithNotes(const std::vector<std::string>& paths) {
+  const absl::StatusOr<FrameFiles> files = SortFrameFiles(paths);
+  EXPECT_THAT(files, IsOk());
+  if (!files.ok()) return {};
+  Sorted sorted{files->paths, ""};
+  for (const InputNote& note : files->notes) {
+    EXPECT_TRUE(IsRefusedWhenStrict(note)) << note.text;
+    sorted.notes += std::string(SeverityName(note.severity)) + " " + note.kind + ": " + note.text;
+  }
+  return sorted;
 }
 
 TEST(FrameFilesTest, NaturalOrder) {
@@ -34,17 +52,49 @@ TEST(FrameFilesTest, SortsWithoutZeroPadding) {
   EXPECT_THAT(sorted, ElementsAre("d/f8.obj", "d/f9.obj", "d/f10.obj", "d/f11.obj"));
 }
 
-TEST(FrameFilesTest, MissingNumberIsNamedWithItsNeighbors) {
-  EXPECT_THAT(Sort({"f_001.obj", "f_002.obj", "f_004.obj", "f_005.obj"}),
-              HasStatus(kInvalid, AllOf(HasSubstr("frame number 3 is missing"),
-                                        HasSubstr("f_002.obj"), HasSubstr("f_004.obj"))));
-  EXPECT_THAT(Sort({"f1.obj", "f3.obj"}), HasStatus(kInvalid, HasSubstr("number 2 is missing")));
+TEST(FrameFilesTest, MissingNumbersAreAWarningWithTheirNeighbors) {
+  const Sorted gaps = SortedWithNotes({"f_8.obj", "f_1.obj", "f_2.obj", "f_3.obj", "f_5.obj"});
+  EXPECT_THAT(gaps.paths, ElementsAre("f_1.obj", "f_2.obj", "f_3.obj", "f_5.obj", "f_8.obj"));
+  EXPECT_THAT(gaps.notes, AllOf(HasSubstr("warning numbers_missing"),
+                                HasSubstr("frame numbers 4, 6 to 7 are missing"),
+                                HasSubstr("the first between 'f_3.obj' and 'f_5.obj'")));
+  EXPECT_THAT(SortedWithNotes({"f1.obj", "f3.obj"}).notes,
+              HasSubstr("frame number 2 is missing between 'f1.obj' and 'f3.obj'"));
 }
 
 TEST(FrameFilesTest, ConstantStepIsASeries) {
-  EXPECT_THAT(Sort({"f0.obj", "f5.obj", "f10.obj", "f15.obj"}), IsOk());
-  EXPECT_THAT(Sort({"f0.obj", "f5.obj", "f15.obj"}),
-              HasStatus(kInvalid, HasSubstr("number 10 is")));
+  EXPECT_EQ(SortedWithNotes({"f0.obj", "f5.obj", "f10.obj", "f15.obj"}).notes, "");
+  EXPECT_THAT(SortedWithNotes({"f0.obj", "f5.obj", "f15.obj"}).notes, HasSubstr("number 10 is"));
+  EXPECT_THAT(SortedWithNotes({"f0.obj", "f5.obj", "f12.obj"}).notes,
+              HasSubstr("no frame numbers"));
+}
+
+TEST(FrameFilesTest, NegativeNumbersComeFirst) {
+  const Sorted with_underscore =
+      SortedWithNotes({"f_-1.obj", "f_-2.obj", "f_0.obj", "f_1.obj", "f_2.obj"});
+  EXPECT_THAT(with_underscore.paths,
+              ElementsAre("f_-2.obj", "f_-1.obj", "f_0.obj", "f_1.obj", "f_2.obj"));
+  EXPECT_THAT(with_underscore.notes, HasSubstr("note negative_numbers"));
+  EXPECT_THAT(SortedWithNotes({"f-001.obj", "f000.obj", "f-010.obj", "f001.obj"}).paths,
+              ElementsAre("f-010.obj", "f-001.obj", "f000.obj", "f001.obj"));
+  // A hyphen that only separates is no sign.
+  const Sorted separated =
+      SortedWithNotes({"walk-2.obj", "walk-10.obj", "walk-1.obj", "walk-3.obj", "walk-4.obj",
+                       "walk-5.obj", "walk-6.obj", "walk-7.obj", "walk-8.obj", "walk-9.obj"});
+  EXPECT_EQ(separated.paths[0], "walk-1.obj");
+  EXPECT_EQ(separated.notes, "");
+  EXPECT_EQ(SortedWithNotes({"2024-01-02_1.obj", "2024-01-02_2.obj"}).notes, "");
+}
+
+TEST(FrameFilesTest, TimeStampsAreTakenInTheirOrder) {
+  const Sorted even = SortedWithNotes({"m_1718181818190123.obj", "m_1718181818123456.obj",
+                                       "m_1718181818223501.obj", "m_1718181818156790.obj"});
+  EXPECT_EQ(even.paths[1], "m_1718181818156790.obj");
+  EXPECT_THAT(even.notes, AllOf(HasSubstr("note time_stamps"), testing::Not(HasSubstr("warning"))));
+  const Sorted dropped = SortedWithNotes({"m_1718181818123456.obj", "m_1718181818156790.obj",
+                                          "m_1718181818190123.obj", "m_1718181818256790.obj"});
+  EXPECT_THAT(dropped.notes, AllOf(HasSubstr("warning time_stamps_missing"),
+                                   HasSubstr("between 'm_1718181818190123.obj'")));
 }
 
 TEST(FrameFilesTest, DoubledNumberIsNamed) {
@@ -53,17 +103,33 @@ TEST(FrameFilesTest, DoubledNumberIsNamed) {
                                         HasSubstr("'f02.obj'"))));
 }
 
-TEST(FrameFilesTest, StrangerInASeriesIsNamed) {
-  EXPECT_THAT(Sort({"f1.obj", "f2.obj", "f3.obj", "template.obj"}),
-              HasStatus(kInvalid, HasSubstr("'template.obj' does not belong")));
+TEST(FrameFilesTest, AReferenceBesideASeriesIsLeftOutAndSaid) {
+  const Sorted sorted = SortedWithNotes({"f1.obj", "f2.obj", "f3.obj", "template.obj"});
+  EXPECT_THAT(sorted.paths, ElementsAre("f1.obj", "f2.obj", "f3.obj"));
+  EXPECT_THAT(sorted.notes, HasSubstr("note files_left_out: 'template.obj' is left out"));
+  EXPECT_THAT(SortedWithNotes({"f1.obj", "f2.obj", "f3.obj", "ref.ply", "T-pose.obj"}).notes,
+              HasSubstr("and 1 more files are left out"));
+  std::vector<std::string> many = {"ref2.obj"};
+  for (int t = 0; t < 30; ++t) many.push_back("f" + std::to_string(t) + ".obj");
+  EXPECT_THAT(SortedWithNotes(many).notes, HasSubstr("'ref2.obj' is left out"));
+}
+
+TEST(FrameFilesTest, FilesThatMayBeMeantAreRefused) {
+  EXPECT_THAT(Sort({"f1.obj", "f2.obj", "f3.obj", "g1.obj"}),
+              HasStatus(kInvalid, HasSubstr("'g1.obj' does not belong")));
+  EXPECT_THAT(Sort({"f1.obj", "f2.obj", "f3.obj", "f4.obj", "g1.obj", "g2.obj"}),
+              HasStatus(kInvalid, HasSubstr("'g1.obj' does not belong")));
+  EXPECT_THAT(Sort({"f1.obj", "f2.obj", "a.obj", "b.obj"}),
+              HasStatus(kInvalid, HasSubstr("does not belong")));
 }
 
 TEST(FrameFilesTest, OnlyTheNumberThatCountsIsChecked) {
   EXPECT_THAT(Sort({"take2/walk_1_v3.obj", "take2/walk_2_v3.obj", "take2/walk_3_v3.obj"}), IsOk());
-  EXPECT_THAT(Sort({"walk_1_v3.obj", "walk_2_v3.obj", "walk_4_v3.obj"}),
-              HasStatus(kInvalid, HasSubstr("number 3 is missing")));
-  EXPECT_THAT(Sort({"t1/mesh.obj", "t2/mesh.obj", "t4/mesh.obj"}),
-              HasStatus(kInvalid, HasSubstr("number 3 is missing")));
+  for (const auto& names :
+       std::vector<std::vector<std::string>>{{"walk_1_v3.obj", "walk_2_v3.obj", "walk_4_v3.obj"},
+                                             {"t1/mesh.obj", "t2/mesh.obj", "t4/mesh.obj"}}) {
+    EXPECT_THAT(SortedWithNotes(names).notes, HasSubstr("number 3 is missing"));
+  }
 }
 
 TEST(FrameFilesTest, NamesWithoutASeriesAreTakenAsTheySort) {

@@ -117,11 +117,19 @@ TEST_F(GlbContainerTest, AccessorsThatLeaveTheFileAreRefused) {
 TEST_F(GlbContainerTest, WhatIsNotSupportedIsSaid) {
   json sparse = root_;
   sparse["accessors"][0]["sparse"] = json::object();
-  EXPECT_THAT(Read(sparse), HasStatus(absl::StatusCode::kUnimplemented, HasSubstr("sparse")));
+  EXPECT_THAT(Read(sparse), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("sparse")));
   json other = root_;
   other["buffers"][0]["uri"] = "file.bin";
   EXPECT_THAT(Read(other),
-              HasStatus(absl::StatusCode::kUnimplemented, HasSubstr("no other files")));
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("no other files")));
+  for (const char* name : {"EXT_meshopt_compression", "KHR_draco_mesh_compression"}) {
+    json compressed = root_;
+    compressed["extensionsRequired"] = {"KHR_materials_unlit", name};
+    EXPECT_THAT(Read(compressed), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(name)));
+  }
+  json unlit = root_;
+  unlit["extensionsRequired"] = {"KHR_materials_unlit"};
+  EXPECT_THAT(Read(unlit), IsOk());
   json type = root_;
   type["accessors"][0]["type"] = "VEC2";
   EXPECT_THAT(Read(type), HasStatus(absl::StatusCode::kInvalidArgument,

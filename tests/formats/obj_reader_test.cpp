@@ -68,6 +68,107 @@ TEST(ObjReaderTest, LineEndsContinuationsAndForwardReferences) {
   EXPECT_EQ(mesh.positions(1, 2), 1);
 }
 
+// Whatever stands around the statements, the vertices and faces are these.
+void ExpectTwoTriangles(const std::string& text) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(text));
+  ASSERT_EQ(mesh.positions.cols(), 4) << text;
+  EXPECT_EQ(mesh.positions.col(0), Eigen::Vector3f(0, 0, 0)) << text;
+  EXPECT_EQ(mesh.positions.col(3), Eigen::Vector3f(0, 1, 0)) << text;
+  ASSERT_EQ(mesh.topology.num_faces(), 2) << text;
+  EXPECT_THAT(mesh.topology.face(0), ElementsAre(0, 1, 2)) << text;
+  EXPECT_THAT(mesh.topology.face(1), ElementsAre(0, 2, 3)) << text;
+}
+
+TEST(ObjReaderTest, NoLineIsLostToAByteOrderMarkABackslashOrAComment) {
+  const std::string faces = "f 1 2 3\nf 1 3 4\n";
+  ExpectTwoTriangles(absl::StrCat("\xef\xbb\xbf", kFour, faces));
+  for (const char* line : {"# C:\\meshes\\", "mtllib C:\\m\\", "o a\\", "g a \\", "usemtl m\\",
+                           "unknown 1 \\", "\\", "#\\", "s 1\\"}) {
+    ExpectTwoTriangles(absl::StrCat(line, "\n", kFour, line, "\n", faces));
+    ExpectTwoTriangles(absl::StrCat(line, "\r\n", kFour, line, "\r\n", faces));
+  }
+  // A comment at the end of a statement is not continued either; the statement itself is.
+  ExpectTwoTriangles(
+      "v 0 0 0 # a\\\nv 1 0 0#b\\\nv 1 1 0\nv 0 \\\n1 \\\n0\nf 1 2 3# c\\\nf 1 \\\n3 4\n");
+  ExpectTwoTriangles(
+      "v 0 0 0#\nv 1 0 0#origin\nv 1 1 0 #\nv 0 1 0\nvt 0#\nf 1 2/1/1#x\n f 1 3 4#\n");
+}
+
+TEST(ObjReaderTest, LinesMayEndInAnyWay) {
+  const std::string text = absl::StrCat("# a\n", kFour, "f 1 2 3\nf 1 3 4\n");
+  for (const char* end : {"\r", "\r\n", "\n\n", "\r\r", "\r\n\r"}) {
+    std::string other;
+    for (const char c : text) c == '\n' ? other.append(end) : other.append(1, c);
+    ExpectTwoTriangles(other);
+  }
+  std::string mixed = text;
+  mixed[mixed.find("\nv 1 0")] = '\r';
+  mixed[mixed.find("\nf 1 3")] = '\r';
+  ExpectTwoTriangles(mixed);
+}
+
+// Text of the note of that kind; empty when there is none.
+std::string NoteOf(const MeshFile& mesh, std::string_view kind) {
+  for (const InputNote& note : mesh.notes) {
+    if (note.kind == kind) return note.text;
+  }
+  return "";
+}
+
+TEST(ObjReaderTest, SmallFacesAreLeftOutCountedAndSaid) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile two,
+      Decode(absl::StrCat(kFour, "usemtl a\nf 1 2 3\nf 1/1 2\nusemtl b\nf 1 3 4\nf 2 3\n")));
+  ASSERT_EQ(two.topology.num_faces(), 2);
+  EXPECT_THAT(two.appearance.face_materials, ElementsAre(0, 1));
+  EXPECT_EQ(NoteOf(two, "faces_left_out"), "2 faces with 2 corners left out (the first in line 7)");
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mixed,
+                             Decode(absl::StrCat(kFour, "f\nf 1 2 3\nf 1\n")));
+  EXPECT_EQ(NoteOf(mixed, "faces_left_out"),
+            "2 faces with fewer than 3 corners left out (the first in line 5)");
+  // What is left out may still not name vertices that cannot be.
+  EXPECT_THAT(Decode(absl::StrCat(kFour, "f 1 2 3\nf 0 1\n")), HasStatus(kInvalid, testing::_));
+}
+
+TEST(ObjReaderTest, NormalsAndTextureCoordinatesNeverRefuseAFile) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile mesh,
+      Decode(
+          absl::StrCat(kFour, "vt 0,5 1\nvt 1 1\nf 1/1/0 2/2/0 3/3/-9\nf 1/0/ 3/-7/1 4/-1/8\n")));
+  EXPECT_THAT(mesh.appearance.corner_texcoords, ElementsAre(0, 1, -1, -1, -1, 1));
+  EXPECT_EQ(mesh.appearance.texcoords[0], Eigen::Vector2f::Zero());
+  EXPECT_THAT(NoteOf(mesh, "texcoords_missing"), HasSubstr("missing for 3 corners, ignored"));
+  EXPECT_THAT(NoteOf(mesh, "texcoords_unreadable"), HasSubstr("(line 5)"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile none, Decode(absl::StrCat(kFour, "f 1/1 2/2 3/3\n")));
+  EXPECT_TRUE(none.appearance.corner_texcoords.empty());
+}
+
+TEST(ObjReaderTest, WhatIsDroppedIsSaidOnce) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile mesh,
+      Decode("o a\nv 0 0 0 1 0 .5\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nvn 0 0 1\ng b\ns 1\nl 1 2\n"
+             "f 1 2 3\ns off\n"));
+  EXPECT_EQ(NoteOf(mesh, "not_kept"),
+            "not kept: vertex colors, normals (computed where they are needed), 2 groups and "
+            "objects, smoothing groups, 1 line or point");
+  EXPECT_EQ(mesh.notes.size(), 1u);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile plain, Decode(absl::StrCat(kFour, "s off\nf 1 2 3\n")));
+  EXPECT_TRUE(plain.notes.empty());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile curves,
+                             Decode(absl::StrCat(kFour, "f 1 2 3\ncstype bezier\ncurv 0 1 1 2\n")));
+  EXPECT_FALSE(NoteOf(curves, "surfaces_left_out").empty());
+}
+
+TEST(ObjReaderTest, NamesAreUtf8) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile mesh,
+      Decode(absl::StrCat("mtllib B\xe6r.mtl\n", kFour,
+                          "usemtl B\xe6r\nf 1 2 3\nusemtl B\xf8r\nf 1 3 4\n")));
+  EXPECT_EQ(mesh.appearance.material_library, "B\xc3\xa6r.mtl");
+  EXPECT_THAT(mesh.appearance.material_names, ElementsAre("B\xc3\xa6r", "B\xc3\xb8r"));
+  EXPECT_THAT(NoteOf(mesh, "names_not_utf8"), HasSubstr("3 names are not UTF-8"));
+}
+
 TEST(ObjReaderTest, FaultsComeWithFileAndLine) {
   const struct {
     const char* text;
@@ -76,12 +177,13 @@ TEST(ObjReaderTest, FaultsComeWithFileAndLine) {
       {"v 0 0\n", "m.obj:1: a vertex needs three numbers x y z, found the end of the line"},
       {"v 0 0 0\nv 1 2 3,5\n", "m.obj:2: a vertex needs three numbers x y z, found '3,5'"},
       {"v 0 0 1e50\n", "m.obj:1: a vertex needs"},
-      {"v 0 0 0\n\n# c\nf 1 1\n", "m.obj:4: a face needs at least 3 corners, found 2"},
+      {"v 0 0 0 v 1 0 0\n", "m.obj:1: a vertex has three numbers x y z, found 'v' after them"},
+      {"v 0 0 0\rv 1 x\r", "m.obj:2: a vertex needs three numbers x y z, found 'x'"},
+      {"v \x1b[31m 0 0\n", "found '\\x1b[31m'"},
       {"v 0 0 0\nf 1 2 x\n", "m.obj:2: a face needs vertex numbers, found 'x'"},
       {"v 0 0 0\nf 0 1 1\n", "m.obj:2: vertex numbers start at 1"},
       {"v 0 0 0\nf 1 1 1\nf 1 1 9\nv 0 0 0", "m.obj:3: the face names vertex 9 but the file has 2"},
       {"v 0 0 0\nf -1 -2 -1\n", "m.obj:2: vertex number -2 reaches back beyond the 1"},
-      {"v 0 0 0\nf 1/1 1/1 1/1\n", "m.obj:2: the face names texture coordinate 1"},
       {"v 0 0 0\nf 1/a 1 1\n", "m.obj:2: a face needs texture coordinate numbers, found 'a'"},
       {"v 0 0 0\nf 1.5 1 1\n", "m.obj:2: a face corner is"},
       {"v 0 0 0\nf 99999999999 1 1\n", "m.obj:2: a face needs vertex numbers"},
@@ -94,7 +196,8 @@ TEST(ObjReaderTest, FaultsComeWithFileAndLine) {
 
 TEST(ObjReaderTest, EmptyAndForeignFilesAreNamed) {
   EXPECT_THAT(Decode(""), HasStatus(kInvalid, HasSubstr("m.obj: the file is empty")));
-  EXPECT_THAT(Decode("<html>not a mesh</html>\n"), HasStatus(kInvalid, HasSubstr("0 vertices")));
+  EXPECT_THAT(Decode("<html>not a mesh</html>\n"), HasStatus(kInvalid, HasSubstr("HTML")));
+  EXPECT_THAT(Decode("# nothing\n"), HasStatus(kInvalid, HasSubstr("the mesh is empty")));
   EXPECT_THAT(Decode(kFour), HasStatus(kInvalid, HasSubstr("0 faces")));
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -101,6 +102,74 @@ TEST(PlyReaderTest, ReadsTexcoordsOfCorners) {
   EXPECT_EQ(mesh.appearance.texcoords[1], Eigen::Vector2f(1, 0));
 }
 
+constexpr char kSquare[] =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+
+std::string WithLineEnds(const char* end, std::string_view text = kSquare) {
+  std::string other;
+  for (const char c : text) c == '\n' ? other.append(end) : other.append(1, c);
+  return other;
+}
+
+TEST(PlyReaderTest, LineEndsAndByteOrderMarksDoNotMatter) {
+  for (const char* end : {"\n", "\r", "\r\n"}) {
+    for (const char* mark : {"", "\xef\xbb\xbf"}) {
+      PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(mark + WithLineEnds(end)));
+      EXPECT_EQ(mesh.positions.col(3), Eigen::Vector3f(0, 1, 0));
+      EXPECT_THAT(mesh.topology.face(1), ElementsAre(0, 2, 3));
+    }
+  }
+  // The body of a binary file begins right behind a bare CR, whatever its first byte is.
+  std::string binary =
+      WithLineEnds("\r",
+                   "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\n"
+                   "property float y\nproperty float z\nelement face 1\n"
+                   "property list uchar uchar vertex_indices\nend_header\n");
+  const float values[9] = {std::bit_cast<float>(0x3f80000au), 0, 0, 0, 1, 0, 0, 0, 1};
+  binary.append(reinterpret_cast<const char*>(values), sizeof(values));
+  binary.append("\3\0\1\2", 4);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(binary));
+  EXPECT_EQ(mesh.positions(0, 0), values[0]);
+  EXPECT_THAT(Decode(WithLineEnds("\r").replace(WithLineEnds("\r").find("1 1 0"), 5, "1 1 x")),
+              HasStatus(kInvalid, HasSubstr("line 12")));
+}
+
+TEST(PlyReaderTest, SmallFacesAndWhatIsDroppedAreSaid) {
+  std::string text = kSquare;
+  text.replace(text.find("face 2"), 6, "face 4");
+  text += "2 0 1\n0\n";
+  text.replace(text.find("property float z\n"), 17, "property float z\nproperty uchar red\n");
+  for (const char* vertex : {"0 0 0\n1", "1 0 0\n1", "1 1 0\n0", "0 1 0\n3"}) {
+    text.insert(text.find(vertex) + 5, " 9");
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(text));
+  EXPECT_EQ(mesh.topology.num_faces(), 2);
+  ASSERT_EQ(mesh.notes.size(), 2u);
+  EXPECT_EQ(mesh.notes[0].text, "2 faces with fewer than 3 corners left out");
+  EXPECT_EQ(mesh.notes[1].text, "not kept: red");
+}
+
+TEST(PlyReaderTest, TriangleStripsBecomeTrianglesThatFaceOneWay) {
+  std::string text = kSquare;
+  text.replace(text.find("element face 2"), 14, "element tristrips 1");
+  text.erase(text.find("3 0 1 2\n"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(text + "4 0 1 3 2\n"));
+  ASSERT_EQ(mesh.topology.num_faces(), 2);
+  EXPECT_THAT(mesh.topology.face(0), ElementsAre(0, 1, 3));
+  EXPECT_THAT(mesh.topology.face(1), ElementsAre(3, 1, 2));
+  // -1 begins a new strip; repeated vertices make triangles without area, which are none.
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile two, Decode(text + "9 0 1 2 -1 0 2 2 3 1\n"));
+  ASSERT_EQ(two.topology.num_faces(), 2);
+  EXPECT_THAT(two.topology.face(0), ElementsAre(0, 1, 2));
+  EXPECT_THAT(two.topology.face(1), ElementsAre(2, 3, 1));
+  EXPECT_THAT(Decode(text + "4 0 1 3 9\n"), HasStatus(kInvalid, HasSubstr("vertex 9")));
+  EXPECT_THAT(Decode(text + "4 0 1 3 -2\n"), HasStatus(kInvalid, HasSubstr("vertex -2")));
+  EXPECT_THAT(Decode(text + "4 0 1 3 2\n", {.max_faces = 1}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit of 1")));
+}
+
 TEST(PlyReaderTest, FaultsAreNamed) {
   const auto replaced = [](const std::string& from, const std::string& to) {
     std::string text = kAscii;
@@ -121,7 +190,13 @@ TEST(PlyReaderTest, FaultsAreNamed) {
               HasStatus(kInvalid, HasSubstr("m.ply: line 18: cannot read vertex 2, y")));
   EXPECT_THAT(Decode(replaced("4 0 1 2 3", "4 0 1 2 4")),
               HasStatus(kInvalid, HasSubstr("face 1 names vertex 4")));
-  EXPECT_THAT(Decode(replaced("4 0 1 2 3", "2 0 1")), HasStatus(kInvalid, HasSubstr("at least 3")));
+  EXPECT_THAT(Decode(replaced("253 1 1 -2e1", "253 1 1 -2e1 7")),
+              HasStatus(kInvalid, HasSubstr("line 18: 5 values where the header declares 4")));
+  EXPECT_THAT(Decode(replaced("253 1 1 -2e1", "253 1 1")),
+              HasStatus(kInvalid, HasSubstr("line 18: 3 values where the header declares 4")));
+  EXPECT_THAT(
+      Decode(replaced("3 0 1 2 0.5", "3 0 1 2 0.5 1 0")),
+      HasStatus(kInvalid, HasSubstr("line 21: more values than the header declares for face 0")));
   EXPECT_THAT(Decode(replaced("4 0 1 2 3", "4 0 1 -2 3")),
               HasStatus(kInvalid, HasSubstr("face 1")));
   EXPECT_THAT(Decode(replaced("element vertex 4", "element vertex -4")),
