@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_replace.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/mesh/frame_jumps.h"
 #include "pleat/skeleton/human_template.h"
 #include "support/status_matchers.h"
 #include "trained_performer.h"
@@ -26,6 +27,24 @@ TEST(TrainCharacterTest, DetailTakesMostOfWhatSkinningLeaves) {
   EXPECT_LE(record.reconstruction.p95_percent, record.reconstruction.max_percent);
   EXPECT_EQ(record.num_frames, 60);
   EXPECT_EQ(record.learner, "gp");
+}
+
+TEST(TrainCharacterTest, LivelyMotionHasNoJumpsAndClipsThatJumpAreRefusedUnlessAllowed) {
+  const MeshSequence& clip = SmallPerformer().sequence;
+  EXPECT_TRUE(FindFrameJumps(clip).empty());
+  std::vector<Eigen::Matrix3Xf> frames;
+  for (int t = 0; t < clip.num_frames(); ++t) frames.push_back(clip.frame(t));
+  frames[7] *= 100;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence jumping,
+                             MeshSequence::Create(clip.topology(), frames, {.name = "jumping"}));
+  EXPECT_THAT(TrainCharacter({clip, jumping}, FastTrainOptions()),
+              HasStatus(absl::StatusCode::kFailedPrecondition,
+                        testing::AllOf(HasSubstr("'jumping'"), HasSubstr("frame 7 is 100 times"))));
+  TrainOptions allowing = FastTrainOptions();
+  allowing.jumps = JumpPolicy::kAllow;
+  const Progress stop_when_rigging(nullptr, [] { return true; });
+  EXPECT_THAT(TrainCharacter({clip, jumping}, allowing, {}, nullptr, stop_when_rigging),
+              HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 
 TEST(TrainCharacterTest, ReportsWorstFramesAndJoints) {

@@ -4,6 +4,8 @@
 
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "sequence_codec/compressed_clip.h"
+#include "support/hostile_bytes.h"
+#include "support/mesh_shapes.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -227,6 +229,48 @@ TEST(CompressSequenceTest, CanBeCancelled) {
   const Progress cancelled({}, [] { return true; });
   EXPECT_THAT(CompressSequence(sequence, {}, nullptr, cancelled),
               HasStatus(absl::StatusCode::kCancelled, testing::_));
+}
+
+MeshSequence MovedBy(const MeshSequence& sequence, const Eigen::Vector3f& offset) {
+  std::vector<Eigen::Matrix3Xf> frames;
+  for (int t = 0; t < sequence.num_frames(); ++t) {
+    frames.emplace_back(sequence.frame(t).colwise() + offset);
+  }
+  return MeshSequence::Create(sequence.topology(), frames, {.name = sequence.name()}).value();
+}
+
+TEST(CompressSequenceTest, PromisesHoldFarFromTheOrigin) {
+  const MeshSequence near = MakeWavingTorus(24, 12, 40);
+  for (const float distance : {1e3f, 3e4f, 1e6f}) {
+    const MeshSequence far = MovedBy(near, {distance, 0, -distance});
+    for (const double kg_percent : {1.0, .01}) {
+      CompressSummary summary;
+      PLEAT_ASSERT_OK_AND_ASSIGN(
+          const std::string bytes,
+          CompressSequence(far, {.goal = CompressionGoal::kKg, .kg_percent = kg_percent},
+                           &summary));
+      EXPECT_LE(KgPercent(far, Decoded(bytes)), kg_percent) << distance;
+    }
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const std::string exact,
+        CompressSequence(far, {.goal = CompressionGoal::kGrid, .grid_bits = 16}));
+    EXPECT_LT(LargestErrorMm(far, Decoded(exact)), 1e3 * 2e-7 * distance + .1) << distance;
+  }
+}
+
+TEST(CompressSequenceTest, AStillShapeFarAwayHasAnOriginInItsFile) {
+  const MeshShape box = MakeBox({.25, .5, 1});
+  const Eigen::Matrix3Xf frame =
+      box.positions.cast<float>().colwise() + Eigen::Vector3f(1 << 20, 1 << 19, .375f);
+  const MeshSequence still = MeshSequence::Create(box.topology, {frame, frame, frame}).value();
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const std::string bytes,
+      CompressSequence(still, {.goal = CompressionGoal::kKg, .kg_percent = .01}));
+  EXPECT_LE(KgPercent(still, Decoded(bytes)), .01);
+  ForEachCorruption(bytes, [](const std::string& damaged) {
+    absl::StatusOr<SequenceDecoder> decoder = SequenceDecoder::Open(damaged);
+    if (decoder.ok()) (void)decoder->DecodeAll().ok();
+  });
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ const ResidualGrid kNoResiduals;
 SequenceEncoder MakeEncoder(const MeshSequence& sequence, bool keep_face_order = true,
                             int num_threads = 1) {
   return SequenceEncoder(sequence, AnalyzeSequence(sequence, num_threads, {}).value(),
-                         keep_face_order, num_threads);
+                         Eigen::Vector3d::Zero(), keep_face_order, num_threads);
 }
 
 MeshSequence Decode(const std::string& bytes) {

@@ -139,9 +139,9 @@ TEST(DracoDecodeTest, HeadersOfOtherVersionsMethodsAndFlagsAreNamed) {
   EXPECT_THAT(status_with(0, 'd'),
               HasStatus(absl::StatusCode::kDataLoss, "malformed Draco frame: no Draco header"));
   EXPECT_THAT(status_with(5, 3),
-              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("bitstream version 3.3")));
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("bitstream 3.3 is newer")));
   EXPECT_THAT(status_with(6, 9),
-              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("bitstream version 2.9")));
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("bitstream 2.9 is newer")));
   EXPECT_THAT(status_with(8, 1),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("not a sequential point cloud")));
   EXPECT_THAT(status_with(10, '\x80'),

@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
 #include "client/run_pleat.h"
 #include "client/test_sequence.h"
@@ -78,6 +79,39 @@ TEST_F(InputTest, WhatIsMissingIsNotFoundAndWhatIsDamagedIsBad) {
   const absl::Status damaged = ReadInput(session_, path_).status();
   EXPECT_EQ(ExitCodeOf(damaged), ExitCode::kBadInput);
   EXPECT_THAT(std::string(damaged.message()), HasSubstr("moving.pseq"));
+}
+
+// Three frames of which the second is ten times as large, and a reference beside them.
+class NotedInputTest : public InputTest {
+ protected:
+  void SetUp() override {
+    InputTest::SetUp();
+    for (const auto& [name, size] :
+         {std::pair("f_1", 1), {"f_2", 10}, {"f_3", 1}, {"f_reference", 1}}) {
+      ASSERT_THAT(WriteFile(Folder() + "/" + name + ".obj",
+                            absl::StrCat("v 0 0 0\nv ", size, " 0 0\nv 0 ", size, " 0\nf 1 2 3\n")),
+                  IsOk());
+    }
+  }
+  std::string Folder() const { return folder_.File("frames"); }
+};
+
+TEST_F(NotedInputTest, NotesAndJumpsAreSaidEvenWithoutProgress) {
+  session_.quiet = true;
+  std::vector<InputNote> notes;
+  ASSERT_THAT(ReadInput(session_, Folder(), "", &notes), IsOk());
+  EXPECT_THAT(err_.str(), HasSubstr("note: 'f_reference.obj' is left out"));
+  EXPECT_THAT(err_.str(), HasSubstr("warning: frame 1 (f_2.obj) is 10 times as large"));
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[1].frame, 1);
+}
+
+TEST_F(NotedInputTest, StrictRefusesThem) {
+  session_.strict = true;
+  const absl::Status status = ReadInput(session_, Folder()).status();
+  EXPECT_EQ(ExitCodeOf(status), ExitCode::kRefused);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("the 2 lines above"));
+  EXPECT_THAT(ReadInput(session_, path_), IsOk());
 }
 
 }  // namespace

@@ -83,5 +83,29 @@ TEST_F(InspectVerbTest, AFileThatIsCutOffIsBadInput) {
   }
 }
 
+TEST_F(InspectVerbTest, WhatTheReaderNoticedIsInTheJsonAndOnStderr) {
+  ASSERT_THAT(WriteFile(folder_.File("a.obj"),
+                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\nusemtl B\xe6r\n"),
+              IsOk());
+  const Outcome outcome = RunPleat({"inspect", folder_.File("a.obj"), "--json", "-q"});
+  ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
+  const auto notes = nlohmann::json::parse(outcome.out)["input_notes"];
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[0]["severity"], "note");
+  EXPECT_EQ(notes[0]["kind"], "faces_left_out");
+  EXPECT_EQ(notes[0]["text"], "a.obj: 1 face with 2 corners left out (line 5)");
+  EXPECT_THAT(outcome.err, HasSubstr("note: a.obj: 1 face with 2 corners left out"));
+}
+
+TEST_F(InspectVerbTest, FilesCannotColorTheTerminal) {
+  const std::string path = folder_.File("\x1b[31m.obj");
+  ASSERT_THAT(WriteFile(path, "v \x1b[2J 0 0\n"), IsOk());
+  const Outcome outcome = RunPleat({"inspect", path});
+  EXPECT_EQ(outcome.code, ExitCode::kBadInput);
+  EXPECT_THAT(outcome.err, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(outcome.err, HasSubstr("\\x1b[2J"));
+  EXPECT_THAT(outcome.err, HasSubstr("\\x1b[31m.obj:1: "));
+}
+
 }  // namespace
 }  // namespace pleat

@@ -100,5 +100,20 @@ TEST_F(TrainVerbTest, ClipsOfAnotherConnectivityAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(model_));
 }
 
+TEST_F(TrainVerbTest, ClipsThatJumpAreRefusedHereAndInAStoreUnlessAllowed) {
+  std::vector<Eigen::Matrix3Xf> frames;
+  for (int t = 0; t < files_.clip().num_frames(); ++t) frames.push_back(files_.clip().frame(t));
+  frames[4] *= 10;
+  ASSERT_THAT(WriteSequenceFile(files_.sequence_path(),
+                                MeshSequence::Create(files_.clip().topology(), frames).value()),
+              IsOk());
+  for (const Outcome& refused : {TrainHere({"-o", model_}), files_.TrainInStore({"-o", model_})}) {
+    EXPECT_EQ(refused.code, ExitCode::kRefused);
+    EXPECT_THAT(refused.err, HasSubstr("warning: frame 4 is 10 times as large"));
+    EXPECT_THAT(refused.err, HasSubstr("--allow-jumps"));
+  }
+  EXPECT_NE(TrainHere({"-o", model_, "--allow-jumps"}).code, ExitCode::kRefused);
+}
+
 }  // namespace
 }  // namespace pleat
