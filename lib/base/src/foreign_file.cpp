@@ -66,7 +66,7 @@ std::string DescribeForeignBytes(std::string_view bytes) {
 absl::Status RefuseForeignBytes(std::string_view bytes, std::string_view file) {
   const std::string description = DescribeForeignBytes(bytes);
   if (description.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat(file, ": this is ", description));
+  return absl::InvalidArgumentError(absl::StrCat(std::string(file), ": this is ", description));
 }
 
 absl::Status RefuseForeignFile(const std::string& path) {

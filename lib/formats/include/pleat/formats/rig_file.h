@@ -38,8 +38,8 @@ absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& l
 // the mesh primitives that use the skin. The errors are those of DecodeRigJson, also for buffers
 // outside the file, for sparse accessors and for compressed meshes.
 absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits = {});
-// Reads a GLB, glTF text (.gltf) with its buffers beside it, or JSON. What the bytes are counts more
-// than the ending. The errors name the file.
+// Reads a GLB, glTF text (.gltf) with its buffers beside it, or JSON. What the bytes are counts
+// more than the ending. The errors name the file.
 absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits = {});
 
 // Returns the rig for the clip's own vertices. What EncodeRig wrote comes back as it was. The

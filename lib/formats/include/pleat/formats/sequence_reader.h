@@ -37,8 +37,8 @@ struct ReadSequenceOptions {
 //
 // Topology and appearance are those of the first frame. The errors name the file and the fault: the
 // first frame whose connectivity differs and its first face that differs, numbers that are there
-// twice, the frame and vertex of a NaN, wrong counts, empty files, unknown extensions. What does not
-// matter is left out or decided, and `report` (may be null) says so (docs/formats/mesh.md).
+// twice, the frame and vertex of a NaN, wrong counts, empty files, unknown extensions. What does
+// not matter is left out or decided, and `report` (may be null) says so (docs/formats/mesh.md).
 absl::StatusOr<MeshSequence> ReadSequence(const std::string& input,
                                           const ReadSequenceOptions& options = {},
                                           const Progress& progress = {},
