@@ -77,8 +77,8 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& sess
   }
   if (!status.ok()) {
     // Messages quote files and their names, which may hold anything.
-    *session.err << "pleat " << session.verb << ": " << EscapeControls(status.message(), true)
-                 << "\n";
+    *session.err << "pleat " << session.verb << ": "
+                 << EscapeControls(std::string(status.message()), true) << "\n";
   }
   session.out->flush();
   return ExitCodeOf(status);

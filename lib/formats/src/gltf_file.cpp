@@ -1,6 +1,7 @@
 // Khronos, glTF 2.0 specification, sections 3.6.1 (buffers) and 4.4 (binary files).
 #include "gltf_file.h"
 
+#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -30,10 +31,11 @@ absl::Status Fault(const std::string& what) {
 std::string PercentDecoded(std::string_view uri) {
   std::string text;
   for (size_t i = 0; i < uri.size(); ++i) {
-    std::string byte;
-    if (uri[i] == '%' && i + 2 < uri.size() &&
-        absl::HexStringToBytes(uri.substr(i + 1, 2), &byte)) {
-      text += byte;
+    const std::string_view digits = uri[i] == '%' ? uri.substr(i + 1, 2) : "";
+    uint8_t byte = 0;
+    const char* end = digits.data() + digits.size();
+    if (digits.size() == 2 && std::from_chars(digits.data(), end, byte, 16).ptr == end) {
+      text.push_back(static_cast<char>(byte));
       i += 2;
     } else {
       text.push_back(uri[i]);

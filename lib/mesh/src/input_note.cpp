@@ -50,8 +50,9 @@ std::vector<InputNote> FrameNotes::Merge(const std::vector<std::string>& frame_n
     InputNote note = kind.first;
     note.frame = kind.frames[0];
     const bool is_series = frame_names.size() > 1;
-    note.text =
-        absl::StrCat(is_series ? FrameLabel(frame_names, kind.frames[0]) : input, ": ", note.text);
+    const std::string place =
+        is_series ? FrameLabel(frame_names, kind.frames[0]) : std::string(input);
+    note.text = absl::StrCat(place, ": ", note.text);
     if (is_series && kind.frames.size() == frame_names.size()) {
       absl::StrAppend(&note.text, "; alike in all ", kind.frames.size(), " frames");
     } else if (is_series && kind.frames.size() > 1) {
