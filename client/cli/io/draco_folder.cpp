@@ -86,8 +86,11 @@ absl::StatusOr<DracoFolder> ParseHeader(const std::string& text, const std::stri
     header.box.range_m = box.at("range_m");
     header.box.bits = box.at("bits");
     header.vertex_order = json.at("vertex_order").get<std::vector<int32_t>>();
-  } catch (const nlohmann::json::exception& error) {
-    return absl::InvalidArgumentError(absl::StrCat(path, ": ", error.what()));
+  } catch (const nlohmann::json::exception&) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path,
+        ": not what 'pleat pose' writes: it is no JSON, or a field is missing or of another "
+        "kind"));
   }
   if (folder.num_frames < 1 || folder.num_frames > kMaxFrames) {
     return absl::InvalidArgumentError(

@@ -246,10 +246,16 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
         "the motion file has ", text.size(), " bytes, the limit is ", limits.max_document_bytes));
   }
   json root;
-  try {  // the parser gives line and column only in its exception
+  try {  // the parser says where it stopped only in its exception
     root = json::parse(text.begin(), text.end());
-  } catch (const json::exception& fault) {
-    return Fault(absl::StrCat("the motion file is not JSON: ", fault.what()));
+  } catch (const json::parse_error& fault) {
+    const std::string_view before = text.substr(0, std::max<size_t>(fault.byte, 1) - 1);
+    const size_t line_begin = before.rfind('\n') + 1;  // 0 when there is no line break
+    return Fault(absl::StrCat("the motion file is not JSON: it cannot be read from line ",
+                              1 + std::ranges::count(before, '\n'), ", column ",
+                              1 + before.size() - line_begin, " on"));
+  } catch (const json::exception&) {
+    return Fault("the motion file is not JSON");
   }
   return MotionParser(root, skeleton, limits).Parse();
 }

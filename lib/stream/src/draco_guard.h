@@ -128,8 +128,8 @@ absl::Status RunDracoDecoder(std::string_view bytes, AttributeCheck check, Geome
     if (!status.ok()) return MalformedDraco(status.error_msg_string());
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("a Draco frame needs more memory than it is allowed");
-  } catch (const std::exception& error) {  // std::length_error
-    return MalformedDraco(error.what());
+  } catch (const std::exception&) {  // std::length_error
+    return MalformedDraco("it declares more than memory can hold");
   }
   return absl::OkStatus();
 }
