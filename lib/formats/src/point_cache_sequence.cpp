@@ -49,7 +49,7 @@ absl::StatusOr<std::optional<FoundMesh>> TryNamedMesh(const std::string& path,
                        mesh.status());
   }
   if (mesh->positions.cols() == num_vertices) {
-    return std::optional<FoundMesh>({path, *std::move(mesh)});
+    return std::optional<FoundMesh>(FoundMesh{path, *std::move(mesh)});
   }
   return absl::InvalidArgumentError(absl::StrCat("'", cache_path.string(), "' moves ", num_vertices,
                                                  " vertices but its mesh '", path, "' has ",

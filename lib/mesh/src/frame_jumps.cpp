@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <span>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -107,7 +105,7 @@ class JumpFinder {
   }
 
   void GroupFrames() {
-    groups_.push_back({{0}});
+    groups_.push_back(Group{std::vector<int>{0}});
     size_t current = 0;
     bool was_out = false;
     for (int t = 1; t < sequence_.num_frames(); ++t) {

@@ -15,15 +15,15 @@ enum class NoteSeverity {
 
 struct InputNote {
   NoteSeverity severity = NoteSeverity::kNote;
-  std::string kind;  // of a fixed list, for programs ("faces_left_out"); one note for each kind
-  std::string text;  // for people: what, where, why and what to do
+  std::string kind{};  // of a fixed list, for programs ("faces_left_out"); one note for each kind
+  std::string text{};  // for people: what, where, why and what to do
   std::optional<int> frame{};        // the first frame that it is about
   bool refused_when_strict = false;  // as every warning is
 };
 
 // The notes of one input and the names of its frames.
 struct InputReport {
-  std::vector<InputNote> notes;
+  std::vector<InputNote> notes{};
   std::vector<std::string> frame_names{};  // file names, UTF-8; empty when frames have none
 };
 
