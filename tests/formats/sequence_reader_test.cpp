@@ -217,6 +217,8 @@ TEST_F(SequenceReaderTest, UnknownInputListsWhatIsKnown) {
   EXPECT_THAT(Read(""), HasStatus(absl::StatusCode::kNotFound,
                                   AllOf(HasSubstr(".obj, .ply"), HasSubstr("'.fbx'"))));
   EXPECT_THAT(Read("*.fbx"), HasStatus(kInvalid, HasSubstr("unknown extension")));
+  Write("a.gltf", "{}");
+  EXPECT_THAT(Read("a.gltf"), HasStatus(kInvalid, HasSubstr("as a rig only")));
   EXPECT_THAT(Read("absent"), HasStatus(absl::StatusCode::kNotFound, HasSubstr("absent")));
 }
 

@@ -42,6 +42,11 @@ absl::StatusOr<MeshSequence> ReadPleatSequence(const std::string& path,
 
 absl::Status UnknownExtension(const std::string& path) {
   PLEAT_RETURN_IF_ERROR(RefuseForeignFile(path));
+  if (LowerExtension(path) == ".gltf") {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "'", path,
+        "' is a glTF file, which is read as a rig only; export frames as OBJ, PLY or .pc2"));
+  }
   return absl::InvalidArgumentError(absl::StrCat(
       "'", path, "' has the unknown extension '", fs::path(path).extension().string(),
       "'; known are ", kKnownExtensions, ", a folder of .obj, .ply or .drc, or a pattern (*, ?)"));
