@@ -108,7 +108,7 @@ TEST(FrameFilesTest, AReferenceBesideASeriesIsLeftOutAndSaid) {
   EXPECT_THAT(sorted.paths, ElementsAre("f1.obj", "f2.obj", "f3.obj"));
   EXPECT_THAT(sorted.notes, HasSubstr("note files_left_out: 'template.obj' is left out"));
   EXPECT_THAT(SortedWithNotes({"f1.obj", "f2.obj", "f3.obj", "ref.ply", "T-pose.obj"}).notes,
-              HasSubstr("and 1 more files are left out"));
+              HasSubstr("and 1 other file are left out"));
   std::vector<std::string> many = {"ref2.obj"};
   for (int t = 0; t < 30; ++t) many.push_back("f" + std::to_string(t) + ".obj");
   EXPECT_THAT(SortedWithNotes(many).notes, HasSubstr("'ref2.obj' is left out"));

@@ -91,7 +91,7 @@ TEST(ObjReaderTest, NoLineIsLostToAByteOrderMarkABackslashOrAComment) {
   ExpectTwoTriangles(
       "v 0 0 0 # a\\\nv 1 0 0#b\\\nv 1 1 0\nv 0 \\\n1 \\\n0\nf 1 2 3# c\\\nf 1 \\\n3 4\n");
   ExpectTwoTriangles(
-      "v 0 0 0#\nv 1 0 0#origin\nv 1 1 0 #\nv 0 1 0\nvt 0#\nf 1 2/1/1#x\n f 1 3 4#\n");
+      "v 0 0 0#\nv 1 0 0#origin\nv 1 1 0 #\nv 0 1 0\nvt 0#\nf 1 2 3/1/1#x\n f 1 3 4#\n");
 }
 
 TEST(ObjReaderTest, LinesMayEndInAnyWay) {

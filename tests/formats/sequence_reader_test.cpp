@@ -300,7 +300,8 @@ TEST_F(SequenceReaderTest, TimesOfAPointCacheAreNamed) {
   EXPECT_EQ(notes(0, 1), "");
   EXPECT_THAT(notes(10, .5f), AllOf(HasSubstr("note times_ignored"), HasSubstr("start 10"),
                                     HasSubstr("0.5 frames per sample"), HasSubstr("--fps")));
-  for (const auto& [start, rate] : {std::pair(0.f, 0.f), {kNan, 1.f}, {0.f, kNan}, {0.f, -1.f}}) {
+  for (const auto& [start, rate] :
+       std::vector<std::pair<float, float>>{{0, 0}, {kNan, 1}, {0, kNan}, {0, -1}}) {
     EXPECT_THAT(notes(start, rate), HasSubstr("warning times_invalid")) << start << " " << rate;
   }
 }

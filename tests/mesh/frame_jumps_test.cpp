@@ -38,15 +38,19 @@ MeshSequence Sequence(const MeshShape& shape, Frames frames) {
   return MeshSequence::Create(shape.topology, std::move(frames), {.name = "clip"}).value();
 }
 
+// Exchanges the positions of that share of the vertices, which lie all over the mesh.
 Eigen::Matrix3Xf Shuffled(const Eigen::Matrix3Xf& frame, double share, uint64_t seed) {
-  std::vector<int> order(static_cast<size_t>(frame.cols()));
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> chosen(static_cast<size_t>(frame.cols()));
+  std::iota(chosen.begin(), chosen.end(), 0);
   Random random(seed);
-  const int count = static_cast<int>(share * static_cast<double>(order.size()));
-  for (int i = count - 1; i > 0; --i) std::swap(order[i], order[random.UniformInt(i + 1)]);
+  for (int i = static_cast<int>(chosen.size()) - 1; i > 0; --i) {
+    std::swap(chosen[i], chosen[random.UniformInt(i + 1)]);
+  }
+  chosen.resize(static_cast<size_t>(share * static_cast<double>(chosen.size())));
   Eigen::Matrix3Xf result = frame;
-  for (size_t v = 0; v < order.size(); ++v)
-    result.col(static_cast<Eigen::Index>(v)) = frame.col(order[v]);
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    result.col(chosen[i]) = frame.col(chosen[(i + 1) % chosen.size()]);
+  }
   return result;
 }
 
@@ -121,7 +125,7 @@ TEST_F(FrameJumpsTest, AShuffledCubeIsFoundBetweenFramesThatAreAlike) {
     frames[4] = Shuffled(frames[4], 1, seed);
     const std::vector<FrameJump> jumps = FindFrameJumps(Sequence(box, frames));
     const std::vector<float> lengths = EdgeLengths(SampleEdges(box.topology, 100), frames[4]);
-    const bool has_moved = std::ranges::count_if(lengths, [](float x) { return x > 1.1f; }) > 2;
+    const bool has_moved = std::ranges::count_if(lengths, [](float x) { return x > 1.1f; }) > 1;
     EXPECT_EQ(jumps.size(), has_moved ? 1u : 0u) << seed;
     if (!jumps.empty()) EXPECT_THAT(jumps[0].frames, ElementsAre(4));
     num_found += !jumps.empty();

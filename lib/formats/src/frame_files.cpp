@@ -58,14 +58,15 @@ absl::Status LeaveOutStrangers(const SeriesMap& series, const std::vector<NamePa
                      " beside it; move it away or choose the frames with a pattern such as "
                      "\"folder/name_*\""));
   }
+  const size_t num_others = strangers.size() - 1;
+  const std::string others = num_others == 0   ? ""
+                             : num_others == 1 ? " and 1 other file"
+                                               : absl::StrCat(" and ", num_others, " other files");
   notes->push_back(AboutTheSeries(
-      "files_left_out",
-      absl::StrCat(first,
-                   strangers.size() == 1
-                       ? " is left out: it does not belong to "
-                       : absl::StrCat(" and ", strangers.size() - 1,
-                                      " more files are left out: they do not belong to "),
-                   Describe(frames))));
+      "files_left_out", absl::StrCat(first, others,
+                                     num_others == 0 ? " is left out: it does not belong to "
+                                                     : " are left out: they do not belong to ",
+                                     Describe(frames))));
   return absl::OkStatus();
 }
 

@@ -96,34 +96,38 @@ class JumpFinder {
            Exceeds(change.share_extreme, kLargest.share_extreme, usual_.share_extreme);
   }
 
-  // A frame between two that are alike: small meshes show no large changes when they are shuffled.
-  bool IsOutAndBack(int t) const {
-    if (t == 0 || t + 1 >= sequence_.num_frames()) return false;
+  // How much frame t differs from both frames beside it, when those are alike; else 0. Small meshes
+  // show no large changes when they are shuffled.
+  double OutAndBack(int t) const {
+    if (t == 0 || t + 1 >= sequence_.num_frames()) return 0;
     const double least = std::min(changes_[t - 1].share_moderate, changes_[t].share_moderate);
     return Exceeds(least, kModerateOutAndBack, usual_.share_moderate) &&
-           Compare(t - 1, t + 1).share_moderate < least / kLiveliness;
+                   Compare(t - 1, t + 1).share_moderate < least / kLiveliness
+               ? least
+               : 0;
   }
 
   void GroupFrames() {
     groups_.push_back(Group{std::vector<int>{0}});
     size_t current = 0;
-    bool was_out = false;
+    double last_out = 0;
     for (int t = 1; t < sequence_.num_frames(); ++t) {
-      const bool is_out = IsOutAndBack(t);
-      if (is_out || was_out || IsJump(changes_[t - 1])) current = GroupOf(t, is_out);
-      was_out = is_out;
+      const double out = OutAndBack(t);
+      if (out > 0 || last_out > 0 || IsJump(changes_[t - 1])) {
+        current = GroupOf(t, std::max(out, last_out));
+      }
+      last_out = out;
       groups_[current].frames.push_back(t);
     }
   }
 
   // The group that frame t goes back to; a new one when there is none. The last group takes what
-  // comes when there are too many.
-  size_t GroupOf(int t, bool is_out) {
+  // comes when there are too many. out: the size of a jump out or back, 0 = of another kind.
+  size_t GroupOf(int t, double out) {
     for (size_t g = groups_.size(); g-- > 0;) {
       const EdgeChange change = Compare(groups_[g].frames.back(), t);
-      const bool fits = is_out
-                            ? !IsScaled(change.scale) && change.share_moderate < kModerateOutAndBack
-                            : !IsJump(change);
+      const bool fits =
+          out > 0 ? !IsScaled(change.scale) && change.share_moderate < out / 2 : !IsJump(change);
       if (fits) return g;
     }
     if (groups_.size() < kMaxGroups) groups_.push_back({});

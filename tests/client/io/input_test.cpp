@@ -86,8 +86,8 @@ class NotedInputTest : public InputTest {
  protected:
   void SetUp() override {
     InputTest::SetUp();
-    for (const auto& [name, size] :
-         {std::pair("f_1", 1), {"f_2", 10}, {"f_3", 1}, {"f_reference", 1}}) {
+    for (const auto& [name, size] : std::vector<std::pair<std::string, int>>{
+             {"f_1", 1}, {"f_2", 10}, {"f_3", 1}, {"f_reference", 1}}) {
       ASSERT_THAT(WriteFile(Folder() + "/" + name + ".obj",
                             absl::StrCat("v 0 0 0\nv ", size, " 0 0\nv 0 ", size, " 0\nf 1 2 3\n")),
                   IsOk());
