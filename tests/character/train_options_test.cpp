@@ -83,7 +83,8 @@ TEST(TrainOptionsTest, EveryNameRoundTripsThroughText) {
   ForEachChoice(
       [&](const std::string& option, const std::string& name, const TrainOptions& options) {
         const std::string line = absl::StrCat(option, "=", name, "\n");
-        if (line != kUnwritten) EXPECT_THAT(FormatTrainOptions(options), HasSubstr(line));
+        const std::string text = FormatTrainOptions(options);
+        EXPECT_TRUE(line == kUnwritten || text.find(line) != std::string::npos) << line;
         PLEAT_ASSERT_OK_AND_ASSIGN(const TrainOptions back, ParseTrainOptions(line));
         EXPECT_EQ(back, options) << line;
         ++num_choices;

@@ -127,7 +127,7 @@ TEST_F(FrameJumpsTest, AShuffledCubeIsFoundBetweenFramesThatAreAlike) {
     const std::vector<float> lengths = EdgeLengths(SampleEdges(box.topology, 100), frames[4]);
     const bool has_moved = std::ranges::count_if(lengths, [](float x) { return x > 1.1f; }) > 1;
     EXPECT_EQ(jumps.size(), has_moved ? 1u : 0u) << seed;
-    if (!jumps.empty()) EXPECT_THAT(jumps[0].frames, ElementsAre(4));
+    for (const FrameJump& jump : jumps) EXPECT_THAT(jump.frames, ElementsAre(4));
     num_found += !jumps.empty();
   }
   EXPECT_GT(num_found, 15);
