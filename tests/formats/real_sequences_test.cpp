@@ -5,6 +5,7 @@
 #include "pleat/formats/obj_reader.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/formats/sequence_reader.h"
+#include "pleat/mesh/frame_jumps.h"
 #include "support/shared_data.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -26,6 +27,22 @@ TEST_P(RealSequenceTest, HasTheKnownCounts) {
   EXPECT_EQ(sequence.num_vertices(), GetParam().num_vertices);
   EXPECT_EQ(sequence.topology().num_faces(), GetParam().num_faces);
   EXPECT_EQ(sequence.frame_rate(), (FrameRate{30, 1}));
+}
+
+// At its own speed and with every third and every tenth frame alone; its mesh is that of frame 0,
+// in whatever pose.
+TEST_P(RealSequenceTest, MovesWithoutJumpsAtAnySpeed) {
+  PLEAT_SHARED_DATA_OR_SKIP(path, GetParam().file);
+  InputReport report;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence, ReadSequence(path, {}, {}, &report));
+  for (const InputNote& note : report.notes) {
+    EXPECT_NE(note.severity, NoteSeverity::kWarning) << note.text;
+  }
+  for (const int step : {1, 3, 10}) {
+    std::vector<int> frames;
+    for (int t = 0; t < sequence.num_frames(); t += step) frames.push_back(t);
+    EXPECT_TRUE(FindFrameJumps(sequence.Subset(frames)).empty()) << step;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(SharedData, RealSequenceTest,
