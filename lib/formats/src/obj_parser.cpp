@@ -240,15 +240,12 @@ class ObjParser {
   }
 
   absl::Status NoMesh() const {
-    if (num_vertices() == 0 && face_sizes_.empty() && lines_.line() > 0) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          file_,
-          ": the mesh is empty: 0 vertices (lines 'v x y z') and 0 faces (lines 'f a b c'); "
-          "remove the file if it is an OBJ file, and look what it is if not"));
-    }
-    return absl::InvalidArgumentError(absl::StrCat(
-        file_, ": no mesh: ", num_vertices(), " vertices (lines 'v x y z') and ",
-        face_sizes_.size(), " faces (lines 'f a b c') of 3 corners or more; is it an OBJ file?"));
+    const bool is_empty = coordinates_.empty() && face_sizes_.empty();
+    return absl::InvalidArgumentError(
+        absl::StrCat(file_, is_empty ? ": the mesh is empty: " : ": no mesh: ", num_vertices(),
+                     " vertices (lines 'v x y z') and ", face_sizes_.size(),
+                     " faces (lines 'f a b c') of 3 corners or more; is it an OBJ file?",
+                     is_empty ? " If it is, remove it" : ""));
   }
 
   absl::StatusOr<ObjFrame> Finish() {
