@@ -132,6 +132,12 @@ TEST(FrameFilesTest, OnlyTheNumberThatCountsIsChecked) {
   }
 }
 
+TEST(FrameFilesTest, ANumberSignInANameIsNoNumber) {
+  EXPECT_THAT(Sort({"#f#.obj", "#f-22.obj"}), IsOk());
+  EXPECT_THAT(SortedWithNotes({"#1.obj", "##.obj", "#2.obj", "#3.obj"}).notes,
+              HasSubstr("'##.obj' is left out"));
+}
+
 TEST(FrameFilesTest, NamesWithoutASeriesAreTakenAsTheySort) {
   std::vector<std::string> sorted;
   EXPECT_THAT(Sort({"sit.obj", "run.obj", "jump.obj"}, &sorted), IsOk());

@@ -11,6 +11,9 @@ namespace {
 
 constexpr size_t kMaxDigits = 18;  // more do not fit in 63 bits and are part of the name
 
+// Stands for a number in a pattern: no path holds it.
+constexpr char kNumber = '\0';
+
 bool IsDigit(char c) { return absl::ascii_isdigit(static_cast<unsigned char>(c)); }
 bool IsAlphanumeric(char c) { return absl::ascii_isalnum(static_cast<unsigned char>(c)); }
 
@@ -36,7 +39,8 @@ NameParts TakeApart(const std::string& path) {
     size_t num_read = 0;
     const std::string_view digits = LeadingNumber(std::string_view(stem).substr(i), &num_read);
     if (num_read == 0) {
-      parts.pattern.push_back(stem[i++]);
+      parts.pattern.push_back(stem[i] == kNumber ? ' ' : stem[i]);
+      ++i;
       continue;
     }
     if (digits.size() > kMaxDigits) {
@@ -49,11 +53,11 @@ NameParts TakeApart(const std::string& path) {
     const size_t length = parts.pattern.size();
     if (length > 0 && parts.pattern.back() == '-' &&
         (length == 1 ||
-         !(IsAlphanumeric(parts.pattern[length - 2]) || parts.pattern[length - 2] == '#'))) {
+         !(IsAlphanumeric(parts.pattern[length - 2]) || parts.pattern[length - 2] == kNumber))) {
       parts.pattern.pop_back();
       number = -number;
     }
-    parts.pattern.push_back('#');
+    parts.pattern.push_back(kNumber);
     parts.numbers.push_back(number);
     i += num_read;
   }
@@ -67,11 +71,11 @@ void JoinNegativeNumbers(SeriesMap* series) {
     auto target = series->end();
     size_t position = 0;  // of the number that has the sign
     for (size_t i = 0, number = 0; i + 1 < entry->first.size(); ++i) {
-      if (entry->first[i] == '-' && entry->first[i + 1] == '#' && target == series->end()) {
+      if (entry->first[i] == '-' && entry->first[i + 1] == kNumber && target == series->end()) {
         target = series->find(std::string(entry->first).erase(i, 1));
         position = number;
       }
-      number += entry->first[i] == '#';
+      number += entry->first[i] == kNumber;
     }
     if (target == series->end()) {
       ++entry;

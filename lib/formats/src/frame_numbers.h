@@ -13,7 +13,8 @@ namespace pleat {
 // <0, 0, >0 by natural order; leading zeros do not count.
 int CompareNaturally(std::string_view a, std::string_view b);
 
-// A path taken apart: "walk2/f_007.obj" -> pattern "walk#/f_#.obj", numbers {2, 7}.
+// A path taken apart: "walk2/f_007.obj" has the pattern "walk#/f_#.obj" (with a NUL for each #) and
+// the numbers {2, 7}.
 struct NameParts {
   std::string path;
   std::string pattern;

@@ -38,6 +38,24 @@ void ObjNotes::AddSmallFace(int32_t num_corners, int32_t line) {
   small_faces.Add(line);
 }
 
+void ObjNotes::Add(const ObjNotes& later) {
+  if (small_faces.count == 0) small_face_corners = later.small_face_corners;
+  if (later.small_faces.count > 0 && later.small_face_corners != small_face_corners) {
+    small_face_corners = -1;
+  }
+  small_faces.Add(later.small_faces);
+  missing_texcoords.Add(later.missing_texcoords);
+  unreadable_texcoords.Add(later.unreadable_texcoords);
+  foreign_names.Add(later.foreign_names);
+  free_forms.Add(later.free_forms);
+  num_groups += later.num_groups;
+  num_lines_and_points += later.num_lines_and_points;
+  has_colors |= later.has_colors;
+  has_weights |= later.has_weights;
+  has_normals |= later.has_normals;
+  has_smoothing |= later.has_smoothing;
+}
+
 std::vector<InputNote> ObjNotes::ToInputNotes() const {
   std::vector<InputNote> notes;
   const auto add = [&](NoteSeverity severity, const char* kind, std::string text) {

@@ -17,6 +17,10 @@ struct LineCount {
   void Add(int32_t line) {
     if (count++ == 0) first_line = line;
   }
+  void Add(const LineCount& later) {
+    if (count == 0) first_line = later.first_line;
+    count += later.count;
+  }
 };
 
 struct ObjNotes {
@@ -33,6 +37,8 @@ struct ObjNotes {
   bool has_colors = false, has_weights = false, has_normals = false, has_smoothing = false;
 
   void AddSmallFace(int32_t num_corners, int32_t line);
+  // Adds what a later part of the file holds.
+  void Add(const ObjNotes& later);
   std::vector<InputNote> ToInputNotes() const;
 };
 

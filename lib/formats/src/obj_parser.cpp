@@ -191,6 +191,7 @@ class ObjParser {
   absl::Status ParseFace() {
     if (face_text_.empty()) {
       face_text_ = lines_.TextFromLine();
+      notes_before_faces_ = std::exchange(notes_, ObjNotes());
       vertices_before_faces_ = num_vertices();
       texcoords_before_faces_ = num_texcoords_;
       has_known_faces_ = known_ != nullptr && known_->num_vertices == num_vertices() &&
@@ -252,9 +253,7 @@ class ObjParser {
     ObjFrame frame;
     frame.has_known_faces = has_known_faces_;
     if (has_known_faces_) {
-      notes_.small_faces = known_->notes.small_faces;
-      notes_.small_face_corners = known_->notes.small_face_corners;
-      notes_.missing_texcoords = known_->notes.missing_texcoords;
+      notes_ = known_->notes;
     } else {
       if (coordinates_.empty() || face_sizes_.empty()) return NoMesh();
       PLEAT_RETURN_IF_ERROR(CheckIndices());
@@ -265,7 +264,8 @@ class ObjParser {
     mesh_.positions = Eigen::Map<const Eigen::Matrix3Xf>(coordinates_.data(), 3, num_vertices());
     if (mesh_.appearance.texcoords.empty()) mesh_.appearance.corner_texcoords.clear();
     if (mesh_.appearance.material_names.empty()) mesh_.appearance.face_materials.clear();
-    mesh_.notes = notes_.ToInputNotes();
+    notes_before_faces_.Add(notes_);
+    mesh_.notes = notes_before_faces_.ToInputNotes();
     frame.mesh = std::move(mesh_);
     return frame;
   }
@@ -276,7 +276,8 @@ class ObjParser {
   const ObjFaceText* const known_;
 
   MeshFile mesh_;
-  ObjNotes notes_;
+  ObjNotes notes_before_faces_;  // until the first face
+  ObjNotes notes_;               // since then
   std::vector<float> coordinates_;
   int64_t num_texcoords_ = 0;
   std::vector<int32_t> corner_vertices_, face_sizes_, face_lines_;

@@ -15,7 +15,7 @@ namespace pleat {
 struct ObjFaceText {
   std::string text;  // empty: cannot be recognized, since vertices follow
   int64_t num_vertices = 0, num_texcoords = 0;  // before it; relative indices depend on them
-  ObjNotes notes;                               // about the faces
+  ObjNotes notes;                               // about this text
 };
 
 struct ObjFrame {
