@@ -253,7 +253,7 @@ TEST(CompressSequenceTest, PromisesHoldFarFromTheOrigin) {
     }
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const std::string exact,
-        CompressSequence(far, {.goal = CompressionGoal::kGrid, .grid_bits = 16}));
+        CompressSequence(far, {.goal = CompressionGoal::kGrid, .grid_bits = 16}, nullptr));
     EXPECT_LT(LargestErrorMm(far, Decoded(exact)), 1e3 * 2e-7 * distance + .1) << distance;
   }
 }
@@ -265,7 +265,7 @@ TEST(CompressSequenceTest, AStillShapeFarAwayHasAnOriginInItsFile) {
   const MeshSequence still = MeshSequence::Create(box.topology, {frame, frame, frame}).value();
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const std::string bytes,
-      CompressSequence(still, {.goal = CompressionGoal::kKg, .kg_percent = .01}));
+      CompressSequence(still, {.goal = CompressionGoal::kKg, .kg_percent = .01}, nullptr));
   EXPECT_LE(KgPercent(still, Decoded(bytes)), .01);
   ForEachCorruption(bytes, [](const std::string& damaged) {
     absl::StatusOr<SequenceDecoder> decoder = SequenceDecoder::Open(damaged);
