@@ -98,7 +98,7 @@ TEST(DracoGuardTest, ExceptionsBecomeStatuses) {
   EXPECT_THAT(RunDracoDecoder<ThrowingDecoder<std::bad_alloc>>("", accept, &geometry),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("more memory")));
   EXPECT_THAT(RunDracoDecoder<ThrowingDecoder<LengthError>>("", accept, &geometry),
-              HasStatus(absl::StatusCode::kDataLoss, "malformed Draco frame: vector::reserve"));
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("more than memory can hold")));
 }
 
 TEST(DracoGuardTest, ARefusedAttributeIsNeverDecoded) {
