@@ -17,20 +17,27 @@
 namespace pleat {
 namespace {
 
-// "name=value" of every option is what text, model file and report show.
-std::string ValueOf(const TrainOptions& options, const std::string& name) {
+// "name=value" of every option is what text, model file and report show; one that has no line has
+// the value `unwritten`.
+std::string ValueOf(const TrainOptions& options, const std::string& name,
+                    const std::string& unwritten) {
   const std::string text = "\n" + FormatTrainOptions(options);
-  const size_t begin = text.find(absl::StrCat("\n", name, "=")) + name.size() + 2;
+  const size_t line = text.find(absl::StrCat("\n", name, "="));
+  if (line == std::string::npos) return unwritten;
+  const size_t begin = line + name.size() + 2;
   return text.substr(begin, text.find('\n', begin) - begin);
 }
 
 // The section of one option: help, flags, default, the paper's value where it is another, choices.
 template <typename T>
-std::string Section(const std::string& name, const T&) {
+std::string Section(const std::string& name, [[maybe_unused]] const T& default_value) {
   const OptionText& text = TextOfOption(name);
   std::string flags = absl::StrCat("`--", absl::StrReplaceAll(name, {{"_", "-"}}), "`");
   if (text.alias != nullptr) absl::StrAppend(&flags, " or `--", text.alias, "`");
-  const std::string value = ValueOf({}, name), paper = ValueOf(TrainOptions::Paper(), name);
+  std::string unwritten;
+  if constexpr (std::is_enum_v<T>) unwritten = ChoiceName(default_value);
+  const std::string value = ValueOf({}, name, unwritten),
+                    paper = ValueOf(TrainOptions::Paper(), name, unwritten);
   std::string section = absl::StrCat("## ", name, "\n\n", flags, ", default `", value, "`");
   if (paper != value) absl::StrAppend(&section, ", preset paper `", paper, "`");
   std::string help = text.help;
