@@ -18,7 +18,8 @@ absl::StatusOr<FrameRate> FromRecord(const store::v1::FrameRate& message);
 store::v1::Skeleton ToRecord(const Skeleton& skeleton);
 absl::StatusOr<Skeleton> FromRecord(const store::v1::Skeleton& message);
 
-store::v1::TrainOptions ToRecord(const TrainOptions& options);  // every field set
+// Sets every field but those of FormatTrainOptions that have no line.
+store::v1::TrainOptions ToRecord(const TrainOptions& options);
 // An option that is absent keeps its default.
 absl::StatusOr<TrainOptions> FromRecord(const store::v1::TrainOptions& message);
 
