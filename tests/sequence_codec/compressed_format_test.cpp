@@ -149,9 +149,22 @@ TEST(CompressedFormatTest, SegmentsMustHoldTheFramesOfTheHeader) {
               HasStatus(absl::StatusCode::kInvalidArgument, "segment 2 has 0 frames"));
 }
 
+TEST(CompressedFormatTest, AnOriginIsWrittenWhereThereIsOne) {
+  CompressedHeader header = SomeHeader();
+  EXPECT_TRUE(DecodeHeader(EncodeHeader(header), {})->origin_m.isZero(0));
+  const size_t size = EncodeHeader(header).size();
+  header.origin_m = Eigen::Vector3d(1e7, -2.5, 0);
+  std::string bytes = EncodeHeader(header);
+  EXPECT_EQ(bytes.size(), size + 24);
+  EXPECT_EQ(DecodeHeader(bytes, {})->origin_m, header.origin_m);
+  bytes.back() = '\x7f';  // of the last coordinate: beyond what float32 holds
+  EXPECT_THAT(DecodeHeader(bytes, {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("origin")));
+}
+
 TEST(CompressedFormatTest, UnknownFlagsAndKindsAreNamed) {
   std::string bytes = EncodeHeader(SomeHeader());
-  bytes[32] = 4;  // behind eight counts
+  bytes[32] = 8;  // behind eight counts
   EXPECT_THAT(DecodeHeader(bytes, {}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("flags")));
   bytes[32] = 3;

@@ -25,7 +25,7 @@ std::string FrameListLabel(const std::vector<std::string>& frame_names,
     end = begin + 1;
     while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
     if (++num_runs > kMaxNamedRuns) {
-      return absl::StrCat(frames.size(), " frames: ", text, ", ...");
+      return absl::StrCat(frames.size(), " frames: ", text.substr(6), ", ...");
     }
     absl::StrAppend(&text, text.empty() ? "" : ", ",
                     FrameLabel(frame_names, frames[begin]).substr(text.empty() ? 0 : 6));
