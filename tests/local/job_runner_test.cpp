@@ -36,14 +36,14 @@ class JobRunnerTest : public testing::Test {
     job.options = std::move(options);
     return job;
   }
-  size_t NumStored(EntryKind kind) { return folder_.files().catalogue().List(kind)->size(); }
+  size_t NumStored(EntryKind kind) { return folder_.files().catalog().List(kind)->size(); }
   size_t NumResults() {
     return NumStored(EntryKind::kModel) + NumStored(EntryKind::kCompressedSequence);
   }
   void DeleteResults() {
     for (const EntryKind kind : {EntryKind::kModel, EntryKind::kCompressedSequence}) {
-      const std::vector<CatalogueEntry> entries = folder_.files().catalogue().List(kind).value();
-      for (const CatalogueEntry& entry : entries) {
+      const std::vector<CatalogEntry> entries = folder_.files().catalog().List(kind).value();
+      for (const CatalogEntry& entry : entries) {
         ASSERT_THAT(folder_.files().Delete(kind, entry.id), IsOk());
       }
     }

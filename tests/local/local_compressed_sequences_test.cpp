@@ -120,8 +120,7 @@ TEST_F(LocalCompressedSequencesTest, ErrorsOfTheStoreArePassedOnAndTakeNoMemory)
   EXPECT_THAT(compressed_->OpenDecode(id_, {}), HasStatus(absl::StatusCode::kDataLoss, _));
   EXPECT_THAT(compressed_->Download(id_, {}), HasStatus(absl::StatusCode::kDataLoss, _));
   EXPECT_EQ(compressed_->decoder_bytes(), 0u);
-  ASSERT_THAT(folder_.files().catalogue().Put(EntryKind::kCompressedSequence, {id_, "\xff"}),
-              IsOk());
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kCompressedSequence, {id_, "\xff"}), IsOk());
   EXPECT_THAT(compressed_->Get(id_), HasStatus(absl::StatusCode::kDataLoss, _));
   EXPECT_THAT(compressed_->List(), HasStatus(absl::StatusCode::kDataLoss, _));
 }

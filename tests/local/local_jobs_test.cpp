@@ -84,7 +84,7 @@ class LocalJobsTest : public testing::Test {
     return last;
   }
   int NumModels() {
-    return static_cast<int>(folder_.files().catalogue().List(EntryKind::kModel)->size());
+    return static_cast<int>(folder_.files().catalog().List(EntryKind::kModel)->size());
   }
 
   DataFolder folder_;
@@ -162,7 +162,7 @@ TEST_F(LocalJobsTest, WhatCannotSucceedIsRefusedBeforeThereIsAJob) {
   EXPECT_THAT(jobs_->CreateCompression(a_, {.max_error_mm = -1}),
               HasStatus(absl::StatusCode::kInvalidArgument, _));
   EXPECT_TRUE(jobs_->List()->empty());
-  EXPECT_TRUE(folder_.files().catalogue().List(EntryKind::kRig)->empty());
+  EXPECT_TRUE(folder_.files().catalog().List(EntryKind::kRig)->empty());
 }
 
 // Counts what a listener hears, and lets a test wait for it.
@@ -226,7 +226,7 @@ TEST_F(LocalJobsTest, AShutdownEndsSubscriptionsAndTakesNoMoreJobs) {
 
 TEST_F(LocalJobsTest, ARecordThatCannotBeReadStopsTheStartWithItsError) {
   jobs_->Shutdown();
-  ASSERT_THAT(folder_.files().catalogue().Put(EntryKind::kJob, {"broken", "\xff\xff\xff"}), IsOk());
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kJob, {"broken", "\xff\xff\xff"}), IsOk());
   LocalJobs again(&folder_.files(), &folder_.sequences(),
                   JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1), 1);
   EXPECT_THAT(again.Start(), HasStatus(absl::StatusCode::kDataLoss, HasSubstr("job")));

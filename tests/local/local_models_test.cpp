@@ -106,7 +106,7 @@ TEST_F(LocalModelsTest, ErrorsOfTheStoreArePassedOnAndForgotten) {
   EXPECT_EQ(models.cache_stats().num_entries, 0);
   std::ofstream(path, std::ios::binary) << kept;
   EXPECT_THAT(models.Acquire(ids_[0]), IsOk());
-  ASSERT_THAT(folder_.files().catalogue().Put(EntryKind::kModel, {ids_[2], "\xff\xff"}), IsOk());
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kModel, {ids_[2], "\xff\xff"}), IsOk());
   EXPECT_THAT(models.Get(ids_[2]), HasStatus(absl::StatusCode::kDataLoss, _));
   EXPECT_THAT(models.List(), HasStatus(absl::StatusCode::kDataLoss, _));
   EXPECT_THAT(models.Get(ids_[0]), IsOk());

@@ -87,7 +87,7 @@ TEST_F(LocalSequencesTest, EachLimitIsNamedAtBothDoors) {
 
 TEST_F(LocalSequencesTest, ErrorsOfTheStoreArePassedOn) {
   ASSERT_THAT(sequences().Upload(tube_, {}), IsOk());
-  ASSERT_THAT(folder_.files().catalogue().Put(EntryKind::kSequence, {id_, "\xff\xff"}), IsOk());
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kSequence, {id_, "\xff\xff"}), IsOk());
   for (const absl::Status& status :
        {sequences().Get(id_).status(), sequences().List().status(), sequences().Load(id_).status(),
         sequences().QueryUpload(id_).status()}) {

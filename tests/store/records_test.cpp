@@ -9,7 +9,7 @@
 
 #include "pleat/base/file.h"
 #include "pleat/base/random.h"
-#include "pleat/store/catalogue.h"
+#include "pleat/store/catalog.h"
 #include "pleat/store/v1/records.pb.h"
 #include "pleat/wire/service_messages.h"
 #include "store/record_samples.h"
@@ -150,23 +150,23 @@ TEST(RecordsTest, EqualContentGivesTheBytesOfTheFirstVersion) {
   EXPECT_EQ(EncodeRecord(SampleCompressedSequence()), Golden("compressed_sequence"));
 }
 
-// A whole catalogue of 0.1.0, not only its rows.
-TEST(RecordsTest, ACatalogueOfTheFirstVersionIsRead) {
+// A whole catalog of 0.1.0, not only its rows.
+TEST(RecordsTest, ACatalogOfTheFirstVersionIsRead) {
   TemporaryFolder folder;
   std::filesystem::copy_file(std::string(kGoldenFolder) + "catalogue.db", folder.File("c.db"));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalogue, Catalogue::Open(folder.File("c.db")));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, catalogue->List(EntryKind::kJob));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, catalog->List(EntryKind::kJob));
   ASSERT_EQ(jobs.size(), 2u);
   EXPECT_EQ(jobs[0].attempts, 2);
   ExpectSame(DecodeJobRecord(jobs[0].record).value(), SampleTrainingJob());
   EXPECT_EQ(jobs[1].attempts, 1);
   ExpectSame(DecodeJobRecord(jobs[1].record).value(), SampleCompressionJob());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, catalogue->Get(EntryKind::kModel, SampleModel().id));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, catalog->Get(EntryKind::kModel, SampleModel().id));
   ExpectSame(DecodeModelRecord(model.record).value(), SampleModel());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto sequences, catalogue->List(EntryKind::kSequence));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto sequences, catalog->List(EntryKind::kSequence));
   ASSERT_EQ(sequences.size(), 1u);
   ExpectSameClip(DecodeSequenceRecord(sequences[0].record).value(), StoredSample());
-  EXPECT_EQ(catalogue->List(EntryKind::kCompressedSequence)->size(), 1u);
+  EXPECT_EQ(catalog->List(EntryKind::kCompressedSequence)->size(), 1u);
 }
 
 // The messages that 0.1.0 serialized. The day pleat.v1 goes its own way, this test goes; the golden

@@ -41,8 +41,8 @@ TEST(StoreTest, RemovesFilesWithoutRowAndReportsRowsWithoutFile) {
     kept = store->blobs().Put("kept").value();
     orphan = store->blobs().Put("orphan").value();
     lost = store->blobs().Put("lost").value();
-    ASSERT_THAT(store->catalogue().Put(EntryKind::kModel, {kept, "", 0}), IsOk());
-    ASSERT_THAT(store->catalogue().Put(EntryKind::kSequence, {lost, "", 0}), IsOk());
+    ASSERT_THAT(store->catalog().Put(EntryKind::kModel, {kept, "", 0}), IsOk());
+    ASSERT_THAT(store->catalog().Put(EntryKind::kSequence, {lost, "", 0}), IsOk());
     ASSERT_THAT(store->blobs().Delete(lost), IsOk());
   }
   PLEAT_ASSERT_OK_AND_ASSIGN(auto store, Store::Open({.data_dir = folder.path()}));
@@ -81,7 +81,7 @@ TEST_F(StoreSyncTest, TheFileIsDurableBeforeItsRow) {
                           folder_.File("blobs/" + upload->id().substr(0, 2)), folder_.File("blobs"),
                           folder_.File("catalogue.db-wal")));
   EXPECT_EQ(store_->blobs().Get(upload->id()).value(), "upload");
-  EXPECT_THAT(store_->catalogue().Get(EntryKind::kSequence, upload->id()), IsOk());
+  EXPECT_THAT(store_->catalog().Get(EntryKind::kSequence, upload->id()), IsOk());
 }
 
 TEST_F(StoreSyncTest, NoReadWaitsForASync) {
@@ -94,15 +94,15 @@ TEST_F(StoreSyncTest, NoReadWaitsForASync) {
     gate_.Close(slow);
     std::thread writer([&] { EXPECT_THAT(AddModel(added), IsOk()); });
     gate_.WaitForOneThatWaits();
-    EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf("old")), IsOk());
-    EXPECT_THAT(store_->catalogue().List(EntryKind::kModel), IsOk());
+    EXPECT_THAT(store_->catalog().Get(EntryKind::kModel, IdOf("old")), IsOk());
+    EXPECT_THAT(store_->catalog().List(EntryKind::kModel), IsOk());
     EXPECT_EQ(store_->blobs().Get(IdOf("old")).value(), "old");
     EXPECT_EQ(store_->uploads().ReceivedBytes(IdOf("old")), 0u);
-    EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf(added)),
+    EXPECT_THAT(store_->catalog().Get(EntryKind::kModel, IdOf(added)),
                 HasStatus(absl::StatusCode::kNotFound, testing::_));
     gate_.Open();
     writer.join();
-    EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf(added)), IsOk());
+    EXPECT_THAT(store_->catalog().Get(EntryKind::kModel, IdOf(added)), IsOk());
   }
 }
 
@@ -132,7 +132,7 @@ TEST_F(StoreSyncTest, AnAddedEntryHasItsFileWhateverADeleteDoes) {
   gate_.Open();
   deleter.join();
   adder.join();
-  EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf("bytes")), IsOk());
+  EXPECT_THAT(store_->catalog().Get(EntryKind::kModel, IdOf("bytes")), IsOk());
   EXPECT_EQ(store_->blobs().Get(IdOf("bytes")).value(), "bytes");
 }
 
@@ -150,14 +150,14 @@ TEST_F(StoreSyncTest, ARowAlwaysHasItsFile) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(store_->catalogue().Get(EntryKind::kModel, IdOf("bytes")).ok(),
+  EXPECT_EQ(store_->catalog().Get(EntryKind::kModel, IdOf("bytes")).ok(),
             store_->blobs().Contains(IdOf("bytes")));
 }
 
 TEST_F(StoreSyncTest, RefusesAnIdThatIsNotTheContents) {
   EXPECT_THAT(store_->Add(EntryKind::kModel, {IdOf("a"), ""}, "b"),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("SHA-256")));
-  EXPECT_THAT(store_->catalogue().Get(EntryKind::kModel, IdOf("a")),
+  EXPECT_THAT(store_->catalog().Get(EntryKind::kModel, IdOf("a")),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
   EXPECT_TRUE(store_->blobs().List()->empty());
   PLEAT_ASSERT_OK_AND_ASSIGN(auto upload, store_->uploads().Begin(IdOf("a"), 1, 0));
@@ -186,7 +186,7 @@ TEST_F(StoreSyncTest, AddingAgainReplacesTheRecordAndKeepsThePlace) {
   ASSERT_THAT(AddModel("first"), IsOk());
   ASSERT_THAT(AddModel("second"), IsOk());
   ASSERT_THAT(store_->Add(EntryKind::kModel, {IdOf("first"), "a new record"}, "first"), IsOk());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, store_->catalogue().List(EntryKind::kModel));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, store_->catalog().List(EntryKind::kModel));
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_EQ(entries[0].record, "a new record");
   EXPECT_EQ(store_->blobs().List()->size(), 2u);
@@ -204,7 +204,7 @@ TEST(StoreTest, AStartKeepsWhatARowNamesAndUploadsAndNothingElse) {
       ASSERT_THAT(store->Add(kinds[k], {id_of(bytes), ""}, bytes), IsOk());
     }
     // The row of a job needs no file and keeps none.
-    ASSERT_THAT(store->catalogue().Put(EntryKind::kJob, {id_of("job"), "", 0}), IsOk());
+    ASSERT_THAT(store->catalog().Put(EntryKind::kJob, {id_of("job"), "", 0}), IsOk());
     ASSERT_THAT(store->blobs().Put("job"), IsOk());
     ASSERT_THAT((*store->uploads().Begin(id_of("upload"), 6, 0))->Append("upl"), IsOk());
   }
@@ -255,9 +255,9 @@ TEST(StoreTest, AKillLeavesNoRowWithoutItsFile) {
     close(ends[0]);
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto store, Store::Open({.data_dir = folder.path()}));
     EXPECT_TRUE(store->missing_files().empty());
-    PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, store->catalogue().List(EntryKind::kModel));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto entries, store->catalog().List(EntryKind::kModel));
     EXPECT_FALSE(entries.empty());
-    for (const CatalogueEntry& entry : entries) {
+    for (const CatalogEntry& entry : entries) {
       EXPECT_EQ(store->blobs().Get(entry.id).value_or("missing"), entry.record);
     }
     EXPECT_EQ(store->blobs().List()->size(), entries.size());

@@ -1,4 +1,4 @@
-// Make the descriptions of sequences and models that the services return and the catalogue keeps.
+// Make the descriptions of sequences and models that the services return and the catalog keeps.
 #pragma once
 
 #include <string>

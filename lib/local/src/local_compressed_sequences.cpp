@@ -92,11 +92,11 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
 }
 
 absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Get(const std::string& id) {
-  return GetStored<CompressedSequenceInfo>(files_->catalogue(), id);
+  return GetStored<CompressedSequenceInfo>(files_->catalog(), id);
 }
 
 absl::StatusOr<std::vector<CompressedSequenceInfo>> LocalCompressedSequences::List() {
-  return ListStored<CompressedSequenceInfo>(files_->catalogue());
+  return ListStored<CompressedSequenceInfo>(files_->catalog());
 }
 
 absl::Status LocalCompressedSequences::Delete(const std::string& id) {

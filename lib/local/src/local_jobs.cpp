@@ -63,8 +63,7 @@ LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner ru
             return runner_.Run(job, progress);
           },
           [this](const JobInfo& info, int attempts) {
-            return files_->catalogue().Put(EntryKind::kJob,
-                                           {info.id, EncodeRecord(info), attempts});
+            return files_->catalog().Put(EntryKind::kJob, {info.id, EncodeRecord(info), attempts});
           }) {}
 
 absl::Status LocalJobs::Start() {
@@ -74,20 +73,20 @@ absl::Status LocalJobs::Start() {
 }
 
 absl::Status LocalJobs::Restore() {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
-                         files_->catalogue().List(EntryKind::kJob));
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries,
+                         files_->catalog().List(EntryKind::kJob));
   // The rigs of jobs are deleted here and nowhere else: those that no unfinished job needs any
   // more, and those whose job was never created because the process ended in between.
   std::vector<StoredJob> jobs;
   std::set<std::string> needed_rigs;
-  for (const CatalogueEntry& entry : entries) {
+  for (const CatalogEntry& entry : entries) {
     PLEAT_ASSIGN_OR_RETURN(JobInfo info, DecodeJobRecord(entry.record));
     if (!IsFinal(info.state)) needed_rigs.insert(info.rig_id);
     jobs.push_back({std::move(info), entry.attempts});
   }
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> rigs,
-                         files_->catalogue().List(EntryKind::kRig));
-  for (const CatalogueEntry& rig : rigs) {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> rigs,
+                         files_->catalog().List(EntryKind::kRig));
+  for (const CatalogEntry& rig : rigs) {
     if (needed_rigs.contains(rig.id)) continue;
     PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kRig, rig.id));
   }

@@ -9,11 +9,11 @@
 namespace pleat {
 
 absl::StatusOr<ModelInfo> LocalModels::Get(const std::string& id) {
-  return GetStored<ModelInfo>(files_->catalogue(), id);
+  return GetStored<ModelInfo>(files_->catalog(), id);
 }
 
 absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() {
-  return ListStored<ModelInfo>(files_->catalogue());
+  return ListStored<ModelInfo>(files_->catalog());
 }
 
 absl::Status LocalModels::Delete(const std::string& id) {
@@ -36,7 +36,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const
   using Loaded = ByteCache<CharacterModel>::Loaded;
   return cache_.Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
     // Files of all kinds lie in one place; the row says that this one is a model.
-    PLEAT_RETURN_IF_ERROR(files_->catalogue().Get(EntryKind::kModel, key).status());
+    PLEAT_RETURN_IF_ERROR(files_->catalog().Get(EntryKind::kModel, key).status());
     PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->blobs().Get(key));
     PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
     const uint64_t charge = model->memory_bytes();

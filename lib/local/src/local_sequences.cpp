@@ -54,11 +54,11 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
 }
 
 absl::StatusOr<SequenceInfo> LocalSequences::Get(const std::string& id) {
-  return GetStored<SequenceInfo>(files_->catalogue(), id);
+  return GetStored<SequenceInfo>(files_->catalog(), id);
 }
 
 absl::StatusOr<std::vector<SequenceInfo>> LocalSequences::List() {
-  return ListStored<SequenceInfo>(files_->catalogue());
+  return ListStored<SequenceInfo>(files_->catalog());
 }
 
 absl::Status LocalSequences::Delete(const std::string& id) {
@@ -71,7 +71,7 @@ absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) 
   const absl::StatusOr<SequenceInfo> sequence = Get(id);
   if (sequence.ok()) return UploadStatus{sequence->size_bytes, true};
   const absl::StatusOr<CompressedSequenceInfo> compressed =
-      GetStored<CompressedSequenceInfo>(files_->catalogue(), id);
+      GetStored<CompressedSequenceInfo>(files_->catalog(), id);
   if (compressed.ok()) return UploadStatus{compressed->size_bytes, true};
   for (const absl::Status& status : {sequence.status(), compressed.status()}) {
     if (status.code() != absl::StatusCode::kNotFound) return status;

@@ -14,7 +14,7 @@ constexpr uint64_t kDownloadStepBytes = 8 << 20;
 
 absl::StatusOr<std::string> StoredFiles::ReadBytes(EntryKind kind, const std::string& id,
                                                    uint64_t offset, uint64_t count) {
-  PLEAT_RETURN_IF_ERROR(catalogue().Get(kind, id).status());
+  PLEAT_RETURN_IF_ERROR(catalog().Get(kind, id).status());
   return blobs().GetRange(id, offset, count);
 }
 

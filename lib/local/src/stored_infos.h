@@ -1,4 +1,4 @@
-// Read rows of the catalogue as the descriptions that they hold.
+// Read rows of the catalog as the descriptions that they hold.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/base/status.h"
-#include "pleat/store/catalogue.h"
+#include "pleat/store/catalog.h"
 #include "pleat/store/records.h"
 
 namespace pleat {
@@ -32,17 +32,17 @@ struct StoredKind<CompressedSequenceInfo> {
 };
 
 template <typename Info>
-absl::StatusOr<Info> GetStored(Catalogue& catalogue, const std::string& id) {
-  PLEAT_ASSIGN_OR_RETURN(const CatalogueEntry entry, catalogue.Get(StoredKind<Info>::kind, id));
+absl::StatusOr<Info> GetStored(Catalog& catalog, const std::string& id) {
+  PLEAT_ASSIGN_OR_RETURN(const CatalogEntry entry, catalog.Get(StoredKind<Info>::kind, id));
   return StoredKind<Info>::decode(entry.record);
 }
 
 template <typename Info>
-absl::StatusOr<std::vector<Info>> ListStored(Catalogue& catalogue) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries,
-                         catalogue.List(StoredKind<Info>::kind));
+absl::StatusOr<std::vector<Info>> ListStored(Catalog& catalog) {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries,
+                         catalog.List(StoredKind<Info>::kind));
   std::vector<Info> infos;
-  for (const CatalogueEntry& entry : entries) {
+  for (const CatalogEntry& entry : entries) {
     PLEAT_ASSIGN_OR_RETURN(Info info, StoredKind<Info>::decode(entry.record));
     infos.push_back(std::move(info));
   }

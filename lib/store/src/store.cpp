@@ -81,8 +81,8 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
       BlobStore::Open(options.data_dir + "/blobs", options.reserve_bytes, options.before_sync));
   store->blobs_ = std::make_unique<BlobStore>(std::move(blobs));
   PLEAT_RETURN_IF_ERROR(store->blobs_->CheckSpace(0));
-  PLEAT_ASSIGN_OR_RETURN(store->catalogue_,
-                         Catalogue::Open(options.data_dir + "/catalogue.db", options.before_sync));
+  PLEAT_ASSIGN_OR_RETURN(store->catalog_,
+                         Catalog::Open(options.data_dir + "/catalogue.db", options.before_sync));
   PLEAT_ASSIGN_OR_RETURN(store->uploads_, UploadArea::Open(options.data_dir + "/uploads",
                                                            kUploadAgeHours, options.before_sync));
   PLEAT_RETURN_IF_ERROR(store->Clean());
@@ -90,11 +90,11 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
 }
 
 Store::~Store() {
-  catalogue_.reset();  // before the lock goes
+  catalog_.reset();  // before the lock goes
   if (lock_fd_ >= 0) close(lock_fd_);
 }
 
-absl::Status Store::Add(EntryKind kind, const CatalogueEntry& entry, std::string_view bytes) {
+absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {
   while (true) {
     PLEAT_ASSIGN_OR_RETURN(StagedFile file, blobs_->Stage(bytes));
     if (file.id() != entry.id) {
@@ -105,11 +105,11 @@ absl::Status Store::Add(EntryKind kind, const CatalogueEntry& entry, std::string
     // Deleted between Stage and the lock: write it after all.
     if (file.already_stored() && !blobs_->Contains(entry.id)) continue;
     PLEAT_RETURN_IF_ERROR(blobs_->Publish(std::move(file)));
-    return catalogue_->Put(kind, entry);
+    return catalog_->Put(kind, entry);
   }
 }
 
-absl::Status Store::Add(EntryKind kind, const CatalogueEntry& entry, Upload* upload) {
+absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, Upload* upload) {
   if (upload->id() != entry.id) {
     return absl::InvalidArgumentError(
         absl::StrCat("the upload ", upload->id(), " cannot be stored as '", entry.id, "'"));
@@ -117,12 +117,12 @@ absl::Status Store::Add(EntryKind kind, const CatalogueEntry& entry, Upload* upl
   PLEAT_ASSIGN_OR_RETURN(StagedFile file, upload->Stage());
   const IdLock lock(this, entry.id);
   PLEAT_RETURN_IF_ERROR(blobs_->Publish(std::move(file)));
-  return catalogue_->Put(kind, entry);
+  return catalog_->Put(kind, entry);
 }
 
 absl::Status Store::Delete(EntryKind kind, const std::string& id) {
   const IdLock lock(this, id);
-  PLEAT_RETURN_IF_ERROR(catalogue_->Delete(kind, id));
+  PLEAT_RETURN_IF_ERROR(catalog_->Delete(kind, id));
   return blobs_->Delete(id);
 }
 
@@ -130,8 +130,8 @@ absl::Status Store::Clean() {
   std::set<std::string> known;
   for (const EntryKind kind :
        {EntryKind::kSequence, EntryKind::kModel, EntryKind::kCompressedSequence, EntryKind::kRig}) {
-    PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogueEntry> entries, catalogue_->List(kind));
-    for (const CatalogueEntry& entry : entries) known.insert(entry.id);
+    PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries, catalog_->List(kind));
+    for (const CatalogEntry& entry : entries) known.insert(entry.id);
   }
   PLEAT_ASSIGN_OR_RETURN(const std::vector<std::string> files, blobs_->List());
   for (const std::string& id : files) {

@@ -1,4 +1,4 @@
-// The jobs of this process: they are checked, queued, stored in the catalogue and run by workers.
+// The jobs of this process: they are checked, queued, stored in the catalog and run by workers.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// Stored files and their rows in the catalogue, as all services of this process keep them.
+// Stored files and their rows in the catalog, as all services of this process keep them.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,17 @@ class StoredFiles {
   StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits)
       : store_(std::move(store)), limits_(limits) {}
 
-  Catalogue& catalogue() { return store_->catalogue(); }
+  Catalog& catalog() { return store_->catalog(); }
   BlobStore& blobs() { return store_->blobs(); }
   UploadArea& uploads() { return store_->uploads(); }
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 
   // A file and its row appear and disappear together (see Store).
-  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, std::string_view bytes) {
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {
     return store_->Add(kind, entry, bytes);
   }
-  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, Upload* upload) {
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload) {
     return store_->Add(kind, entry, upload);
   }
   absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
@@ -55,7 +55,7 @@ class StoredFiles {
   const ServiceLimits limits_;
 };
 
-// An upload into the store. `finish` checks the complete bytes and adds them to the catalogue.
+// An upload into the store. `finish` checks the complete bytes and adds them to the catalog.
 template <typename Info>
 class StoredUpload final : public ContentUpload<Info> {
  public:

@@ -27,7 +27,7 @@ namespace pleat {
 //    when the name is there. After 4 the file survives a power cut.
 //  - Two writers of the same content race harmlessly: each has a temporary file of its own, and the
 //    second rename replaces a file by an equal one.
-//  - Whether a file should exist is not decided here: the catalogue's row says so (Store). A file
+//  - Whether a file should exist is not decided here: the catalog's row says so (Store). A file
 //    without a row is garbage that the next start of the store removes.
 //  - The names of files are content ids and nothing else (IsContentId), so an id from outside can
 //    never reach another path.
@@ -36,7 +36,7 @@ namespace pleat {
 class BlobStore {
  public:
   // Uses (and makes) `folder`. Writes that would leave less than `reserve_bytes` on the disk are
-  // refused with kResourceExhausted: on a full disk not even deleting from the catalogue works.
+  // refused with kResourceExhausted: on a full disk not even deleting from the catalog works.
   static absl::StatusOr<BlobStore> Open(std::string folder, uint64_t reserve_bytes,
                                         SyncHook before_sync = {});
 

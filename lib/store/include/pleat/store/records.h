@@ -1,4 +1,4 @@
-// Rows of the catalogue as bytes: messages of pleat.store.v1 (proto/pleat/store/v1/records.proto).
+// Rows of the catalog as bytes: messages of pleat.store.v1 (proto/pleat/store/v1/records.proto).
 //
 // The schema on disk is its own, apart from the wire, so pleat.v1 may change without touching what
 // is stored. Rows that Pleat 0.1.0 wrote are read like new ones. Equal content gives equal bytes.

@@ -13,7 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/store/blob_store.h"
-#include "pleat/store/catalogue.h"
+#include "pleat/store/catalog.h"
 #include "pleat/store/sync_hook.h"
 #include "pleat/store/upload_area.h"
 
@@ -44,7 +44,7 @@ struct StoreOptions {
 //
 // Locks: step 1 takes seconds for large files and holds nothing. Steps 2 to 4 of one id, and 5 and
 // 6, exclude each other (IdLock): else a Delete between 2 and 4 would take the file away under the
-// new row. Other ids go on meanwhile, and readers take no lock of the store at all: the catalogue
+// new row. Other ids go on meanwhile, and readers take no lock of the store at all: the catalog
 // reads through a connection of its own, and files never change. So no read waits for a sync.
 //
 // All parts are thread-safe.
@@ -59,14 +59,14 @@ class Store {
 
   // Stores a file together with its row, durably: `bytes`, whose SHA-256 is entry.id (else
   // kInvalidArgument). An entry that is there already gets the new record.
-  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, std::string_view bytes);
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes);
   // The same with the content of a complete upload (Upload::ReadComplete), which moves.
-  absl::Status Add(EntryKind kind, const CatalogueEntry& entry, Upload* upload);
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload);
   // Removes row and file; kNotFound when there is no such row.
   absl::Status Delete(EntryKind kind, const std::string& id);
 
   BlobStore& blobs() { return *blobs_; }
-  Catalogue& catalogue() { return *catalogue_; }
+  Catalog& catalog() { return *catalog_; }
   UploadArea& uploads() { return *uploads_; }
 
   // Ids of sequences, models and rigs whose file was gone when the store was opened.
@@ -79,7 +79,7 @@ class Store {
 
   int lock_fd_ = -1;
   std::unique_ptr<BlobStore> blobs_;
-  std::unique_ptr<Catalogue> catalogue_;
+  std::unique_ptr<Catalog> catalog_;
   std::unique_ptr<UploadArea> uploads_;
   std::vector<std::string> missing_files_;
 

@@ -22,7 +22,7 @@ struct GrpcServerOptions {
   // Computes poses. The service shares it for its own work on poses, so that all of them take
   // turns. Null makes the server start its own threads, one per core. It must outlive the server.
   Executor* pose_executor = nullptr;
-  int num_storage_threads = 4;  // for the disk, the catalogue and the checks of uploads
+  int num_storage_threads = 4;  // for the disk, the catalog and the checks of uploads
   // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
   // 1 GiB.
   int max_receive_bytes = 16 << 20;

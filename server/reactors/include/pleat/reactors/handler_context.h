@@ -23,7 +23,7 @@ struct HandlerContext {
   CompressedSequenceService* compressed_sequences = nullptr;
 
   Executor* pose_executor = nullptr;     // for milliseconds of computation
-  Executor* storage_executor = nullptr;  // for the disk, the catalogue and the checks of uploads
+  Executor* storage_executor = nullptr;  // for the disk, the catalog and the checks of uploads
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;
   std::atomic<bool> draining = false;  // the server shuts down: new calls are refused

@@ -15,7 +15,7 @@ class SyncHookVfs;
 
 enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig };
 
-struct CatalogueEntry {
+struct CatalogEntry {
   std::string id;
   std::string record;  // the owner's own bytes
   int attempts = 0;    // jobs: how often one was started
@@ -37,25 +37,25 @@ struct CatalogueEntry {
 // commit and in write-ahead-log mode waits for no writer. So a read never waits for a sync, and a
 // thread that reads after its own write returned sees that write. Neither mutex is held while the
 // other is taken. Thread-safe.
-class Catalogue {
+class Catalog {
  public:
   // kFailedPrecondition when a newer version wrote the file, kDataLoss when it is damaged.
-  static absl::StatusOr<std::unique_ptr<Catalogue>> Open(const std::string& path,
-                                                         SyncHook before_sync = {});
-  ~Catalogue();
-  Catalogue(const Catalogue&) = delete;
-  Catalogue& operator=(const Catalogue&) = delete;
+  static absl::StatusOr<std::unique_ptr<Catalog>> Open(const std::string& path,
+                                                       SyncHook before_sync = {});
+  ~Catalog();
+  Catalog(const Catalog&) = delete;
+  Catalog& operator=(const Catalog&) = delete;
 
   // Adds the entry or replaces the one with the same id, which keeps its place in the order.
-  absl::Status Put(EntryKind kind, const CatalogueEntry& entry);
-  absl::StatusOr<CatalogueEntry> Get(EntryKind kind, const std::string& id);  // or kNotFound
-  absl::StatusOr<std::vector<CatalogueEntry>> List(EntryKind kind);           // oldest first
-  absl::Status Delete(EntryKind kind, const std::string& id);                 // or kNotFound
+  absl::Status Put(EntryKind kind, const CatalogEntry& entry);
+  absl::StatusOr<CatalogEntry> Get(EntryKind kind, const std::string& id);  // or kNotFound
+  absl::StatusOr<std::vector<CatalogEntry>> List(EntryKind kind);           // oldest first
+  absl::Status Delete(EntryKind kind, const std::string& id);               // or kNotFound
 
  private:
   class Connection;
   class Statement;
-  Catalogue();
+  Catalog();
   absl::Status Prepare(const std::string& path);
 
   std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections

@@ -1,4 +1,4 @@
-#include "pleat/store/catalogue.h"
+#include "pleat/store/catalog.h"
 
 #include <sqlite3.h>
 
@@ -34,7 +34,7 @@ const char* KindName(EntryKind kind) {
 // `code` is the result of a call on `database`, which also has the words for it.
 absl::Status DatabaseError(sqlite3* database, int code, absl::string_view action) {
   const std::string text =
-      absl::StrCat("cannot ", action, " the catalogue: ", sqlite3_errmsg(database));
+      absl::StrCat("cannot ", action, " the catalog: ", sqlite3_errmsg(database));
   switch (code) {
     case SQLITE_FULL:
       return absl::ResourceExhaustedError(text);
@@ -52,7 +52,7 @@ absl::Status DatabaseError(sqlite3* database, int code, absl::string_view action
 }  // namespace
 
 // One open database with the mutex of its user.
-class Catalogue::Connection {
+class Catalog::Connection {
  public:
   static absl::StatusOr<std::unique_ptr<Connection>> Open(const std::string& path,
                                                           const char* vfs) {
@@ -88,7 +88,7 @@ class Catalogue::Connection {
 
 // One prepared statement with its bound values. The first call that fails, be it preparing or
 // binding, decides what Step returns, so callers check in one place.
-class Catalogue::Statement {
+class Catalog::Statement {
  public:
   Statement(Connection* connection, const char* sql)
       : database_(connection->database()),
@@ -131,34 +131,34 @@ class Catalogue::Statement {
   int code_;
 };
 
-Catalogue::Catalogue() = default;
+Catalog::Catalog() = default;
 
 // The last connection to close writes the log back into the database, so it must be the writer.
-Catalogue::~Catalogue() {
+Catalog::~Catalog() {
   reader_.reset();
   writer_.reset();
 }
 
-absl::StatusOr<std::unique_ptr<Catalogue>> Catalogue::Open(const std::string& path,
-                                                           SyncHook before_sync) {
-  std::unique_ptr<Catalogue> catalogue(new Catalogue);
-  if (before_sync) catalogue->vfs_ = std::make_unique<SyncHookVfs>(std::move(before_sync));
-  const char* vfs = catalogue->vfs_ == nullptr ? nullptr : catalogue->vfs_->name();
-  PLEAT_ASSIGN_OR_RETURN(catalogue->writer_, Connection::Open(path, vfs));
-  PLEAT_RETURN_IF_ERROR(catalogue->Prepare(path));
-  PLEAT_ASSIGN_OR_RETURN(catalogue->reader_, Connection::Open(path, vfs));
-  PLEAT_RETURN_IF_ERROR(catalogue->reader_->Execute("PRAGMA query_only=ON"));
-  return catalogue;
+absl::StatusOr<std::unique_ptr<Catalog>> Catalog::Open(const std::string& path,
+                                                       SyncHook before_sync) {
+  std::unique_ptr<Catalog> catalog(new Catalog);
+  if (before_sync) catalog->vfs_ = std::make_unique<SyncHookVfs>(std::move(before_sync));
+  const char* vfs = catalog->vfs_ == nullptr ? nullptr : catalog->vfs_->name();
+  PLEAT_ASSIGN_OR_RETURN(catalog->writer_, Connection::Open(path, vfs));
+  PLEAT_RETURN_IF_ERROR(catalog->Prepare(path));
+  PLEAT_ASSIGN_OR_RETURN(catalog->reader_, Connection::Open(path, vfs));
+  PLEAT_RETURN_IF_ERROR(catalog->reader_->Execute("PRAGMA query_only=ON"));
+  return catalog;
 }
 
-absl::Status Catalogue::Prepare(const std::string& path) {
+absl::Status Catalog::Prepare(const std::string& path) {
   PLEAT_RETURN_IF_ERROR(writer_->Execute("PRAGMA journal_mode=WAL"));
   PLEAT_RETURN_IF_ERROR(writer_->Execute("PRAGMA synchronous=FULL"));
   {
     Statement check(writer_.get(), "PRAGMA quick_check(1)");
     PLEAT_ASSIGN_OR_RETURN(const bool row, check.Step("check"));
     if (!row || check.Bytes(0) != "ok") {
-      return absl::DataLossError(absl::StrCat("the catalogue '", path,
+      return absl::DataLossError(absl::StrCat("the catalog '", path,
                                               "' is damaged: ", row ? check.Bytes(0) : "no answer",
                                               "; restore it from a backup"));
     }
@@ -170,7 +170,7 @@ absl::Status Catalogue::Prepare(const std::string& path) {
     if (row) version = query.Int(0);
   }
   if (version > kSchemaVersion) {
-    return absl::FailedPreconditionError(absl::StrCat("the catalogue '", path, "' has version ",
+    return absl::FailedPreconditionError(absl::StrCat("the catalog '", path, "' has version ",
                                                       version, ", this program reads up to ",
                                                       kSchemaVersion, "; use a newer pleatd"));
   }
@@ -185,7 +185,7 @@ absl::Status Catalogue::Prepare(const std::string& path) {
   return writer_->Execute(absl::StrCat("PRAGMA user_version=", kSchemaVersion).c_str());
 }
 
-absl::Status Catalogue::Put(EntryKind kind, const CatalogueEntry& entry) {
+absl::Status Catalog::Put(EntryKind kind, const CatalogEntry& entry) {
   std::lock_guard lock(writer_->mutex());
   Statement statement(writer_.get(),
                       "INSERT INTO entries (kind, id, record, attempts) VALUES (?1, ?2, ?3, ?4) "
@@ -197,7 +197,7 @@ absl::Status Catalogue::Put(EntryKind kind, const CatalogueEntry& entry) {
   return statement.Step("write").status();
 }
 
-absl::StatusOr<CatalogueEntry> Catalogue::Get(EntryKind kind, const std::string& id) {
+absl::StatusOr<CatalogEntry> Catalog::Get(EntryKind kind, const std::string& id) {
   std::lock_guard lock(reader_->mutex());
   Statement statement(reader_.get(),
                       "SELECT record, attempts FROM entries WHERE kind=?1 AND id=?2");
@@ -205,15 +205,15 @@ absl::StatusOr<CatalogueEntry> Catalogue::Get(EntryKind kind, const std::string&
   statement.Bind(2, id);
   PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
   if (!found) return absl::NotFoundError(absl::StrCat("no ", KindName(kind), " '", id, "'"));
-  return CatalogueEntry{id, statement.Bytes(0), statement.Int(1)};
+  return CatalogEntry{id, statement.Bytes(0), statement.Int(1)};
 }
 
-absl::StatusOr<std::vector<CatalogueEntry>> Catalogue::List(EntryKind kind) {
+absl::StatusOr<std::vector<CatalogEntry>> Catalog::List(EntryKind kind) {
   std::lock_guard lock(reader_->mutex());
   Statement statement(reader_.get(),
                       "SELECT id, record, attempts FROM entries WHERE kind=?1 ORDER BY position");
   statement.Bind(1, KindName(kind));
-  std::vector<CatalogueEntry> entries;
+  std::vector<CatalogEntry> entries;
   while (true) {
     PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
     if (!found) return entries;
@@ -221,7 +221,7 @@ absl::StatusOr<std::vector<CatalogueEntry>> Catalogue::List(EntryKind kind) {
   }
 }
 
-absl::Status Catalogue::Delete(EntryKind kind, const std::string& id) {
+absl::Status Catalog::Delete(EntryKind kind, const std::string& id) {
   std::lock_guard lock(writer_->mutex());
   Statement statement(writer_.get(), "DELETE FROM entries WHERE kind=?1 AND id=?2");
   statement.Bind(1, KindName(kind));
