@@ -36,9 +36,11 @@ PROTOBUF = r"\.pb\.h$|^google/protobuf/"
 RPC_ROOMS = ("server/reactors/", "server/handlers/", "server/grpc/")
 PROGRAMS = ("lib/", "server/", "client/")
 
-# British spellings, also inside identifiers. `cancelled` is left out because Abseil and gRPC spell it so.
+# British spellings, also inside identifiers; the file `catalogue.db` of existing stores keeps its name. `cancelled` is
+# left out because Abseil and gRPC spell it so.
 BRITISH = (
-    r"colour|centre|neighbour|behaviour|favour|honour|licence|defence|artefact|grey|metre|fibre|learnt"
+    r"catalogue(?!\.db)"
+    r"|colour|centre|neighbour|behaviour|favour|honour|licence|defence|artefact|grey|metre|fibre|learnt"
     r"|analys(?:e[dr]?(?-i:(?![a-z]))|ing)|catalys(?:ed?(?-i:(?![a-z]))|ing)"
     r"|(?:label|model|travel|signal|channel)l(?:ed|ing)"
     r"|(?:custom|discret|factor|general|initial|linear|maxim|minim|normal|optim|organ|parallel|parametr|quant|real"
