@@ -12,8 +12,10 @@ double SquaredDistanceToBox(const Eigen::Vector3d& point, const TriangleTree::No
   return (node.low - point).cwiseMax(point - node.high).cwiseMax(0.0).squaredNorm();
 }
 
-// A triangle whose sine at the first corner is below 1e-6 is a line or a point.
-constexpr double kSquaredSineOfLine = 1e-12;
+// A triangle whose height is less than 5e-6 of its longest edge is a line or a point. Rounding
+// moves the point inside of a triangle by 1e-16 / (height / edge)^2 of the edge, its edges are at
+// most the height away: there the two are equal.
+constexpr double kSquaredHeightOfLine = 2.5e-11;
 
 Eigen::Vector3d ClosestPointOnSegment(const Eigen::Vector3d& point, const Eigen::Vector3d& start,
                                       const Eigen::Vector3d& end) {
@@ -57,8 +59,9 @@ Eigen::Vector3d ClosestPointOnTriangle(const Eigen::Vector3d& point,
     const double along = (d4 - d3) + (d5 - d6);
     return b + (along > 0 ? (d4 - d3) / along : 0.0) * (c - b);
   }
-  const double squared_normal = va + vb + vc;  // |ab x ac|^2; below: |ab|^2 |ac|^2
-  if (!(squared_normal > kSquaredSineOfLine * (d1 - d3) * (d2 - d6))) {
+  const double squared_normal = va + vb + vc;  // |ab x ac|^2 = (longest edge * height)^2
+  const double longest = std::max({d1 - d3, d2 - d6, (d4 - d3) + (d5 - d6)});  // squared
+  if (!(squared_normal > kSquaredHeightOfLine * longest * longest)) {
     return ClosestPointOnEdges(point, corners);
   }
   const double scale = 1 / squared_normal;
