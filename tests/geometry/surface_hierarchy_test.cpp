@@ -77,21 +77,6 @@ TEST(SurfaceHierarchyTest, ColumnsAreIndependentAndTheTransformIsLinear) {
   EXPECT_LT((of_sum - (2 * of_a - of_b)).cwiseAbs().maxCoeff(), 1e-5);
 }
 
-TEST(SurfaceHierarchyTest, PredictsLinearFunctionsOfTheRestShapeBetterThanTheMeanDoes) {
-  const TestMesh mesh = MakeTorus(30, 15, 5);
-  const auto size_of_finest = [&](const Eigen::Matrix3Xf* rest) {
-    const SurfaceHierarchy hierarchy(mesh.topology, rest);
-    FieldMatrix fields = (Eigen::RowVector3f(1, -2, .5f) * mesh.positions).transpose();
-    hierarchy.Analyze(&fields);
-    double sum = 0;
-    for (const int v : hierarchy.order()) {
-      if (hierarchy.level(v) == 0) sum += fields.row(v).squaredNorm();
-    }
-    return sum;
-  };
-  EXPECT_LT(size_of_finest(&mesh.positions), size_of_finest(nullptr));
-}
-
 TEST(SurfaceHierarchyTest, MeshesThatHardlyHaveLevelsComeBackToo) {
   for (const TestMesh& mesh :
        {MakeTorus(3, 3, 1), WithExtra(MakeTorus(5, 5, 1), 3, {}),
