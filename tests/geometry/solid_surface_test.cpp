@@ -157,5 +157,17 @@ TEST(SolidSurfaceTest, CountsMustAgree) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("7 positions")));
 }
 
+// A vertex that only a triangle without area uses is in no triangle of the copy.
+TEST(SolidSurfaceTest, VerticesOfDegenerateTrianglesAloneAreLeftOut) {
+  TriangleMesh mesh = JoinMeshes(MakeBox({0, 0, 0}, {1, 2, 3}), MakeBox({5, 0, 0}, {6, 1, 1}));
+  mesh.triangles.col(12) << 8, 9, 8;
+  mesh.triangles.conservativeResize(3, 13);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SolidSurface surface, Prepare(mesh));
+  EXPECT_EQ(surface.report.num_degenerate_triangles, 1);
+  EXPECT_EQ(surface.positions.cols(), 8);
+  EXPECT_EQ(surface.vertex_from_input[8], -1);
+  EXPECT_EQ(surface.vertex_from_input[9], -1);
+}
+
 }  // namespace
 }  // namespace pleat

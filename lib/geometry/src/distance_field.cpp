@@ -90,19 +90,24 @@ class DistanceField::Sampler {
     const double band = kBandCells * field_.spacing_;
     for (int z = low.z(); z < high.z(); ++z) {
       for (int y = low.y(); y < high.y(); ++y) {
+        // The node before is the nearest bound, but for nodes whose distance was clamped.
+        double reach = std::numeric_limits<double>::infinity();
         for (int x = low.x(); x < high.x(); ++x) {
           const double offset = (field_.NodePosition(x, y, z) - center).norm();
           if (side == Side::kOutside && distance - offset >= band) {
             field_.distances_[field_.NodeIndex(x, y, z)] = static_cast<float>(band);
-          } else {
-            FillNode({x, y, z}, distance + offset, side);
+            continue;
           }
+          const double found =
+              FillNode({x, y, z}, std::min(distance + offset, reach + field_.spacing_), side);
+          if (side == Side::kInside) reach = found;
         }
       }
     }
   }
 
-  void FillNode(const Eigen::Vector3i& at, double reach, Side side) const {
+  // Returns the distance, clamped to the band outside.
+  double FillNode(const Eigen::Vector3i& at, double reach, Side side) const {
     const Eigen::Vector3d point = field_.NodePosition(at.x(), at.y(), at.z());
     const int node = field_.NodeIndex(at.x(), at.y(), at.z());
     const bool inside =
@@ -115,6 +120,7 @@ class DistanceField::Sampler {
     if (inside && distance > 0) {
       field_.directions_[node] = ((nearest.position - point) / distance).cast<float>();
     }
+    return distance;
   }
 
   const TriangleTree& tree_;

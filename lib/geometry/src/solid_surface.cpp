@@ -45,7 +45,7 @@ void KeepUsableTriangles(const Topology& topology,
                          SolidSurface* surface) {
   const int num_vertices = topology.num_vertices();
   const std::vector<int> welded = WeldByPosition(positions);
-  std::vector<char> referenced(num_vertices, 0);
+  std::vector<char> referenced(num_vertices, 0), is_used(num_vertices, 0);
   std::vector<Eigen::Vector3i> kept;
   for (int f = 0; f < topology.num_triangles(); ++f) {
     Eigen::Vector3i triangle = topology.triangles().col(f);
@@ -61,6 +61,7 @@ void KeepUsableTriangles(const Topology& topology,
       ++surface->report.num_degenerate_triangles;
       continue;
     }
+    for (const int vertex : triangle) is_used[vertex] = 1;
     kept.push_back(triangle);
   }
   std::vector<int> column(num_vertices, -1);
@@ -71,7 +72,7 @@ void KeepUsableTriangles(const Topology& topology,
       continue;
     }
     surface->report.num_welded_vertices += welded[v] != v;
-    if (column[welded[v]] < 0) {
+    if (is_used[welded[v]] != 0 && column[welded[v]] < 0) {
       column[welded[v]] = static_cast<int>(sources.size());
       sources.push_back(welded[v]);
     }

@@ -28,7 +28,8 @@ struct SurfaceReport {
 struct SolidSurface {
   Eigen::Matrix3Xd positions;            // 3 x W, only vertices that a triangle uses
   Eigen::Matrix3Xi triangles;            // 3 x F, consistently oriented, outward
-  std::vector<int> vertex_from_input;    // V: column of `positions`, -1 = unreferenced
+  // V: column of `positions`; -1 = in no triangle, or in such without area alone.
+  std::vector<int> vertex_from_input;
   std::vector<int> triangle_components;  // F: component index, numbered by first triangle
   SurfaceReport report;
 };
