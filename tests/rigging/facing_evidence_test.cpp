@@ -27,6 +27,8 @@ MeshSequence KneeBendSequence(const CapsuleFigure& figure, bool backward) {
   return *MeshSequence::Create(MakeTopology(figure.mesh), frames, {.name = "figure"});
 }
 
+BodyShell ShellOf(const TriangleMesh& mesh) { return {mesh.positions, mesh.triangles}; }
+
 // The same skeleton with left and right exchanged, said to face the other way.
 FacingHypothesis Opposite(const FacingHypothesis& hypothesis) {
   FacingHypothesis opposite = hypothesis;
@@ -41,16 +43,20 @@ TEST(FacingEvidence, FeetSayWhereTheFront) {
   const CapsuleFigure figure = MakeCapsuleFigure();
   const MeshSequence sequence = MakeStillSequence(figure.mesh);
   const FacingHypothesis hypothesis{.frame = 0, .joints = figure.joints};
-  EXPECT_GT(WeighFacing(sequence, hypothesis).feet, .5);
-  EXPECT_LT(WeighFacing(sequence, Opposite(hypothesis)).feet, -.5);
+  EXPECT_GT(WeighFacing(sequence, ShellOf(figure.mesh), hypothesis).feet, .5);
+  EXPECT_LT(WeighFacing(sequence, ShellOf(figure.mesh), Opposite(hypothesis)).feet, -.5);
 }
 
 TEST(FacingEvidence, KneesBendOneWay) {
   const CapsuleFigure figure = MakeCapsuleFigure();
   const FacingHypothesis hypothesis{.frame = 0, .joints = figure.joints};
-  EXPECT_GT(WeighFacing(KneeBendSequence(figure, true), hypothesis).knees, .5);
-  EXPECT_LT(WeighFacing(KneeBendSequence(figure, true), Opposite(hypothesis)).knees, -.5);
-  EXPECT_LT(WeighFacing(KneeBendSequence(figure, false), hypothesis).knees, -.5);
+  EXPECT_GT(WeighFacing(KneeBendSequence(figure, true), ShellOf(figure.mesh), hypothesis).knees,
+            .5);
+  EXPECT_LT(
+      WeighFacing(KneeBendSequence(figure, true), ShellOf(figure.mesh), Opposite(hypothesis)).knees,
+      -.5);
+  EXPECT_LT(WeighFacing(KneeBendSequence(figure, false), ShellOf(figure.mesh), hypothesis).knees,
+            -.5);
 }
 
 TEST(FacingEvidence, FollowsAnyUp) {
@@ -61,13 +67,13 @@ TEST(FacingEvidence, FollowsAnyUp) {
   turned.positions = turn * turned.positions;
   const FacingHypothesis hypothesis{
       .frame = 0, .joints = turn * figure.joints, .forward = turn.col(2), .up = turn.col(1)};
-  EXPECT_GT(WeighFacing(MakeStillSequence(turned), hypothesis).feet, .5);
+  EXPECT_GT(WeighFacing(MakeStillSequence(turned), ShellOf(turned), hypothesis).feet, .5);
 }
 
 TEST(FacingEvidence, ABallSaysNothing) {
-  const MeshSequence ball = MakeStillSequence(MakeSphere({0, .85, 0}, .8, 24));
+  const TriangleMesh ball = MakeSphere({0, .85, 0}, .8, 24);
   const FacingHypothesis hypothesis{.frame = 0, .joints = MakeCapsuleFigure({.cell_m = .1}).joints};
-  EXPECT_LT(std::abs(WeighFacing(ball, hypothesis).total()), .4);
+  EXPECT_LT(std::abs(WeighFacing(MakeStillSequence(ball), ShellOf(ball), hypothesis).total()), .4);
 }
 
 // The search is told the wrong facing alone; feet and knees put it right.

@@ -18,13 +18,7 @@ class HandPlacementTest : public testing::Test {
   const MainBody body_ = FindMainBody(volume_, 400, Eigen::Matrix3d::Identity());
   const double body_size_ = body_.bounds.sizes().maxCoeff();
 
-  Eigen::Matrix3Xd UnitJoints() const {
-    Eigen::Matrix3Xd joints = figure_.joints;
-    for (int j = 0; j < joints.cols(); ++j) {
-      joints.col(j) = volume_.scale * figure_.joints.col(j) + volume_.offset;
-    }
-    return joints;
-  }
+  Eigen::Matrix3Xd UnitJoints() const { return volume_.UnitFromWorld(figure_.joints); }
 };
 
 // A search ends at the last sphere of the limb, near the tip of the fingers.
@@ -35,7 +29,7 @@ TEST_F(HandPlacementTest, AHandAtTheTipMovesBackToFourFifthsOfTheArm) {
     joints.col(shoulder + 2) += .25 * fore;  // the figure's own tip
   }
   const Eigen::Matrix3Xd before = joints;
-  PlaceHands(volume_.surface, body_, body_size_, &joints);
+  PlaceHands(body_, body_size_, &joints);
   for (const int shoulder : kShoulders) {
     const double arm = (before.col(shoulder + 1) - before.col(shoulder)).norm() +
                        (before.col(shoulder + 2) - before.col(shoulder + 1)).norm();
@@ -56,14 +50,14 @@ TEST_F(HandPlacementTest, OtherJointsStayAndAHandThatLiesBeforeStays) {
     joints.col(shoulder + 2) -= .4 * fore;  // halfway up the forearm
   }
   const Eigen::Matrix3Xd before = joints;
-  PlaceHands(volume_.surface, body_, body_size_, &joints);
+  PlaceHands(body_, body_size_, &joints);
   EXPECT_EQ(joints, before);
 }
 
 TEST_F(HandPlacementTest, OnlyArmsMove) {
   Eigen::Matrix3Xd joints = UnitJoints();
   const Eigen::Matrix3Xd before = joints;
-  PlaceHands(volume_.surface, body_, body_size_, &joints);
+  PlaceHands(body_, body_size_, &joints);
   for (int j = 0; j < kNumHumanJoints; ++j) {
     const bool is_arm =
         j == kLeftLowerArm || j == kLeftHand || j == kRightLowerArm || j == kRightHand;

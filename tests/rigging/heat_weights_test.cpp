@@ -196,5 +196,39 @@ TEST(HeatWeightsTest, RefusesASkeletonWithoutBone) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("area")));
 }
 
+// Heat reaches everywhere; a hundredth is where painted weights begin.
+TEST(HeatWeightsTest, HaveNoTails) {
+  const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .03});
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights,
+                             ComputeHeatWeights(MakeTopology(figure.mesh), figure.mesh.positions,
+                                                FigureSkeleton(figure)));
+  const Eigen::MatrixXd dense = weights.ToDense();
+  int num_shared = 0;
+  for (int v = 0; v < dense.rows(); ++v) {
+    EXPECT_NEAR(dense.row(v).sum(), 1, 1e-6);
+    for (const double weight : dense.row(v)) EXPECT_TRUE(weight == 0 || weight > .009) << weight;
+    num_shared += (dense.row(v).array() > 0).count() > 1 ? 1 : 0;
+  }
+  EXPECT_GT(num_shared, dense.rows() / 10);
+}
+
+TEST(HeatWeightsTest, AreCarriedFromAShell) {
+  const TriangleMesh box = MakeBox({0, 0, 0}, {1, 1, 1});
+  const BodyShell shell{box.positions, box.triangles};
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(8, 3);
+  weights.col(1) = box.positions.row(0).transpose();
+  weights.col(2) = (1 - box.positions.row(0).array()).transpose();
+  Eigen::Matrix3Xd points(3, 3);
+  points << .25, 1.5, .995, .5, .5, .5, 1.2, .5, 1.1;
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const SkinWeights carried,
+      WeightsFromShell(shell, TriangleTree(shell.positions, shell.triangles), weights, points, 1));
+  const Eigen::MatrixXd dense = carried.ToDense();
+  EXPECT_NEAR(dense(0, 1), .25, 1e-6);
+  EXPECT_NEAR(dense(0, 2), .75, 1e-6);
+  EXPECT_NEAR(dense(1, 1), 1, 1e-6);
+  EXPECT_EQ(dense(2, 2), 0);  // .005 is a tail
+}
+
 }  // namespace
 }  // namespace pleat

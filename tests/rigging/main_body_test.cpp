@@ -18,10 +18,8 @@ TEST(MainBodyTest, WhatFloatsBesideTheCharacterIsLeftOut) {
   const TriangleMesh box = MakeBox({.9, .1, -.05}, {1.0, .2, .05});  // a prop
   const BodyVolume volume = VolumeOf(JoinMeshes(figure, box));
   const MainBody body = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
-  ASSERT_EQ(body.is_body.size(), 2u);
-  EXPECT_EQ(body.is_body[0] + body.is_body[1], 1);
   // The box is right of everything else.
-  const double box_left = volume.scale * .9 + volume.offset.x();
+  const double box_left = volume.UnitFromWorld(Eigen::Vector3d(.9, 0, 0))(0, 0);
   EXPECT_LT(body.bounds.max().x(), box_left);
   for (const Sphere& sphere : body.graph.spheres()) EXPECT_LT(sphere.center.x(), box_left);
 }
@@ -41,7 +39,8 @@ TEST(MainBodyTest, TurningStandsEverythingUpright) {
       Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
   const MainBody straight = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
   const MainBody turned = FindMainBody(volume, 400, turn);
-  EXPECT_LT((turned.positions - turn * straight.positions).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((turned.shell.positions - turn * straight.shell.positions).cwiseAbs().maxCoeff(),
+            1e-12);
   ASSERT_EQ(turned.graph.size(), straight.graph.size());
   for (int i = 0; i < straight.graph.size(); ++i) {
     EXPECT_LT((turned.graph.sphere(i).center - turn * straight.graph.sphere(i).center).norm(),
@@ -49,6 +48,18 @@ TEST(MainBodyTest, TurningStandsEverythingUpright) {
     EXPECT_EQ(turned.graph.sphere(i).radius, straight.graph.sphere(i).radius);
   }
   EXPECT_NEAR(turned.bounds.sizes().z(), straight.bounds.sizes().y(), 1e-12);
+}
+
+TEST(MainBodyTest, TheHorizontalAxisTurnsWithTheBody) {
+  const TriangleMesh slab = MakeBox({-1, 0, -.1}, {1, .5, .1});
+  for (const double yaw : {0., .4, 1.2, 2.8}) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    const BodyShell shell{turn * slab.positions, slab.triangles};
+    EXPECT_NEAR(
+        std::remainder(HorizontalAxisYaw(shell, Eigen::Matrix3d::Identity()) - yaw, EIGEN_PI), 0,
+        1e-6);
+  }
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ struct CapsuleFigureOptions {
   double elbow_degrees = 0;       // bend of the elbows, forwards
   double arm_length = 1;          // share of a whole arm
   bool skirt = false;             // a closed bell from the hips to above the knees
+  double leg_length = 1;          // share of a whole leg; what is above it comes down
+  double girth = 1;               // of the trunk
   double cell_m = 0.02;
 };
 
@@ -46,6 +48,12 @@ inline Eigen::Matrix3Xd CapsuleFigureJoints(const CapsuleFigureOptions& options)
   joints.col(kLeftUpperArm) << .11, .79, -.01;
   joints.col(kLeftLowerArm) = joints.col(kLeftUpperArm) + .165 * options.arm_length * along_arm;
   joints.col(kLeftHand) = joints.col(kLeftLowerArm) + .16 * options.arm_length * along_forearm;
+  // The feet keep their size.
+  const double lowered = (1 - options.leg_length) * (.51 - .04);
+  for (int j = 0; j < kNumHumanJoints; ++j) {
+    if (j == kLeftFoot || j == kLeftToes || HumanMirror()[j] < j) continue;
+    joints(1, j) -= j == kLeftLowerLeg ? .5 * lowered : lowered;
+  }
   for (int j = 0; j < kNumHumanJoints; ++j) {
     const int left = HumanMirror()[j];
     if (left < j) joints.col(j) = Eigen::Vector3d(-1, 1, 1).cwiseProduct(joints.col(left));
@@ -53,18 +61,19 @@ inline Eigen::Matrix3Xd CapsuleFigureJoints(const CapsuleFigureOptions& options)
   return joints;
 }
 
-inline CapsuleFigure MakeCapsuleFigure(const CapsuleFigureOptions& options = {}) {
+// The parts of the figure, which overlap where it bends.
+inline std::vector<Capsule> CapsuleFigureParts(const CapsuleFigureOptions& options = {}) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(options.yaw_degrees * EIGEN_PI / 180, Eigen::Vector3d::UnitY())
           .toRotationMatrix();
-  const double height = options.height_m;
+  const double height = options.height_m, girth = options.girth;
   const Eigen::Matrix3Xd joints = CapsuleFigureJoints(options);
   std::vector<Capsule> capsules;
   const auto add = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, double ra, double rb) {
     capsules.push_back({height * a, height * b, height * ra, height * rb});
   };
-  add(joints.col(kHips), joints.col(kSpine), .085, .08);
-  add(joints.col(kSpine), joints.col(kChest), .08, .085);
+  add(joints.col(kHips), joints.col(kSpine), girth * .085, girth * .08);
+  add(joints.col(kSpine), joints.col(kChest), girth * .08, .085);
   add(joints.col(kChest), joints.col(kHead), .035, .035);
   add(joints.col(kHead), joints.col(kHead) + Eigen::Vector3d(0, .005, .01), .06, .065);
   for (const auto& [hip, knee, ankle, toes, shoulder, elbow, hand] :
@@ -86,7 +95,15 @@ inline CapsuleFigure MakeCapsuleFigure(const CapsuleFigureOptions& options = {})
     capsule.start = turn * capsule.start;
     capsule.end = turn * capsule.end;
   }
-  return {MakeCapsuleBody(capsules, options.cell_m), height * (turn * joints)};
+  return capsules;
+}
+
+inline CapsuleFigure MakeCapsuleFigure(const CapsuleFigureOptions& options = {}) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(options.yaw_degrees * EIGEN_PI / 180, Eigen::Vector3d::UnitY())
+          .toRotationMatrix();
+  return {MakeCapsuleBody(CapsuleFigureParts(options), options.cell_m),
+          options.height_m * (turn * CapsuleFigureJoints(options))};
 }
 
 }  // namespace pleat

@@ -7,7 +7,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "pleat/base/status.h"
+#include "pleat/mesh/bounds.h"
 #include "pleat/rigging/body_volume.h"
 #include "pleat/skeleton/human_template.h"
 #include "rest_frame.h"
@@ -20,41 +22,48 @@ constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left a
 // says that the front is unknown, and from kClearEvidence on the residuals of other facings are no
 // reason for doubt.
 constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
+// What fits tentatively must at least have human feet or knees: a horse that rears does not.
+constexpr double kHumanEvidence = .5;
+constexpr double kSoupShare = .05;  // components per triangle: few triangles have a neighbor
+constexpr Eigen::Index kManyVertices = 150'000;
 constexpr double kShortArm = .05;  // share of a leg that is missing to half a leg
 constexpr double kUpCosine = .9;   // 26 degrees: a character that leans is no reason for a warning
 
-FacingEvidence EvidenceOf(const MeshSequence& sequence, const FrameEmbedding& found) {
+FacingEvidence EvidenceOf(const MeshSequence& sequence, const BodyShell& shell,
+                          const FrameEmbedding& found) {
   const double yaw = found.embedding.yaw_degrees * std::numbers::pi / 180;
   const Eigen::Matrix3d input_from_upright = found.upright_from_input.transpose();
-  FacingEvidence evidence = WeighFacing(
-      sequence, {.frame = found.frame,
-                 .joints = found.embedding.joints,
-                 .forward = input_from_upright * Eigen::Vector3d(std::sin(yaw), 0, std::cos(yaw)),
-                 .up = input_from_upright.col(1)});
-  // In the rest frame itself the knees bend as the template does, so they say nothing.
-  if (sequence.num_frames() == 1) evidence.knees = 0;
-  return evidence;
+  return WeighFacing(
+      sequence, shell,
+      {.frame = found.frame,
+       .joints = found.embedding.joints,
+       .forward = input_from_upright * Eigen::Vector3d(std::sin(yaw), 0, std::cos(yaw)),
+       .up = input_from_upright.col(1)});
 }
 
 // Turns the character round when feet and knees speak against the facing that the search found and
 // for the opposite one. A yaw that the user gives is never turned. Only kCancelled is an error.
 absl::Status CheckFacing(const MeshSequence& sequence, const AutoRigOptions& options,
                          FrameEmbedding* found, AutoRigSummary* summary, const Progress& progress) {
-  summary->evidence = EvidenceOf(sequence, *found);
-  if (options.yaw_degrees || summary->evidence.total() > kContraryEvidence) {
+  const BodyShell shell{found->volume->WorldFromUnit(found->volume->body->shell.positions),
+                        found->volume->body->shell.triangles};
+  summary->evidence = EvidenceOf(sequence, shell, *found);
+  if (options.yaw_degrees || !options.placed_joints.empty() ||
+      summary->evidence.total() > kContraryEvidence) {
     return absl::OkStatus();
   }
   EmbeddingOptions embedding = options.embedding;
   embedding.upright_from_input = found->upright_from_input;
   embedding.yaws_degrees = {std::fmod(found->embedding.yaw_degrees + 180, 360)};
-  absl::StatusOr<Embedding> opposite = EmbedSkeleton(found->volume, embedding, progress);
+  absl::StatusOr<Embedding> opposite = EmbedSkeleton(*found->volume, embedding, progress);
   if (absl::IsCancelled(opposite.status())) return opposite.status();
   if (!opposite.ok() || opposite->residual > options.refused_residual) return absl::OkStatus();
   FrameEmbedding turned{.frame = found->frame,
-                        .volume = {},
+                        .volume = found->volume,
                         .upright_from_input = found->upright_from_input,
-                        .embedding = *std::move(opposite)};
-  const FacingEvidence evidence = EvidenceOf(sequence, turned);
+                        .embedding = *std::move(opposite),
+                        .is_tentative = found->is_tentative};
+  const FacingEvidence evidence = EvidenceOf(sequence, shell, turned);
   if (evidence.total() < summary->evidence.total()) return absl::OkStatus();
   summary->evidence = evidence;
   summary->is_turned_by_evidence = true;
@@ -67,6 +76,13 @@ absl::Status CheckOptions(const MeshSequence& sequence, const AutoRigOptions& op
     return absl::InvalidArgumentError(absl::StrCat("rest frame ", options.rest_frame,
                                                    " is not one of the ", sequence.num_frames(),
                                                    " frames of ", sequence.name()));
+  }
+  for (const PlacedJoint& placed : options.placed_joints) {
+    if (placed.joint < 0 || placed.joint >= kNumHumanJoints || !placed.position.allFinite()) {
+      return absl::InvalidArgumentError(
+          "a placed joint must be one of the template's, at a finite "
+          "position");
+    }
   }
   if (options.yaw_degrees && !std::isfinite(*options.yaw_degrees)) {
     return absl::InvalidArgumentError("the facing (yaw) must be a finite number of degrees");
@@ -102,7 +118,17 @@ void WarnOfFacing(const Embedding& embedding, const AutoRigOptions& options,
   }
 }
 
-void WarnOfSurface(const SurfaceReport& surface, AutoRigSummary* summary) {
+void WarnOfSurface(AutoRigSummary* summary) {
+  const SurfaceReport& surface = summary->surface;
+  if (!summary->stray_parts.empty()) {
+    constexpr size_t kMostNamed = 8;
+    const size_t num_named = std::min(summary->stray_parts.size(), kMostNamed);
+    summary->warnings.push_back(absl::StrCat(
+        summary->stray_parts.size(),
+        " part(s) float beside the body and were left out of the skeleton's search, of ",
+        absl::StrJoin(summary->stray_parts.begin(), summary->stray_parts.begin() + num_named, ", "),
+        num_named < summary->stray_parts.size() ? ", ..." : "", " vertices"));
+  }
   if (surface.closed() && surface.num_components <= 1 && surface.num_flipped_triangles == 0) return;
   summary->warnings.push_back(absl::StrFormat(
       "the mesh is not one clean closed surface: %d components, %d boundary edges, %d "
@@ -122,7 +148,6 @@ void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
   summary->residual = embedding.residual;
   summary->facings = embedding.facings;
   summary->num_spheres = embedding.num_spheres;
-  summary->surface = found.volume.surface.report;
   if (embedding.residual >= options.trusted_residual) {
     summary->warnings.push_back(absl::StrFormat(
         "the skeleton fits frame %d with a residual of %.3f, above %.3f: look at the rig, and %s "
@@ -142,7 +167,44 @@ void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
         summary->up.x(), summary->up.y(), summary->up.z(), found.frame));
   }
   WarnOfFacing(embedding, options, summary);
-  WarnOfSurface(summary->surface, summary);
+}
+
+// Solves the heat weights of the rest frame and reports its surface. They are solved on the
+// vertices themselves, but on the shell for what hardly hangs together (soup), where no heat would
+// flow, and for very many vertices.
+absl::StatusOr<SkinWeights> WeighVertices(const FrameEmbedding& found, const Topology& topology,
+                                          const Eigen::Matrix3Xd& rest,
+                                          const AutoRigOptions& options, AutoRigSummary* summary,
+                                          const Progress& progress) {
+  const BodyVolume& volume = *found.volume;
+  const BodyShell& shell = volume.body->shell;
+  const Eigen::Matrix3Xd unit_rest = volume.UnitFromWorld(rest);
+  const Eigen::Matrix3Xd unit_joints = volume.UnitFromWorld(found.embedding.joints);
+  PLEAT_ASSIGN_OR_RETURN(const SolidSurface surface, PrepareSolidSurface(topology, unit_rest));
+  summary->surface = surface.report;
+  summary->stray_parts = StrayParts(surface, volume.field);
+  HeatWeightsOptions heat = options.heat;
+  heat.num_threads = options.num_threads;
+  heat.surface_tolerance = volume.body->shell_spacing;
+  heat.body_diagonal = BoundsDiagonal(shell.positions);
+  const InsideTest inside{volume.tree.get(), volume.winding_number.get(), &volume.field};
+  const bool is_soup = surface.report.num_components > kSoupShare * surface.triangles.cols();
+  if (is_soup || rest.cols() > kManyVertices) {
+    SolidSurface whole{.positions = shell.positions,
+                       .triangles = shell.triangles,
+                       .vertex_from_input = {},
+                       .triangle_components = std::vector<int>(shell.triangles.cols(), 0),
+                       .report = {}};
+    whole.report.num_components = 1;
+    PLEAT_ASSIGN_OR_RETURN(const Eigen::MatrixXd weights,
+                           SolveHeatEquilibrium(whole, inside, HumanTemplate(), unit_joints, heat,
+                                                &summary->heat, progress));
+    return WeightsFromShell(shell, *volume.tree, weights, unit_rest, options.num_threads);
+  }
+  PLEAT_ASSIGN_OR_RETURN(const Eigen::MatrixXd weights,
+                         SolveHeatEquilibrium(surface, inside, HumanTemplate(), unit_joints, heat,
+                                              &summary->heat, progress));
+  return WeightsOfInput(surface, weights, unit_rest, HumanTemplate(), unit_joints);
 }
 
 }  // namespace
@@ -156,24 +218,22 @@ absl::StatusOr<Rig> AutoRig(const MeshSequence& sequence, const AutoRigOptions& 
   PLEAT_ASSIGN_OR_RETURN(FrameEmbedding found,
                          FindRestFrame(sequence, options, summary, progress.Stage("rig", 0, .7)));
   PLEAT_RETURN_IF_ERROR(CheckFacing(sequence, options, &found, summary, progress));
+  if (found.is_tentative && summary->evidence.total() < kHumanEvidence) {
+    return absl::FailedPreconditionError(absl::StrFormat(
+        "%s does not look like one standing human: in frame %d the skeleton fits with a residual "
+        "of %.3f only if it is turned over or its forearms may point anywhere, and neither feet "
+        "nor knees are those of a human; %s",
+        sequence.name(), found.frame, found.embedding.residual, kRigAdvice));
+  }
   FillSummary(found, options, summary);
 
   const Skeleton skeleton = HumanTemplate().WithRestPositions(found.embedding.joints);
-  const BodyVolume& volume = found.volume;
-  const Eigen::Matrix3Xd unit_joints =
-      (volume.scale * found.embedding.joints).colwise() + volume.offset;
-  HeatWeightsOptions heat_options = options.heat;
-  heat_options.num_threads = options.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(
-      const Eigen::MatrixXd weights,
-      SolveHeatEquilibrium(
-          volume.surface, {volume.tree.get(), volume.winding_number.get(), &volume.field}, skeleton,
-          unit_joints, heat_options, &summary->heat, progress.Stage("rig", .7, 1)));
   const Eigen::Matrix3Xd rest = sequence.FrameAsDouble(found.frame);
-  PLEAT_ASSIGN_OR_RETURN(
-      SkinWeights skin_weights,
-      WeightsOfInput(volume.surface, weights, rest, skeleton, found.embedding.joints));
-  return Rig{skeleton, std::move(skin_weights), rest};
+  PLEAT_ASSIGN_OR_RETURN(SkinWeights weights,
+                         WeighVertices(found, sequence.topology(), rest, options, summary,
+                                       progress.Stage("rig", .7, 1)));
+  WarnOfSurface(summary);
+  return Rig{skeleton, std::move(weights), rest};
 }
 
 }  // namespace pleat

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
+#include "crotch.h"
+#include "foot_placement.h"
 #include "hand_placement.h"
 #include "main_body.h"
 #include "pleat/base/status.h"
@@ -27,18 +29,17 @@ constexpr double kArmShare = .5;
 // Shares of the template's way from chest to hand: shorter arms may go on, longer ones are
 // something else.
 constexpr double kWholeArm = .85, kLongestArm = 1.3;
+// The hips of the legs lie that much higher above the sole than the crotch.
+constexpr double kHipsPerCrotch = 1.1;
 constexpr double kSharedArm = .6;  // share of the way to the end that the search found
 
-// Returns the share of the area of the body's components that lies farther than `reach` from every
-// bone.
-double UncoveredShare(const SolidSurface& surface, const MainBody& body,
-                      const Eigen::Matrix3Xd& joints, double reach) {
+// Returns the share of the shell's area that lies farther than `reach` from every bone.
+double UncoveredShare(const BodyShell& shell, const Eigen::Matrix3Xd& joints, double reach) {
   double total = 0, uncovered = 0;
-  for (int f = 0; f < surface.triangles.cols(); ++f) {
-    if (body.is_body[surface.triangle_components[f]] == 0) continue;
-    const Eigen::Vector3d a = body.positions.col(surface.triangles(0, f));
-    const Eigen::Vector3d b = body.positions.col(surface.triangles(1, f));
-    const Eigen::Vector3d c = body.positions.col(surface.triangles(2, f));
+  for (int f = 0; f < shell.triangles.cols(); ++f) {
+    const Eigen::Vector3d a = shell.positions.col(shell.triangles(0, f));
+    const Eigen::Vector3d b = shell.positions.col(shell.triangles(1, f));
+    const Eigen::Vector3d c = shell.positions.col(shell.triangles(2, f));
     const double area = (b - a).cross(c - a).norm();
     total += area;
     const NearestBones nearest = FindNearestBones(HumanTemplate(), joints, (a + b + c) / 3);
@@ -73,7 +74,7 @@ Eigen::Matrix3Xd TurnedTemplate(double yaw_rad, double body_size) {
 // Turns points of the upright unit box into those of the input.
 Eigen::Matrix3Xd WorldFromUpright(const BodyVolume& volume, const Eigen::Matrix3d& upright,
                                   const Eigen::Matrix3Xd& points) {
-  return ((upright.transpose() * points).colwise() - volume.offset) / volume.scale;
+  return volume.WorldFromUnit(upright.transpose() * points);
 }
 
 // One facing of the template and how far its search has come. The members refer to each other (the
@@ -204,6 +205,108 @@ absl::StatusOr<const FacingSearch*> AdjustFacing(
   return adjusted.found ? &adjusted : best;
 }
 
+void KeepPlaced(const std::vector<PlacedJoint>& placed, Eigen::Matrix3Xd* joints) {
+  for (const PlacedJoint& joint : placed) joints->col(joint.joint) = joint.position;
+}
+
+// Refines the joints, finds what the surface shows of hands, feet and crotch with them, and refines
+// the others again.
+Eigen::Matrix3Xd RefineTwice(const BodyVolume& volume, const MainBody& body,
+                             const Eigen::Matrix3Xd& start, const Eigen::Matrix3Xd& template_joints,
+                             const EmbeddingOptions& options) {
+  RefinementOptions refinement = options.refinement;
+  for (const PlacedJoint& placed : options.placed) refinement.held_joints.push_back(placed.joint);
+  Eigen::Matrix3Xd joints =
+      RefineEmbedding(start, template_joints, body.medial_samples, refinement);
+  const double height = body.bounds.sizes().y(), sole = body.bounds.min().y();
+  const std::optional<double> crotch =
+      CrotchHeight(volume.field, options.upright_from_input, joints, height);
+  if (crotch) refinement.hip_height = sole + kHipsPerCrotch * (*crotch - sole);
+  PlaceHands(body, body.bounds.sizes().maxCoeff(), &joints);
+  refinement.held_joints.insert(refinement.held_joints.end(), {kLeftHand, kRightHand});
+  const std::array<bool, 2> has_foot = PlaceFeet(body, &joints);
+  for (int side = 0; side < 2; ++side) {
+    if (!has_foot[side]) continue;
+    const int ankle = side == 0 ? kLeftFoot : kRightFoot;
+    refinement.held_joints.insert(refinement.held_joints.end(), {ankle, ankle + 1});
+  }
+  KeepPlaced(options.placed, &joints);
+  return RefineEmbedding(joints, template_joints, body.medial_samples, refinement);
+}
+
+// Adds the facings along the horizontal principal axes of the body where they lie between those
+// that are tried anyway: left and right hand are farthest from each other in most poses.
+void AddAlignedYaws(const MainBody& body, EmbeddingOptions* options) {
+  const double yaw = HorizontalAxisYaw(body.shell, Eigen::Matrix3d::Identity()) * kDegrees;
+  for (const double tried : options->yaws_degrees) {
+    if (std::abs(std::remainder(yaw - tried, 90)) < kMinYawChangeDegrees) return;
+  }
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    options->yaws_degrees.push_back(std::fmod(yaw + 360 + 90 * quarter, 360));
+  }
+}
+
+// Lays the template into the bounds of the body, facing where the placed joints fit best.
+Eigen::Matrix3Xd TemplateInBounds(const MainBody& body, const EmbeddingOptions& options,
+                                  double* yaw_degrees) {
+  Eigen::Vector3d floor = body.bounds.center();
+  floor.y() = body.bounds.min().y();
+  Eigen::Matrix3Xd best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double yaw : options.yaws_degrees) {
+    const Eigen::Matrix3Xd joints =
+        TurnedTemplate(yaw / kDegrees, body.bounds.sizes().y()).colwise() + floor;
+    double error = 0;
+    for (const PlacedJoint& placed : options.placed) {
+      error += (joints.col(placed.joint) - placed.position).squaredNorm();
+    }
+    if (error >= least) continue;
+    least = error;
+    best = joints;
+    *yaw_degrees = yaw;
+  }
+  return best;
+}
+
+// Searches the cheapest placement of all facings and returns all joints at its paths. Fills the
+// residual, the yaw and the facings of `embedding`. kNotFound when there is none and no joint is
+// placed.
+absl::StatusOr<Eigen::Matrix3Xd> SearchJoints(const MainBody& body, const EmbeddingOptions& options,
+                                              Embedding* embedding, const Progress& progress) {
+  const SphereGraph& graph = body.graph;
+  const double body_size = body.bounds.sizes().maxCoeff();
+  const double floor_height = body.bounds.min().y();
+  std::vector<std::unique_ptr<FacingSearch>> searches;
+  for (double yaw : options.yaws_degrees) {
+    searches.push_back(
+        std::make_unique<FacingSearch>(graph, yaw, floor_height, body_size, options));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const FacingSearch* best, SearchFacings(options, searches, progress));
+  if (!best && !options.placed.empty()) {
+    embedding->search_residual = options.search.max_bound;
+    return TemplateInBounds(body, options, &embedding->yaw_degrees);
+  }
+  if (!best) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& search : searches) least = std::min(least, search->facing.residual);
+    return absl::NotFoundError(absl::StrFormat(
+        "the human skeleton does not fit this body: its residual is above %.2f in each of the %d "
+        "facings tried",
+        least, searches.size()));
+  }
+  if (options.adjust_yaw) {
+    PLEAT_ASSIGN_OR_RETURN(
+        best, AdjustFacing(graph, best, floor_height, body_size, options, &searches, progress));
+  }
+  embedding->search_residual = best->facing.residual;
+  embedding->yaw_degrees = best->facing.yaw_degrees;
+  for (const auto& search : searches) embedding->facings.push_back(search->facing);
+  Eigen::Matrix3Xd joints =
+      PlaceAllJoints(graph, best->tree, WithWholeArms(best->model, best->found->spheres));
+  PlaceHands(body, body_size, &joints);
+  return joints;
+}
+
 // Computes Embedding::arm_shortfall.
 double ArmShortfall(const Eigen::Matrix3Xd& joints) {
   const auto length = [&](int from, int over, int to) {
@@ -230,51 +333,32 @@ Eigen::Matrix3d UprightFromJoints(const Eigen::Matrix3Xd& joints) {
   return upright;
 }
 
-absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const EmbeddingOptions& options,
+absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const EmbeddingOptions& given,
                                         const Progress& progress) {
-  if (options.yaws_degrees.empty()) {
+  if (given.yaws_degrees.empty()) {
     return absl::InvalidArgumentError("no facing to try for the skeleton");
   }
-  const MainBody body = FindMainBody(volume, options.max_spheres, options.upright_from_input);
-  const SphereGraph& graph = body.graph;
-  const double body_size = body.bounds.sizes().maxCoeff();
-  const double floor_height = body.bounds.min().y();
-
-  std::vector<std::unique_ptr<FacingSearch>> searches;
-  for (double yaw : options.yaws_degrees) {
-    searches.push_back(
-        std::make_unique<FacingSearch>(graph, yaw, floor_height, body_size, options));
-  }
-  PLEAT_ASSIGN_OR_RETURN(const FacingSearch* best, SearchFacings(options, searches, progress));
-  if (!best) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const auto& search : searches) least = std::min(least, search->facing.residual);
-    return absl::NotFoundError(absl::StrFormat(
-        "the human skeleton does not fit this body: its residual is above %.2f in each of the %d "
-        "facings tried",
-        least, searches.size()));
-  }
-  if (options.adjust_yaw) {
-    PLEAT_ASSIGN_OR_RETURN(
-        best, AdjustFacing(graph, best, floor_height, body_size, options, &searches, progress));
-  }
-  Embedding embedding;
-  embedding.num_spheres = graph.size();
-  embedding.search_residual = best->facing.residual;
-  embedding.yaw_degrees = best->facing.yaw_degrees;
-  for (const auto& search : searches) embedding.facings.push_back(search->facing);
-  Eigen::Matrix3Xd best_joints =
-      PlaceAllJoints(graph, best->tree, WithWholeArms(best->model, best->found->spheres));
-  PlaceHands(volume.surface, body, body_size, &best_joints);
+  EmbeddingOptions options = given;
   const Eigen::Matrix3d& upright = options.upright_from_input;
-  embedding.initial_joints = WorldFromUpright(volume, upright, best_joints);
-  const Eigen::Matrix3Xd refined =
-      RefineEmbedding(best_joints, TurnedTemplate(embedding.yaw_degrees / kDegrees, body_size),
-                      body.medial_samples, options.refinement);
-  embedding.joints = WorldFromUpright(volume, upright, refined);
-  embedding.arm_shortfall = ArmShortfall(refined);
+  for (PlacedJoint& placed : options.placed) {
+    placed.position = upright * volume.UnitFromWorld(placed.position);
+  }
+  options.penalties.placed = options.placed;
+  const MainBody body = FindMainBody(volume, options.max_spheres, upright);
+  if (options.adjust_yaw && options.yaws_degrees.size() > 1) AddAlignedYaws(body, &options);
+  const double body_size = body.bounds.sizes().maxCoeff();
+  Embedding embedding;
+  embedding.num_spheres = body.graph.size();
+  PLEAT_ASSIGN_OR_RETURN(Eigen::Matrix3Xd joints,
+                         SearchJoints(body, options, &embedding, progress));
+  KeepPlaced(options.placed, &joints);
+  embedding.initial_joints = WorldFromUpright(volume, upright, joints);
+  joints = RefineTwice(volume, body, joints,
+                       TurnedTemplate(embedding.yaw_degrees / kDegrees, body_size), options);
+  embedding.joints = WorldFromUpright(volume, upright, joints);
+  embedding.arm_shortfall = ArmShortfall(joints);
   embedding.uncovered_share =
-      UncoveredShare(volume.surface, body, refined, options.cover_distance * body_size);
+      UncoveredShare(body.shell, joints, options.cover_distance * body_size);
   embedding.residual = embedding.search_residual +
                        options.uncovered_weight * std::min(0.25, embedding.uncovered_share);
   PLEAT_RETURN_IF_ERROR(progress.Report(1));

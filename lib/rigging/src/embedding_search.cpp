@@ -45,6 +45,8 @@
 namespace pleat {
 namespace {
 
+constexpr double kCapMargin = .05;  // facings are measured up to a margin above the best one
+
 struct State {
   double cost = 0;  // cost of the joints placed
   int num_placed = 0;
@@ -59,7 +61,8 @@ struct State {
 // infinite, and so is the remainder where no candidate is left.
 class EmbeddingSearch::PairTable {
  public:
-  explicit PairTable(const PenaltyModel& model) {
+  // Placements that cost more than `cap` are not told apart.
+  PairTable(const PenaltyModel& model, double cap) {
     const SearchTree& tree = model.tree();
     const int num_joints = static_cast<int>(tree.size());
     costs_.resize(num_joints);
@@ -72,7 +75,7 @@ class EmbeddingSearch::PairTable {
       costs_[j].resize(own.size(), parents.size());
       for (size_t p = 0; p < parents.size(); ++p) {
         for (size_t c = 0; c < own.size(); ++c) {
-          costs_[j](c, p) = model.PairPenalty(j, own[c], parents[p]);
+          costs_[j](c, p) = model.PairPenalty(j, own[c], parents[p], cap);
         }
       }
       remainders_[j] = (costs_[j].colwise() + subtree[j]).colwise().minCoeff().transpose();
@@ -186,7 +189,9 @@ class EmbeddingSearch::BestFirst {
 };
 
 EmbeddingSearch::EmbeddingSearch(const PenaltyModel& model, const SearchOptions& options)
-    : model_(model), options_(options), table_(std::make_unique<const PairTable>(model)) {}
+    : model_(model),
+      options_(options),
+      table_(std::make_unique<const PairTable>(model, options.max_bound + kCapMargin)) {}
 
 EmbeddingSearch::~EmbeddingSearch() = default;
 

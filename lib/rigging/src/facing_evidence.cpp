@@ -11,10 +11,11 @@
 namespace pleat {
 namespace {
 
-// Shares of the lower leg's length, from the knee: the two stretches whose centers give its line,
-// and where the foot begins.
-constexpr double kShankBegin = .3, kShankMiddle = .6, kShankEnd = .85, kFootBegin = .97;
+// Shares of the lower leg's length, from the knee: the stretch whose center gives its line, and
+// where the foot begins.
+constexpr double kShankBegin = .5, kShankEnd = .85, kFootBegin = .97;
 constexpr int kMinBoneVertices = 12;
+constexpr Eigen::Index kEnoughVertices = 20'000;  // of a whole body, to follow the legs
 
 struct Leg {
   int hip, knee, ankle, toes;
@@ -22,10 +23,11 @@ struct Leg {
 constexpr Leg kLegs[2] = {{kLeftUpperLeg, kLeftLowerLeg, kLeftFoot, kLeftToes},
                           {kRightUpperLeg, kRightLowerLeg, kRightFoot, kRightToes}};
 
-std::vector<int> BonesOfVertices(const Eigen::Matrix3Xd& positions,
-                                 const Eigen::Matrix3Xd& joints) {
-  std::vector<int> bones(positions.cols());
-  for (Eigen::Index v = 0; v < positions.cols(); ++v) {
+// Returns the nearest bone of every `stride`th vertex, -1 for the others.
+std::vector<int> BonesOfVertices(const Eigen::Matrix3Xd& positions, const Eigen::Matrix3Xd& joints,
+                                 Eigen::Index stride = 1) {
+  std::vector<int> bones(positions.cols(), -1);
+  for (Eigen::Index v = 0; v < positions.cols(); v += stride) {
     bones[v] = FindNearestBones(HumanTemplate(), joints, positions.col(v)).bones[0];
   }
   return bones;
@@ -42,34 +44,34 @@ struct Centroid {
   Eigen::Vector3d mean() const { return sum / area; }
 };
 
-// Returns how far the foot's center lies before the line of its lower leg, in meters; 0 without a
-// foot.
-double FootOffset(const Topology& topology, const Eigen::Matrix3Xd& positions,
-                  const std::vector<int>& bones, const FacingHypothesis& hypothesis,
-                  const Leg& leg) {
+// Returns how far the foot's center lies before the line from the knee through the lower leg, in
+// meters; 0 without a foot.
+double FootOffset(const BodyShell& shell, const std::vector<int>& bones,
+                  const FacingHypothesis& hypothesis, const Leg& leg) {
   const Eigen::Vector3d knee = hypothesis.joints.col(leg.knee);
   const Eigen::Vector3d shank = Eigen::Vector3d(hypothesis.joints.col(leg.ankle)) - knee;
   const double length = shank.norm();
   if (!(length > 0)) return 0;
-  Centroid upper, lower, foot;
-  for (int f = 0; f < topology.num_triangles(); ++f) {
-    const Eigen::Vector3i corners = topology.triangles().col(f);
+  Centroid lower, foot;
+  for (Eigen::Index f = 0; f < shell.triangles.cols(); ++f) {
+    const Eigen::Vector3i corners = shell.triangles.col(f);
     const int bone = bones[corners[0]];
     // Bones are named after the joint in which they end: the bone of the ankle is the lower leg.
     if (bone != leg.ankle && bone != leg.toes) continue;
-    const Eigen::Vector3d a = positions.col(corners[0]);
-    const Eigen::Vector3d b = positions.col(corners[1]), c = positions.col(corners[2]);
+    const Eigen::Vector3d a = shell.positions.col(corners[0]);
+    const Eigen::Vector3d b = shell.positions.col(corners[1]);
+    const Eigen::Vector3d c = shell.positions.col(corners[2]);
     const Eigen::Vector3d center = (a + b + c) / 3;
     const double area = (b - a).cross(c - a).norm();
     const double along = (center - knee).dot(shank) / (length * length);
     if (along > kFootBegin) {
       foot.Add(center, area);
     } else if (along > kShankBegin && along < kShankEnd) {
-      (along < kShankMiddle ? upper : lower).Add(center, area);
+      lower.Add(center, area);
     }
   }
-  if (!(upper.area > 0 && lower.area > 0 && foot.area > 0)) return 0;
-  const Eigen::Vector3d line = lower.mean() - upper.mean();
+  if (!(lower.area > 0 && foot.area > 0)) return 0;
+  const Eigen::Vector3d line = lower.mean() - knee;
   const double slope = line.dot(shank);
   if (!(slope > 0)) return 0;
   const Eigen::Vector3d below =
@@ -129,17 +131,22 @@ double Clip(double value) { return std::clamp(value, -1.0, 1.0); }
 
 }  // namespace
 
-FacingEvidence WeighFacing(const MeshSequence& sequence, const FacingHypothesis& hypothesis,
+FacingEvidence WeighFacing(const MeshSequence& sequence, const BodyShell& shell,
+                           const FacingHypothesis& hypothesis,
                            const FacingEvidenceOptions& options) {
-  const Eigen::Matrix3Xd rest = sequence.FrameAsDouble(hypothesis.frame);
-  const std::vector<int> bones = BonesOfVertices(rest, hypothesis.joints);
   const Eigen::RowVectorXd heights = hypothesis.up.transpose() * hypothesis.joints;
   const double height = std::max(heights.maxCoeff() - heights.minCoeff(), 1e-300);
   FacingEvidence evidence;
+  const std::vector<int> shell_bones = BonesOfVertices(shell.positions, hypothesis.joints);
   for (const Leg& leg : kLegs) {
-    evidence.feet += 0.5 * Clip(FootOffset(sequence.topology(), rest, bones, hypothesis, leg) /
+    evidence.feet += 0.5 * Clip(FootOffset(shell, shell_bones, hypothesis, leg) /
                                 (height * options.sure_foot_offset));
   }
+  // In the rest frame itself the knees bend as the template does, so they say nothing.
+  if (sequence.num_frames() == 1) return evidence;
+  const Eigen::Matrix3Xd rest = sequence.FrameAsDouble(hypothesis.frame);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, rest.cols() / kEnoughVertices);
+  const std::vector<int> bones = BonesOfVertices(rest, hypothesis.joints, stride);
   evidence.knees = Clip(MeanKneeBend(sequence, rest, bones, hypothesis, options.max_frames) /
                         options.sure_knee_bend);
   return evidence;

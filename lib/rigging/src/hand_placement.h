@@ -5,16 +5,14 @@
 #include <Eigen/Core>
 
 #include "main_body.h"
-#include "pleat/geometry/solid_surface.h"
 
 namespace pleat {
 
 // Moves each hand back along its forearm to four fifths of the way from the shoulder to the tip of
 // the arm, and the elbow with it: between a wrist with an open hand (.755 of the arm's length by
 // Drillis and Contini 1966) and one with a fist (.85). A hand that lies before that stays, and so
-// does one whose tip cannot be told from what it touches. `surface` and `joints` (3 x 18, template
-// order) are those of `body`; body_size is its longest side.
-void PlaceHands(const SolidSurface& surface, const MainBody& body, double body_size,
-                Eigen::Matrix3Xd* joints);
+// does one whose tip cannot be told from what it touches. `joints` (3 x 18, template order) are
+// those of `body`; body_size is its longest side.
+void PlaceHands(const MainBody& body, double body_size, Eigen::Matrix3Xd* joints);
 
 }  // namespace pleat

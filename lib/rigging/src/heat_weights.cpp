@@ -15,7 +15,8 @@
 namespace pleat {
 namespace {
 
-constexpr double kToleranceFraction = 0.002;   // share of the diagonal: visibility, about 4 mm
+constexpr double kToleranceFraction = 0.002;  // share of the diagonal: visibility, about 4 mm
+constexpr double kLeastWeight = .01;
 constexpr double kMinDistanceFraction = 1e-4;  // share of the diagonal: keeps c / d^2 finite
 
 // Returns a third of the area of the triangles around each vertex, W.
@@ -59,6 +60,12 @@ std::vector<Eigen::Triplet<double>> CotangentTriplets(const SolidSurface& surfac
   return triplets;
 }
 
+// Heat reaches everywhere, but nobody paints weights under a hundredth.
+void DropTails(Eigen::MatrixXd::RowXpr weights) {
+  const double least = kLeastWeight * weights.sum();
+  weights = (weights.array() < least).select(0, weights);
+}
+
 // Gives components none of whose vertices sees a bone their nearest bones, through the air. Such a
 // component would have H = 0 everywhere and make the system singular.
 void HeatColdComponents(const SolidSurface& surface, const Skeleton& skeleton,
@@ -98,12 +105,13 @@ absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
                                                    joints.cols(), " positions"));
   }
   const int num_vertices = static_cast<int>(surface.positions.cols());
-  const double diagonal = BoundsDiagonal(surface.positions);
+  const double diagonal =
+      options.body_diagonal > 0 ? options.body_diagonal : BoundsDiagonal(surface.positions);
+  const double tolerance = std::max(kToleranceFraction * diagonal, options.surface_tolerance);
   std::vector<NearestBones> nearest(num_vertices);
   ParallelFor(num_vertices, options.num_threads, [&](int v) {
     if (progress.cancelled()) return;
-    nearest[v] = FindNearestBones(skeleton, joints, surface.positions.col(v), &inside,
-                                  kToleranceFraction * diagonal);
+    nearest[v] = FindNearestBones(skeleton, joints, surface.positions.col(v), &inside, tolerance);
   });
   PLEAT_RETURN_IF_ERROR(progress.Report(0.7));
   for (const NearestBones& bones : nearest) summary->num_hidden_vertices += bones.bones.empty();
@@ -142,12 +150,39 @@ absl::StatusOr<SkinWeights> WeightsOfInput(const SolidSurface& surface,
     const int source = surface.vertex_from_input[v];
     if (source >= 0) {
       dense.row(v) = surface_weights.row(source);
+      DropTails(dense.row(v));
     } else {
       for (int b : FindNearestBones(skeleton, joints, positions.col(v)).bones) {
         dense(v, b) = 1;
       }
     }
   }
+  return SkinWeights::FromDense(dense);
+}
+
+absl::StatusOr<SkinWeights> WeightsFromShell(const BodyShell& shell, const TriangleTree& tree,
+                                             const Eigen::MatrixXd& shell_weights,
+                                             const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                             int num_threads) {
+  Eigen::MatrixXd dense(positions.cols(), shell_weights.cols());
+  PLEAT_RETURN_IF_ERROR(
+      ParallelForPieces(static_cast<int>(positions.cols()), 4096, num_threads, {}, [&](int v) {
+        const SurfacePoint nearest = tree.ClosestPoint(positions.col(v));
+        const Eigen::Vector3i corners = shell.triangles.col(nearest.triangle);
+        Eigen::Vector3d shares;  // by the areas opposite to the corners
+        for (int k = 0; k < 3; ++k) {
+          const Eigen::Vector3d a = shell.positions.col(corners[(k + 1) % 3]);
+          const Eigen::Vector3d b = shell.positions.col(corners[(k + 2) % 3]);
+          shares[k] = (a - nearest.position).cross(b - nearest.position).norm();
+        }
+        const double sum = shares.sum();
+        if (!(sum > 0)) shares.setOnes();
+        shares /= shares.sum();
+        dense.row(v) = shares[0] * shell_weights.row(corners[0]) +
+                       shares[1] * shell_weights.row(corners[1]) +
+                       shares[2] * shell_weights.row(corners[2]);
+        DropTails(dense.row(v));
+      }));
   return SkinWeights::FromDense(dense);
 }
 

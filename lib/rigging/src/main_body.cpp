@@ -1,8 +1,10 @@
 #include "main_body.h"
 
-#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
+
+#include "pleat/mesh/bounds.h"
 
 namespace pleat {
 namespace {
@@ -41,43 +43,42 @@ SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) 
   return SphereGraph(std::move(spheres), edges);
 }
 
-// Finds the components with a triangle whose first corner is next to one of the spheres.
-std::vector<char> ComponentsAround(const SphereGraph& graph, const SolidSurface& surface,
-                                   const Eigen::Matrix3Xd& positions, double spacing) {
-  std::vector<char> is_body(surface.report.num_components, 0);
-  for (int f = 0; f < surface.triangles.cols(); ++f) {
-    char& known = is_body[surface.triangle_components[f]];
-    if (known != 0) continue;
-    const Eigen::Vector3d corner = positions.col(surface.triangles(0, f));
-    known = std::any_of(graph.spheres().begin(), graph.spheres().end(), [&](const Sphere& sphere) {
-      return (sphere.center - corner).norm() < 1.5 * sphere.radius + spacing;
-    });
-  }
-  return is_body;
-}
-
 }  // namespace
 
 MainBody FindMainBody(const BodyVolume& volume, int max_spheres,
                       const Eigen::Matrix3d& upright_from_input) {
   const SphereGraph whole(PackSpheres(volume.medial_samples, max_spheres), volume.field);
+  const BodyShell& shell = volume.body->shell;
   MainBody body{LargestGroup(whole, upright_from_input),
                 volume.medial_samples,
-                upright_from_input * volume.surface.positions,
-                {},
+                {upright_from_input * shell.positions, shell.triangles},
                 {}};
   for (MedialSample& sample : body.medial_samples) {
     sample.position = upright_from_input * sample.position;
   }
-  const SolidSurface& surface = volume.surface;
-  body.is_body = ComponentsAround(body.graph, surface, body.positions, volume.field.spacing());
-  for (int f = 0; f < surface.triangles.cols(); ++f) {
-    if (body.is_body[surface.triangle_components[f]] == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      body.bounds.extend(Eigen::Vector3d(body.positions.col(surface.triangles(k, f))));
-    }
-  }
+  body.bounds = ComputeBounds(body.shell.positions);
   return body;
+}
+
+double HorizontalAxisYaw(const BodyShell& shell, const Eigen::Matrix3d& upright_from_shell) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
+  double total = 0;
+  for (Eigen::Index f = 0; f < shell.triangles.cols(); ++f) {
+    const Eigen::Vector3d a = shell.positions.col(shell.triangles(0, f));
+    const Eigen::Vector3d b = shell.positions.col(shell.triangles(1, f));
+    const Eigen::Vector3d c = shell.positions.col(shell.triangles(2, f));
+    const double area = (b - a).cross(c - a).norm();
+    const Eigen::Vector3d center = upright_from_shell * ((a + b + c) / 3);
+    const Eigen::Vector2d place(center.x(), center.z());
+    sum += area * place;
+    products += area * place * place.transpose();
+    total += area;
+  }
+  const Eigen::Matrix2d covariance = products / total - sum * sum.transpose() / (total * total);
+  // The direction of the larger eigenvalue of a symmetric 2 x 2 matrix.
+  const double angle = .5 * std::atan2(2 * covariance(0, 1), covariance(0, 0) - covariance(1, 1));
+  return angle > 0 ? std::numbers::pi - angle : -angle;
 }
 
 }  // namespace pleat

@@ -1,4 +1,4 @@
-// Finds what of a volume is the character: the input of the embedding's search, stood upright.
+// The input of the embedding's search, stood upright.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,14 +14,17 @@ namespace pleat {
 struct MainBody {
   SphereGraph graph;  // the spheres that hang together and hold the most volume
   std::vector<MedialSample> medial_samples;
-  Eigen::Matrix3Xd positions;  // 3 x W, of volume.surface
-  std::vector<char> is_body;   // per mesh component: false for what floats beside the character
-  Eigen::AlignedBox3d bounds;  // box of the components that are body
+  BodyShell shell;
+  Eigen::AlignedBox3d bounds;  // of the shell
 };
 
 // Packs the spheres, connects them and keeps the group of spheres with the largest volume. The
 // field stays in the axes of the input: edges are found before the spheres are turned.
 MainBody FindMainBody(const BodyVolume& volume, int max_spheres,
                       const Eigen::Matrix3d& upright_from_input);
+
+// Returns the angle about +y (in [0, pi)) by which a template must be turned so that its left
+// points along the horizontal principal axis of the shell, stood up by `upright_from_shell`.
+double HorizontalAxisYaw(const BodyShell& shell, const Eigen::Matrix3d& upright_from_shell);
 
 }  // namespace pleat

@@ -5,13 +5,27 @@
 #include <limits>
 #include <numeric>
 
+#include "pleat/skeleton/human_template.h"
+
 namespace pleat {
 namespace {
 
 constexpr double kOppositeCosine = -0.7;  // neighbors that far apart make a limb, not its end
+constexpr size_t kPlacedCandidates = 3;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double Square(double x) { return x * x; }
+
+// Returns the spheres nearest to `place`.
+std::vector<int> SpheresNear(const SphereGraph& graph, const Eigen::Vector3d& place) {
+  std::vector<int> nearest(graph.size());
+  std::iota(nearest.begin(), nearest.end(), 0);
+  std::stable_sort(nearest.begin(), nearest.end(), [&](int a, int b) {
+    return (graph.sphere(a).center - place).norm() < (graph.sphere(b).center - place).norm();
+  });
+  nearest.resize(std::min(nearest.size(), kPlacedCandidates));
+  return nearest;
+}
 
 // Returns 0 for equal directions, .09 at 45 degrees (arms of a T-pose against the template's), 2 at
 // a right angle, 10 for opposite ones, and that of a right angle when one has no length.
@@ -64,6 +78,11 @@ PenaltyModel::PenaltyModel(const SphereGraph& graph, const SearchTree& tree, dou
   std::stable_sort(by_radius.begin(), by_radius.end(),
                    [&](int a, int b) { return graph.sphere(a).radius > graph.sphere(b).radius; });
   for (size_t j = 0; j < tree.size(); ++j) {
+    const auto placed = std::ranges::find(options.placed, tree[j].human_joint, &PlacedJoint::joint);
+    if (placed != options.placed.end()) {
+      candidates_[j] = SpheresNear(graph, placed->position);
+      continue;
+    }
     if (tree[j].is_deep) {
       const size_t count = std::min<size_t>(by_radius.size(), options.max_deep_candidates);
       candidates_[j].assign(by_radius.begin(), by_radius.begin() + count);
@@ -94,8 +113,11 @@ double PenaltyModel::LocalDirection(const SearchJoint& joint, const std::vector<
   Eigen::Vector3d start = graph_.sphere(path[0]).center;
   double mismatch = 0;
   for (size_t k = 0; k < joint.chain.size(); ++k) {
-    mismatch += joint.bone_lengths[k] / joint.length *
-                DirectionMismatch(points.col(k) - start, joint.directions.col(k));
+    double bone = DirectionMismatch(points.col(k) - start, joint.directions.col(k));
+    if (joint.chain[k] == kLeftHand || joint.chain[k] == kRightHand) {
+      bone = std::min(bone, options_.most_forearm_mismatch);
+    }
+    mismatch += joint.bone_lengths[k] / joint.length * bone;
     start = points.col(k);
   }
   return mismatch;
@@ -116,14 +138,13 @@ double PenaltyModel::LeafPenalty(int sphere, int parent_sphere,
   return 0;
 }
 
-double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
+double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere, double cap) const {
   const SearchJoint& joint = tree_[j];
   const double length = graph_.PathLength(parent_sphere, sphere);
   if (!std::isfinite(length)) return kInfinite;
   const double stretch = length / (options_.template_scale * joint.length);
   if (stretch < 0.5) return kInfinite;
   const PenaltyWeights& weights = options_.weights;
-  const std::vector<int> path = graph_.Path(parent_sphere, sphere);
   // `stretch` is measured against the reduced template, so that only chains under half of it are
   // forbidden. A chain at the body's own size has the stretch 1 / template_scale.
   const double natural = stretch * options_.template_scale;
@@ -132,6 +153,8 @@ double PenaltyModel::PairPenalty(int j, int sphere, int parent_sphere) const {
   cost += weights.direction *
           DirectionMismatch(graph_.sphere(sphere).center - graph_.sphere(parent_sphere).center,
                             joint.position - tree_[joint.parent].position);
+  if (cost > cap) return cost;  // the rest takes a path
+  const std::vector<int> path = graph_.Path(parent_sphere, sphere);
   if (joint.is_foot) {
     const Sphere& foot = graph_.sphere(sphere);
     const double height = (foot.center.y() - foot.radius - floor_height_) / body_size_;

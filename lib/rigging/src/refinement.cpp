@@ -46,7 +46,15 @@ class RefinementObjective {
       energy += Centering(joints, b, hessian, gradient);
       energy += Shape(joints, b, hessian, gradient);
     }
-    return energy + Proportions(joints, hessian, gradient);
+    energy += Proportions(joints, hessian, gradient);
+    if (!hessian) return energy;
+    for (const int j : options_.held_joints) {
+      gradient->segment<3>(3 * j).setZero();
+      hessian->middleCols<3>(3 * j).setZero();
+      hessian->middleRows<3>(3 * j).setZero();
+      hessian->block<3, 3>(3 * j, 3 * j).setIdentity();
+    }
+    return energy;
   }
 
  private:
@@ -161,7 +169,19 @@ class RefinementObjective {
       bones.insert(bones.end(), {{hip, knee}, {knee, ankle}});
       slopes.insert(slopes.end(), {.5 * thigh_slope, .5 * shin_slope});
     }
-    add(against_trunk, bones, slopes);
+    if (!options_.hip_height) {
+      add(against_trunk, bones, slopes);
+      return energy;
+    }
+    const double residual =
+        (.5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg)) - *options_.hip_height) /
+        template_leg;
+    energy += options_.proportions * residual * residual;
+    if (!hessian) return energy;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(gradient->size());
+    row[3 * kLeftUpperLeg + 1] = row[3 * kRightUpperLeg + 1] = .5 / template_leg;
+    *gradient += options_.proportions * residual * row;
+    hessian->noalias() += options_.proportions * row * row.transpose();
     return energy;
   }
 

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "main_body.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -19,12 +21,16 @@ constexpr int kMaxFullFrames = 1;    // probed frames that are looked at again o
 constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
 // A multiple of the trusted residual: a frame that fits so well as it stands is not lying.
 constexpr double kStandingRatio = 1.5;
+// A multiple of the trusted residual: what fits worse in another orientation is not lying either.
+constexpr double kTurnedRatio = 2;
 constexpr double kDoubtfulResidual = .1;
+constexpr double kFoldedForearm = .5;
 
 // Returns the frames to look at, evenly spaced: the first one first, then each far from those
 // before it, so that a search that ends early has seen different poses.
 std::vector<int> FramesToTry(int num_frames, const AutoRigOptions& options) {
   if (options.rest_frame >= 0) return {options.rest_frame};
+  if (!options.placed_joints.empty()) return {0};
   const int count = std::clamp(options.max_frames_tried, 1, num_frames);
   std::vector<int> order;  // k in [0, count): multiples of halves, quarters, ...
   for (unsigned step = std::bit_ceil(static_cast<unsigned>(count)); step >= 1; step /= 2) {
@@ -41,20 +47,20 @@ Eigen::Matrix3d TurnToY(const Eigen::Vector3d& up) {
 }
 
 // Returns the turns that stand up the other coordinate axes (Z up is common), then the principal
-// axes of the surface, both ways.
-std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyVolume& volume) {
-  std::vector<Eigen::Matrix3d> turns;
-  for (const Eigen::Vector3d& up :
-       {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0, -1, 0),
-        Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 0)}) {
-    turns.push_back(TurnToY(up));
-  }
-  const Eigen::Matrix3Xd centered =
-      volume.surface.positions.colwise() - volume.surface.positions.rowwise().mean();
+// axes of the shell, both ways; the body's own left and right come to lie along the x axis.
+std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyShell& shell) {
+  std::vector<Eigen::Vector3d> ups = {{0, 0, 1}, {0, 0, -1}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
+  const Eigen::Matrix3Xd centered = shell.positions.colwise() - shell.positions.rowwise().mean();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centered * centered.transpose());
   for (int k = 2; k >= 0; --k) {
-    turns.push_back(TurnToY(axes.eigenvectors().col(k)));
-    turns.push_back(TurnToY(-axes.eigenvectors().col(k)));
+    ups.emplace_back(axes.eigenvectors().col(k));
+    ups.emplace_back(-axes.eigenvectors().col(k));
+  }
+  std::vector<Eigen::Matrix3d> turns;
+  for (const Eigen::Vector3d& up : ups) {
+    const Eigen::Matrix3d turn = TurnToY(up);
+    const double yaw = HorizontalAxisYaw(shell, turn);
+    turns.push_back(Eigen::AngleAxisd(-yaw, Eigen::Vector3d::UnitY()) * turn);
   }
   return turns;
 }
@@ -81,6 +87,9 @@ class RestFrameSearch {
     if (least_residual_ >= kStandingRatio * options_.trusted_residual && options_.any_orientation) {
       PLEAT_RETURN_IF_ERROR(TurnOver(frames[0]));
     }
+    if (best_.embedding.residual > options_.refused_residual && options_.placed_joints.empty()) {
+      PLEAT_RETURN_IF_ERROR(TryFoldedArms(best_.frame >= 0 ? best_.frame : frames[0]));
+    }
     PLEAT_RETURN_IF_ERROR(Judge(*num_frames_tried));
     return std::move(best_);
   }
@@ -95,6 +104,8 @@ class RestFrameSearch {
   EmbeddingOptions EmbeddingOptionsFor(const Eigen::Matrix3d& upright) const {
     EmbeddingOptions embedding = options_.embedding;
     embedding.upright_from_input = upright;
+    embedding.placed = options_.placed_joints;
+    if (has_folded_arms_) embedding.penalties.most_forearm_mismatch = kFoldedForearm;
     if (options_.yaw_degrees) {
       embedding.yaws_degrees = {*options_.yaw_degrees};
       embedding.adjust_yaw = false;
@@ -102,20 +113,42 @@ class RestFrameSearch {
     return embedding;
   }
 
-  absl::StatusOr<BodyVolume> VolumeOf(int frame, int resolution) const {
-    BodyVolumeOptions volume = options_.volume;
-    volume.num_threads = options_.num_threads;
-    volume.resolution = resolution;
-    return ComputeBodyVolume(sequence_.topology(), sequence_.FrameAsDouble(frame), volume,
-                             progress_);
+  // The surface of the frame looked at last is kept, since it serves every grid, and so is the last
+  // full volume, which serves every orientation.
+  absl::StatusOr<std::shared_ptr<const BodyVolume>> VolumeOf(int frame, int resolution) {
+    const bool is_full = resolution == options_.volume.resolution;
+    if (is_full && full_volume_ != nullptr && full_frame_ == frame) return full_volume_;
+    BodyVolumeOptions options = options_.volume;
+    options.num_threads = options_.num_threads;
+    options.resolution = resolution;
+    if (surface_ == nullptr || surface_frame_ != frame) {
+      // The gaps of a mesh are about the same in all frames.
+      if (surface_ != nullptr && surface_->is_repaired) options.outer.growth = surface_->growth;
+      surface_ = nullptr;
+      PLEAT_ASSIGN_OR_RETURN(BodySurface surface, PrepareBodySurface(sequence_.topology(),
+                                                                     sequence_.FrameAsDouble(frame),
+                                                                     options, progress_));
+      surface_ = std::make_shared<const BodySurface>(std::move(surface));
+      surface_frame_ = frame;
+    }
+    PLEAT_ASSIGN_OR_RETURN(BodyVolume computed, ComputeBodyVolume(surface_, options, progress_));
+    auto volume = std::make_shared<const BodyVolume>(std::move(computed));
+    if (is_full) {
+      full_volume_ = volume;
+      full_frame_ = frame;
+    }
+    return std::shared_ptr<const BodyVolume>(std::move(volume));
   }
 
   absl::StatusOr<FrameEmbedding> Embed(int frame, int resolution, const Eigen::Matrix3d& upright) {
-    FrameEmbedding result{
-        .frame = frame, .volume = {}, .upright_from_input = upright, .embedding = {}};
+    FrameEmbedding result{.frame = frame,
+                          .volume = {},
+                          .upright_from_input = upright,
+                          .embedding = {},
+                          .is_tentative = has_folded_arms_};
     PLEAT_ASSIGN_OR_RETURN(result.volume, VolumeOf(frame, resolution));
     PLEAT_ASSIGN_OR_RETURN(result.embedding,
-                           EmbedSkeleton(result.volume, EmbeddingOptionsFor(upright), progress_));
+                           EmbedSkeleton(*result.volume, EmbeddingOptionsFor(upright), progress_));
     least_residual_ = std::min(least_residual_, result.embedding.residual);
     return result;
   }
@@ -179,36 +212,51 @@ class RestFrameSearch {
     return absl::OkStatus();
   }
 
-  // Tries other orientations of the first and of the best probed frame. One is taken only when it
-  // is trusted, since a beast on its hind legs comes near to a human.
+  // Tries other orientations of the first and of the best probed frame. One is taken when it is
+  // trusted, or tentatively when the frame would be refused as it stands: a beast on its hind legs
+  // comes near to a human.
   absl::Status TurnOver(int first_frame) {
     std::vector<int> frames = {first_frame};
     if (!probed_.empty()) frames.push_back(probed_[0]);
     for (size_t k = 0; k < frames.size() && k < kMaxTurnedFrames; ++k) {
-      const absl::StatusOr<BodyVolume> volume = VolumeOf(frames[k], options_.probe_resolution);
+      const absl::StatusOr<std::shared_ptr<const BodyVolume>> volume =
+          VolumeOf(frames[k], options_.volume.resolution);
       if (absl::IsCancelled(volume.status())) return volume.status();
       if (!volume.ok()) continue;
       PLEAT_ASSIGN_OR_RETURN(const std::optional<Eigen::Matrix3d> upright,
-                             FindOrientation(*volume));
+                             FindOrientation(**volume));
       if (!upright) continue;
       FrameEmbedding as_it_stands = std::move(best_);
       best_ = {};
       best_.embedding.residual = std::numeric_limits<double>::infinity();
       PLEAT_RETURN_IF_ERROR(TryFully(frames[k], *upright));
       if (IsTrusted()) return absl::OkStatus();
+      if (as_it_stands.embedding.residual > options_.refused_residual &&
+          best_.embedding.residual < kTurnedRatio * options_.trusted_residual) {
+        best_.is_tentative = true;
+        return absl::OkStatus();
+      }
       best_ = std::move(as_it_stands);
     }
     return absl::OkStatus();
   }
 
-  // Returns the orientation with the least residual under twice the trusted one, made exact by what
-  // the skeleton itself says about up; none when there is no such. Each bound is the best residual
-  // so far, so hopeless orientations are cheap.
+  // Looks at a frame again as if its forearms may point anywhere: arms folded before the chest.
+  absl::Status TryFoldedArms(int frame) {
+    has_folded_arms_ = true;
+    PLEAT_RETURN_IF_ERROR(TryAt(frame, options_.volume.resolution, Eigen::Matrix3d::Identity()));
+    has_folded_arms_ = false;
+    return absl::OkStatus();
+  }
+
+  // Returns the orientation with the least residual under kTurnedRatio trusted ones, made exact by
+  // what the skeleton itself says about up; none when there is no such. Each bound is the best
+  // residual so far, so hopeless orientations are cheap.
   absl::StatusOr<std::optional<Eigen::Matrix3d>> FindOrientation(const BodyVolume& volume) const {
     std::optional<Eigen::Matrix3d> best;
     Eigen::Matrix3Xd joints;
-    double least = 2 * options_.trusted_residual;
-    for (const Eigen::Matrix3d& turn : OrientationsToTry(volume)) {
+    double least = kTurnedRatio * options_.trusted_residual;
+    for (const Eigen::Matrix3d& turn : OrientationsToTry(volume.body->shell)) {
       PLEAT_RETURN_IF_ERROR(progress_.Report(.8));
       EmbeddingOptions embedding = EmbeddingOptionsFor(turn);
       embedding.search.max_bound = std::min(embedding.search.max_bound, least);
@@ -243,6 +291,7 @@ class RestFrameSearch {
           absl::StrCat("no frame of ", sequence_.name(), " (", num_frames_tried,
                        " tried) can be rigged: ", failure_.message(), "; ", kRigAdvice));
     }
+    if (!options_.placed_joints.empty()) return absl::OkStatus();
     if (best_.embedding.residual > options_.refused_residual) {
       return absl::FailedPreconditionError(absl::StrFormat(
           "%s does not look like one standing human: in the best of %d frames, frame %d, the "
@@ -265,10 +314,14 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
+  std::shared_ptr<const BodySurface> surface_;
+  std::shared_ptr<const BodyVolume> full_volume_;
+  int surface_frame_ = -1, full_frame_ = -1;
   double least_residual_ = std::numeric_limits<double>::infinity();  // over all frames tried
-  std::vector<int> probed_;                                          // best first
-  std::vector<double> probe_residuals_;                              // infinite where nothing fits
-  absl::Status failure_;  // what kept the first failed frame from a rig
+  bool has_folded_arms_ = false;
+  std::vector<int> probed_;              // best first
+  std::vector<double> probe_residuals_;  // infinite where nothing fits
+  absl::Status failure_;                 // what kept the first failed frame from a rig
 };
 
 }  // namespace

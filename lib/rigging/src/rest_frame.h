@@ -1,6 +1,8 @@
 // Finds the frame of a sequence that is rigged, and how the character stands in it.
 #pragma once
 
+#include <memory>
+
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
@@ -12,9 +14,12 @@ namespace pleat {
 
 struct FrameEmbedding {
   int frame = -1;
-  BodyVolume volume;
+  std::shared_ptr<const BodyVolume> volume;
   Eigen::Matrix3d upright_from_input = Eigen::Matrix3d::Identity();
   Embedding embedding;
+  // Found only with forearms that point anywhere, or turned over and not trusted: a beast may come
+  // as near to a human, so feet or knees must confirm it.
+  bool is_tentative = false;
 };
 
 // Returns the first frame when it is trusted, else the best of a few, looked at on a coarse grid

@@ -21,6 +21,9 @@ struct AutoRigOptions {
   int rest_frame = -1;  // -1 = automatic: frame 0 when it is trusted, else the best of a few
   // Where the character faces, in degrees about +y from +z towards +x. Unset: the best of four.
   std::optional<double> yaw_degrees;
+  // Joints that a person placed in the rest frame, which is then the first one unless rest_frame
+  // says otherwise, in meters. The others are solved with them, and nothing is refused.
+  std::vector<PlacedJoint> placed_joints = {};
   int max_frames_tried = 8;
   // The grid of the frames that are only compared with each other; the chosen one is looked at
   // again on volume.resolution.
@@ -55,7 +58,10 @@ struct AutoRigSummary {
   std::vector<FacingResidual> facings;  // those of the rest frame
   int num_frames_tried = 0;
   int num_spheres = 0;
-  SurfaceReport surface;  // those of the rest frame
+  SurfaceReport surface;  // that of the rest frame
+  // How many vertices each part has that floats beside the body, most first: such parts were left
+  // out when the skeleton was sought.
+  std::vector<int> stray_parts;
   HeatWeightsSummary heat;
   std::vector<std::string> warnings;
 };

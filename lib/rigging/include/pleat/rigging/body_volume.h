@@ -10,6 +10,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/geometry/distance_field.h"
 #include "pleat/geometry/medial_samples.h"
+#include "pleat/geometry/outer_surface.h"
 #include "pleat/geometry/solid_surface.h"
 #include "pleat/geometry/triangle_tree.h"
 #include "pleat/geometry/winding_number.h"
@@ -20,28 +21,67 @@ struct BodyVolumeOptions {
   int resolution = 128;      // grid cells along the longest side of the body
   double min_depth = 0.006;  // unit box; shallower medial samples are left out
   int num_threads = 1;       // 0 = one per core
+  OuterSurfaceOptions outer = {};
 };
 
-// The mesh scaled uniformly so that its longest side is 0.9, centered at 0.5 (Baran and Popovic
-// 2007, section 3), with its distance field and medial samples. unit = scale * world + offset. The
-// tree and the winding number are on the heap because the latter refers to the former, which must
-// stay where it is when the volume is moved.
-struct BodyVolume {
+// A closed surface that bounds the volume of a body.
+struct BodyShell {
+  Eigen::Matrix3Xd positions;  // 3 x W
+  Eigen::Matrix3Xi triangles;  // 3 x F, outward
+};
+
+// The shell of the body that a frame of a mesh shows, scaled uniformly so that its longest side is
+// 0.9, centered at 0.5 (Baran and Popovic 2007, section 3). unit = scale * world + offset.
+struct BodySurface {
   double scale = 1;  // unit lengths per meter
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  SolidSurface surface;  // unit box
+  // The mesh itself where it is one clean closed surface, else the boundary of the union of its
+  // parts (docs/method/rig.md#outer-surface).
+  BodyShell shell;
+  bool is_repaired = false;  // the shell is not the mesh itself
+  double shell_spacing = 0;  // how far a repaired shell may be off, unit box
+  int growth = 0;            // voxels by which gaps were closed
+};
+
+// Finds the shell. positions: 3 x V, any unit. The error is kInvalidArgument when the mesh has no
+// area, kFailedPrecondition when it encloses nothing, and kCancelled.
+absl::StatusOr<BodySurface> PrepareBodySurface(const Topology& topology,
+                                               const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                               const BodyVolumeOptions& options = {},
+                                               const Progress& progress = {});
+
+// A body's surface with the distance field and medial samples of its shell. The tree and the
+// winding number are on the heap because the latter refers to the former, which must stay where it
+// is when the volume is moved.
+struct BodyVolume {
+  std::shared_ptr<const BodySurface> body;
   std::unique_ptr<const TriangleTree> tree;
   std::unique_ptr<const WindingNumber> winding_number;
   DistanceField field;
   std::vector<MedialSample> medial_samples;
+
+  Eigen::Matrix3Xd UnitFromWorld(const Eigen::Matrix3Xd& points) const {
+    return (body->scale * points).colwise() + body->offset;
+  }
+  Eigen::Matrix3Xd WorldFromUnit(const Eigen::Matrix3Xd& points) const {
+    return (points.colwise() - body->offset) / body->scale;
+  }
 };
 
-// Prepares the surface and computes field and samples. positions: 3 x V, any unit. The error is
-// kInvalidArgument when the mesh has no area, kFailedPrecondition when it encloses no volume, and
-// kCancelled.
+// Computes field and samples of a surface, which several volumes may share. The error is
+// kFailedPrecondition when it encloses no volume, and kCancelled.
+absl::StatusOr<BodyVolume> ComputeBodyVolume(std::shared_ptr<const BodySurface> body,
+                                             const BodyVolumeOptions& options = {},
+                                             const Progress& progress = {});
+
+// Does both.
 absl::StatusOr<BodyVolume> ComputeBodyVolume(const Topology& topology,
                                              const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                              const BodyVolumeOptions& options = {},
                                              const Progress& progress = {});
+
+// Returns how many vertices each component of `surface` (unit box) has that lies nowhere near the
+// volume, most first: what floats beside the body.
+std::vector<int> StrayParts(const SolidSurface& surface, const DistanceField& field);
 
 }  // namespace pleat

@@ -33,6 +33,10 @@ struct EmbeddingOptions {
   double cover_distance = .2;
   double uncovered_weight = .2;
   RefinementOptions refinement;
+  // Joints that a person placed, in the units of the mesh: they stay where they are, and the others
+  // are found with them. With at least one of them there is always an embedding: where the search
+  // finds none, the template is laid into the bounds of the body.
+  std::vector<PlacedJoint> placed = {};
 };
 
 // The cost of one facing. The search of a facing stops once it is certain that another one is

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pleat/mesh/mesh_sequence.h"
+#include "pleat/rigging/body_volume.h"
 
 namespace pleat {
 
@@ -35,9 +36,11 @@ struct FacingEvidenceOptions {
   double sure_knee_bend = .15;    // mean sine of the bend that counts as 1
 };
 
-// Weighs feet and knees. The hypothesis' skeleton need not be exact: vertices go to their nearest
-// bone, and thighs and lower legs are followed through the frames by rigid fits.
-FacingEvidence WeighFacing(const MeshSequence& sequence, const FacingHypothesis& hypothesis,
+// Weighs feet and knees. `shell` is that of the hypothesis' frame, in meters. The hypothesis'
+// skeleton need not be exact: vertices go to their nearest bone, and thighs and lower legs are
+// followed through the frames by rigid fits.
+FacingEvidence WeighFacing(const MeshSequence& sequence, const BodyShell& shell,
+                           const FacingHypothesis& hypothesis,
                            const FacingEvidenceOptions& options = {});
 
 }  // namespace pleat

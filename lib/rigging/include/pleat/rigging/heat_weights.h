@@ -7,6 +7,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/geometry/solid_surface.h"
 #include "pleat/mesh/topology.h"
+#include "pleat/rigging/body_volume.h"
 #include "pleat/rigging/bone_visibility.h"
 #include "pleat/skeleton/skeleton.h"
 #include "pleat/skinning/skin_weights.h"
@@ -16,6 +17,12 @@ namespace pleat {
 struct HeatWeightsOptions {
   double heat_constant = 1;  // c: larger = bones keep their heat, transitions become sharper
   int num_threads = 1;       // 0 = one per core
+  // How far the vertices may lie off the surface that the inside test knows, in the unit of the
+  // surface: the last stretch of that length before a vertex hides no bone.
+  double surface_tolerance = 0;
+  // The diagonal of the body without what floats beside it, in the unit of the surface; 0 = that of
+  // the whole surface.
+  double body_diagonal = 0;
 };
 
 struct HeatWeightsSummary {
@@ -46,11 +53,19 @@ absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
     HeatWeightsSummary* summary = nullptr, const Progress& progress = {});
 
 // Carries weights of a prepared surface (W x J) to the vertices of the mesh it was made from.
+// Weights under a hundredth become 0: heat reaches everywhere, but nobody paints such tails.
 // positions: 3 x V, joints: 3 x J, in the same unit.
 absl::StatusOr<SkinWeights> WeightsOfInput(const SolidSurface& surface,
                                            const Eigen::MatrixXd& surface_weights,
                                            const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
                                            const Skeleton& skeleton,
                                            const Eigen::Matrix3Xd& joints);
+
+// Carries weights of the vertices of a shell (W x J) to positions near it (3 x V, in the same
+// unit): each takes those of the nearest point. `tree` is that of the shell.
+absl::StatusOr<SkinWeights> WeightsFromShell(const BodyShell& shell, const TriangleTree& tree,
+                                             const Eigen::MatrixXd& shell_weights,
+                                             const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                                             int num_threads);
 
 }  // namespace pleat

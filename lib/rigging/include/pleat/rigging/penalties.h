@@ -1,6 +1,7 @@
 // Step 7 of the embedding, first half: what makes a placement of the skeleton a bad one.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "pleat/rigging/search_tree.h"
@@ -23,12 +24,23 @@ struct PenaltyWeights {
   double proximity = .033;        // far along the skeleton, near in the body
 };
 
+// A joint whose place is known.
+struct PlacedJoint {
+  int joint = 0;  // HumanJoint
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
 struct PenaltyOptions {
   PenaltyWeights weights;
   int max_deep_candidates = 50;  // deep joints: the largest spheres
   // The template is used at this share of the body's size, so that lengths punish mainly chains
   // that come out short; a chain under half of that is forbidden.
   double template_scale = 0.58;
+  // The most that the direction of a forearm may cost (10 in the opposite direction). Elbows bend
+  // far, but most rest poses hang or spread the arms.
+  double most_forearm_mismatch = std::numeric_limits<double>::infinity();
+  // Joints of the search tree among these may lie on the few spheres next to their place alone.
+  std::vector<PlacedJoint> placed = {};
 };
 
 // The joints placed so far, as the next joint sees them.
@@ -60,8 +72,10 @@ class PenaltyModel {
   // The spheres that may hold joint j.
   const std::vector<int>& candidates(int j) const { return candidates_[j]; }
 
-  // Returns what joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`.
-  double PairPenalty(int j, int sphere, int parent_sphere) const;
+  // Returns what joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`; where that
+  // is more than `cap`, some number above `cap` that is not more than it.
+  double PairPenalty(int j, int sphere, int parent_sphere,
+                     double cap = std::numeric_limits<double>::infinity()) const;
   // Returns what joint j is compared with when joints 0..j-1 lie on spheres[0..j-1].
   PlacementContext MakeContext(int j, const std::vector<int>& spheres) const;
   // Returns what the joint of `context` on `sphere` costs against the joints placed before it; what

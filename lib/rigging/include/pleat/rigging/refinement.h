@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "pleat/geometry/medial_samples.h"
@@ -29,6 +30,10 @@ struct RefinementOptions {
   double symmetry = 1;  // relative difference of mirrored lengths
   int samples_per_bone = 10;
   int max_iterations = 60;
+  std::vector<int> held_joints = {};  // stay where they are
+  // The mean height of the hips of the legs, where it is known: it takes the place of the
+  // proportion of the legs to the trunk. Unit box, along y.
+  std::optional<double> hip_height = {};
 };
 
 // Minimizes the weighted sum over the bones of the human template by Levenberg-Marquardt, with the
