@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
+#include "cli/io/placed_joints.h"
 #include "cli/io/rig_measurement.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
@@ -22,7 +23,7 @@ namespace pleat {
 namespace {
 
 struct RigVerbOptions {
-  std::vector<std::string> inputs, truths;
+  std::vector<std::string> inputs, truths, placed;
   std::string report, fps, output;
   RigMeasurementOptions measurement;
   bool no_fit = false;
@@ -102,6 +103,10 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
   if (!options.output.empty() && options.inputs.size() != 1) {
     return UsageError("-o takes one INPUT");
   }
+  if (!options.placed.empty() && options.inputs.size() != 1) {
+    return UsageError("--at takes one INPUT");
+  }
+  PLEAT_ASSIGN_OR_RETURN(options.measurement.rig.placed_joints, ParsePlacedJoints(options.placed));
   options.measurement.fit = !options.no_fit;
   std::vector<RigMeasurement> rows;
   for (size_t i = 0; i < options.inputs.size(); ++i) {
@@ -163,6 +168,9 @@ void AddRigVerb(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--yaw", options->measurement.rig.yaw_degrees,
                    "facing about +y from +z, degrees [found]");
+  verb->add_option("--at", options->placed,
+                   "joints that you place, NAME=x,y,z in meters (leftHand=.7,1.4,0): they stay "
+                   "there, and the others are solved with them");
   verb->add_flag("--no-fit", options->no_fit, "only the rig: no pose fit, no refinement");
   verb->add_option("--threads", options->measurement.rig.num_threads,
                    "0 = one per core; the result does not depend on it")

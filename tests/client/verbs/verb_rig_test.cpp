@@ -98,5 +98,20 @@ TEST(RigVerb, RenderDrawsTheRig) {
             ExitCode::kBadInput);
 }
 
+TEST(RigVerb, JointsThatAPersonPlacesStay) {
+  const TemporaryFolder folder;
+  WriteFigure(folder, 1);
+  const Outcome outcome =
+      RunPleat({"rig", folder.File("figure.pseq"), "--report", folder.File("r.json"), "--at",
+                "leftHand=.5,1.2,.1", "rightFoot=-.2,.1,0"});
+  ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
+  const nlohmann::json report = nlohmann::json::parse(ReadFile(folder.File("r.json")).value());
+  const nlohmann::json& joints = report["rigs"][0]["joints"];
+  EXPECT_NEAR(joints[kLeftHand]["position_m"][0].get<double>(), .5, 1e-6);
+  EXPECT_NEAR(joints[kRightFoot]["position_m"][1].get<double>(), .1, 1e-6);
+  EXPECT_EQ(RunPleat({"rig", folder.File("figure.pseq"), "--at", "leftHand=1"}).code,
+            ExitCode::kUsage);
+}
+
 }  // namespace
 }  // namespace pleat
