@@ -35,6 +35,8 @@ for mesh in "$data"/static/*.obj; do
   [ -f "$mesh" ] && meshes+=("$mesh")
 done
 [ ${#meshes[@]} -eq 0 ] || "$pleat" rig "${meshes[@]}" --threads 1 2>/dev/null || true
+build/bin/rig_bodies performer "${meshes[@]}"
+build/bin/rig_bodies --orientations performer
 
 inputs=()
 for name in samba crane; do
