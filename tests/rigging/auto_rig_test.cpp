@@ -113,7 +113,8 @@ TEST(AutoRigTest, WarnsOfAnUncleanMesh) {
   const TriangleMesh mesh = JoinMeshes(figure.mesh, MakeBox({.6, .2, -.1}, {.8, .4, .1}));
   AutoRigSummary summary;
   ASSERT_THAT(AutoRig(MakeStillSequence(mesh), {}, &summary), IsOk());
-  EXPECT_THAT(summary.warnings, ::testing::ElementsAre(HasSubstr("2 components")));
+  EXPECT_THAT(summary.warnings,
+              ::testing::ElementsAre(HasSubstr("1 part(s)"), HasSubstr("2 components")));
 }
 
 TEST(AutoRigTest, RefusesFramesAndFacingsOutOfRange) {

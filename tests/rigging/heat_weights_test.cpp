@@ -199,9 +199,9 @@ TEST(HeatWeightsTest, RefusesASkeletonWithoutBone) {
 // Heat reaches everywhere; a hundredth is where painted weights begin.
 TEST(HeatWeightsTest, HaveNoTails) {
   const CapsuleFigure figure = MakeCapsuleFigure({.cell_m = .03});
-  PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights,
-                             ComputeHeatWeights(MakeTopology(figure.mesh), figure.mesh.positions,
-                                                FigureSkeleton(figure)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const SkinWeights weights,
+      ComputeHeatWeights(MakeTopology(figure.mesh), figure.mesh.positions, FigureSkeleton(figure)));
   const Eigen::MatrixXd dense = weights.ToDense();
   int num_shared = 0;
   for (int v = 0; v < dense.rows(); ++v) {

@@ -54,7 +54,7 @@ struct Unclean {
   std::string name;
   CapsuleFigureOptions figure;
   std::function<TriangleMesh(const CapsuleFigureOptions&)> make;
-  double most_error = .035;
+  double most_error = .035, most_residual = .03;
 };
 
 void PrintTo(const Unclean& unclean, std::ostream* out) { *out << unclean.name; }
@@ -69,7 +69,7 @@ TEST_P(UncleanBodyTest, HasTheSkeletonOfTheFigure) {
   const Eigen::Matrix3Xd truth = MakeCapsuleFigure(unclean.figure).joints;
   const Eigen::Matrix3Xd joints = rig.skeleton.RestPositions();
   EXPECT_LT(LimbError(joints, truth), unclean.most_error) << (joints - truth) / kHeight;
-  EXPECT_LT(summary.residual, .03);
+  EXPECT_LT(summary.residual, unclean.most_residual);
   EXPECT_EQ(rig.weights.num_vertices(), mesh.positions.cols());
 }
 
@@ -79,7 +79,9 @@ INSTANTIATE_TEST_SUITE_P(
         Unclean{"Pieces", {}, [](const auto& figure) { return InPieces(figure); }},
         Unclean{"PiecesInTPose",
                 {.arm_angle_degrees = 2},
-                [](const auto& figure) { return InPieces(figure); }},
+                [](const auto& figure) { return InPieces(figure); },
+                .035,
+                .04},
         Unclean{"PiecesFromBehind",
                 {.yaw_degrees = 180, .arm_angle_degrees = 70},
                 [](const auto& figure) { return InPieces(figure); }},
@@ -159,6 +161,7 @@ TEST(UncleanBodies, ASnakeAnArmAndARearingHorseAreRefused) {
     horse.push_back({{side, 1.42, .57}, {side, .82, .67}, .08, .05});
   }
   for (const std::vector<Capsule>& body : {snake, arm, horse}) {
+    SCOPED_TRACE(body.size());
     EXPECT_THAT(AutoRig(MakeStillSequence(MakeCapsuleBody(body, .01))),
                 HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("own rig")));
   }

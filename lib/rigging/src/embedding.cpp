@@ -131,9 +131,9 @@ absl::StatusOr<const FacingSearch*> SearchFacings(
     }
     return absl::OkStatus();
   };
-  for (double bound = options.search.first_bound; bound <= options.search.max_bound && !best;
-       bound *= 2) {
-    PLEAT_RETURN_IF_ERROR(deepen_open(bound));
+  for (double bound = options.search.first_bound; !best; bound *= 2) {
+    PLEAT_RETURN_IF_ERROR(deepen_open(std::min(bound, options.search.max_bound)));
+    if (bound >= options.search.max_bound) break;
   }
   if (best) {
     PLEAT_RETURN_IF_ERROR(deepen_open(best->facing.residual + options.facing_margin));

@@ -1,6 +1,7 @@
 #include "foot_placement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace {
 constexpr double kAnkleHeight = .33, kAnkleFromHeel = .22, kToesFromHeel = .74, kToesHeight = .10;
 // Shares of the body's height: what belongs to a foot above its sole, and how long a foot is.
 constexpr double kFootHeight = .05, kShortestFoot = .09, kLongestFoot = .25;
+constexpr double kMaxAnkleShift = .3;  // share of the foot's length
 constexpr double kStation =
     .1;  // share of the foot's length around the balls that shows its middle
 
@@ -60,6 +62,15 @@ std::array<bool, 2> PlaceFeet(const MainBody& body, Eigen::Matrix3Xd* joints) {
     }
     const double length = foot.tip - foot.heel;
     if (!(length > kShortestFoot * height && length < kLongestFoot * height)) continue;
+    // Across the foot, the ankle stays in the line of the lower leg. A line that meets the foot
+    // near its tip is that of a body that faces the other way: its feet must not seem to fit.
+    const double ankle_height = foot.sole + kAnkleHeight * length;
+    const Eigen::Vector3d knee = before.col(ankle - 1),
+                          shin = Eigen::Vector3d(before.col(ankle)) - knee;
+    const double share = shin.y() < 0 ? (ankle_height - knee.y()) / shin.y() : 1;
+    const Eigen::Vector3d in_line = knee + std::clamp(share, .5, 1.5) * shin;
+    const double ankle_along = foot.heel + kAnkleFromHeel * length;
+    if (std::abs(along.dot(in_line) - ankle_along) > kMaxAnkleShift * length) continue;
     const double balls = foot.heel + kToesFromHeel * length;
     for (const Eigen::Vector3d& vertex : vertices) {
       if (vertex.y() > foot.sole + kFootHeight * height ||
@@ -73,14 +84,7 @@ std::array<bool, 2> PlaceFeet(const MainBody& body, Eigen::Matrix3Xd* joints) {
     const Eigen::Vector3d up = Eigen::Vector3d::UnitY();
     joints->col(toes) = balls * along + .5 * (foot.left + foot.right) * across +
                         (foot.sole + kToesHeight * length) * up;
-    // Across the foot, the ankle stays in the line of the lower leg.
-    const double ankle_height = foot.sole + kAnkleHeight * length;
-    const Eigen::Vector3d knee = before.col(ankle - 1),
-                          shin = Eigen::Vector3d(before.col(ankle)) - knee;
-    const double share = shin.y() < 0 ? (ankle_height - knee.y()) / shin.y() : 1;
-    const Eigen::Vector3d in_line = knee + std::clamp(share, .5, 1.5) * shin;
-    joints->col(ankle) = (foot.heel + kAnkleFromHeel * length) * along +
-                         across.dot(in_line) * across + ankle_height * up;
+    joints->col(ankle) = ankle_along * along + across.dot(in_line) * across + ankle_height * up;
     moved[side] = true;
   }
   return moved;

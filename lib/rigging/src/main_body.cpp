@@ -65,14 +65,17 @@ double HorizontalAxisYaw(const BodyShell& shell, const Eigen::Matrix3d& upright_
   Eigen::Matrix2d products = Eigen::Matrix2d::Zero();
   double total = 0;
   for (Eigen::Index f = 0; f < shell.triangles.cols(); ++f) {
-    const Eigen::Vector3d a = shell.positions.col(shell.triangles(0, f));
-    const Eigen::Vector3d b = shell.positions.col(shell.triangles(1, f));
-    const Eigen::Vector3d c = shell.positions.col(shell.triangles(2, f));
-    const double area = (b - a).cross(c - a).norm();
-    const Eigen::Vector3d center = upright_from_shell * ((a + b + c) / 3);
-    const Eigen::Vector2d place(center.x(), center.z());
-    sum += area * place;
-    products += area * place * place.transpose();
+    Eigen::Matrix<double, 2, 3> corners;
+    Eigen::Matrix3d places;
+    for (int k = 0; k < 3; ++k) {
+      places.col(k) = upright_from_shell * shell.positions.col(shell.triangles(k, f));
+      corners.col(k) << places(0, k), places(2, k);
+    }
+    const double area = (places.col(1) - places.col(0)).cross(places.col(2) - places.col(0)).norm();
+    const Eigen::Vector2d corner_sum = corners.rowwise().sum();
+    sum += area / 3 * corner_sum;
+    // The second moment of a triangle, exactly.
+    products += area / 12 * (corners * corners.transpose() + corner_sum * corner_sum.transpose());
     total += area;
   }
   const Eigen::Matrix2d covariance = products / total - sum * sum.transpose() / (total * total);

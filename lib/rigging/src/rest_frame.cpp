@@ -23,7 +23,6 @@ constexpr int kMaxTurnedFrames = 2;  // looked at in other orientations
 constexpr double kStandingRatio = 1.5;
 // A multiple of the trusted residual: what fits worse in another orientation is not lying either.
 constexpr double kTurnedRatio = 2;
-constexpr double kDoubtfulResidual = .1;
 constexpr double kFoldedForearm = .5;
 
 // Returns the frames to look at, evenly spaced: the first one first, then each far from those

@@ -22,6 +22,9 @@ struct FrameEmbedding {
   bool is_tentative = false;
 };
 
+// Rigs above this residual are doubtful.
+inline constexpr double kDoubtfulResidual = .1;
+
 // Returns the first frame when it is trusted, else the best of a few, looked at on a coarse grid
 // first; and when none of them is trusted as it stands, they are also tried lying and upside down
 // (docs/method/rig.md#rest-frame). The error is kFailedPrecondition, with what to do, when no human

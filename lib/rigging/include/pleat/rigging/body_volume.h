@@ -35,8 +35,8 @@ struct BodyShell {
 struct BodySurface {
   double scale = 1;  // unit lengths per meter
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  // The mesh itself where it is one clean closed surface, else the boundary of the union of its
-  // parts (docs/method/rig.md#outer-surface).
+  // The mesh itself where it is one component that does not overlap itself, else the boundary of
+  // the union of its parts (docs/method/rig.md#outer-surface).
   BodyShell shell;
   bool is_repaired = false;  // the shell is not the mesh itself
   double shell_spacing = 0;  // how far a repaired shell may be off, unit box
