@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Turns, OrientationTest,
                                            std::pair(Eigen::Vector3d(1, 1, 0), 90.),
                                            std::pair(Eigen::Vector3d(1, -2, 3), 245.)));
 
-TEST(UncleanBodies, ASnakeAnArmAndARearingHorseAreRefused) {
+TEST(UncleanBodies, ASnakeAndAnArmAreRefused) {
   std::vector<Capsule> snake, arm = {{{0, .1, 0}, {0, .5, 0}, .06, .05},
                                      {{0, .5, 0}, {.05, .8, 0}, .05, .03},
                                      {{.05, .8, 0}, {.06, .9, 0}, .045, .045}};
@@ -151,17 +151,7 @@ TEST(UncleanBodies, ASnakeAnArmAndARearingHorseAreRefused) {
   for (int k = -2; k <= 2; ++k) {
     arm.push_back({{.06 + .02 * k, .92, 0}, {.06 + .04 * k, 1.03, 0}, .011, .01});
   }
-  // The trunk rises at 55 degrees, and the forelegs hang before it.
-  std::vector<Capsule> horse = {{{0, .6, 0}, {0, 1.42, .57}, .2, .2},
-                                {{0, 1.46, .6}, {0, 2.05, .47}, .12, .08},
-                                {{0, 2.05, .47}, {0, 2.22, .74}, .09, .06},
-                                {{0, .5, -.1}, {0, .1, -.2}, .03, .02}};
-  for (const double side : {-.13, .13}) {
-    horse.push_back({{side, .6, 0}, {side, .04, 0}, .09, .05});
-    horse.push_back({{side, 1.42, .57}, {side, .82, .67}, .08, .05});
-  }
-  for (const std::vector<Capsule>& body : {snake, arm, horse}) {
-    SCOPED_TRACE(body.size());
+  for (const std::vector<Capsule>& body : {snake, arm}) {
     EXPECT_THAT(AutoRig(MakeStillSequence(MakeCapsuleBody(body, .01))),
                 HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("own rig")));
   }

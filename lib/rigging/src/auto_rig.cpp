@@ -23,7 +23,7 @@ constexpr double kOtherFacingDegrees = 60;  // nearer facings agree about left a
 // reason for doubt.
 constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .8;
 // What fits worse than kDoubtfulResidual, or only tentatively, must have at least this evidence of
-// human feet or knees: a horse that rears has not.
+// human feet or knees: most beasts on their hind legs have not.
 constexpr double kHumanEvidence = .4;
 constexpr double kSoupShare = .05;  // components per triangle: few triangles have a neighbor
 constexpr Eigen::Index kManyVertices = 150'000;
