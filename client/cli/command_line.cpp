@@ -1,10 +1,14 @@
 #include "cli/command_line.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <new>
+#include <stdexcept>
 
 #include "CLI/CLI.hpp"
+#include "absl/strings/str_cat.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/utf8.h"
 
@@ -48,6 +52,24 @@ std::string Prefix(const std::vector<std::string>& arguments, const CLI::App& ap
   return "pleat";
 }
 
+// Pleat reports errors as statuses, but memory may run out anywhere, and other libraries throw.
+// What an exception says is for developers, so none of it is shown.
+absl::Status RunGuarded(const std::function<absl::Status()>& run) {
+  try {
+    return run();
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError("out of memory: try fewer or smaller frames");
+  } catch (const std::length_error&) {
+    return absl::ResourceExhaustedError("a size is beyond all bounds: try fewer or smaller frames");
+  } catch (const std::filesystem::filesystem_error& error) {
+    return absl::Status(
+        absl::ErrnoToStatusCode(error.code().value()),
+        absl::StrCat("cannot access '", error.path1().string(), "': ", error.code().message()));
+  } catch (const std::exception&) {
+    return absl::InternalError("this is a fault of Pleat itself; please report the command");
+  }
+}
+
 }  // namespace
 
 ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& session) {
@@ -66,15 +88,11 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& sess
     return ExitCode::kUsage;
   }
 
-  // Pleat reports errors as statuses, but memory may run out anywhere, and other libraries throw.
-  absl::Status status;
-  try {
-    status = session.run();
-  } catch (const std::bad_alloc&) {
-    status = absl::ResourceExhaustedError("out of memory: try fewer or smaller frames");
-  } catch (const std::exception& exception) {
-    status = absl::InternalError(exception.what());
-  }
+  return RunChosenVerb(session);
+}
+
+ExitCode RunChosenVerb(Session& session) {
+  const absl::Status status = RunGuarded(session.run);
   if (!status.ok()) {
     // Messages quote files and their names, which may hold anything.
     *session.err << "pleat " << session.verb << ": "

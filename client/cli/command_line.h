@@ -13,4 +13,7 @@ namespace pleat {
 // its error on session.err as "pleat VERB: message".
 ExitCode RunCommandLine(const std::vector<std::string>& arguments, Session& session);
 
+// Runs session.run, which may throw, and reports its error. The text of an exception is not shown.
+ExitCode RunChosenVerb(Session& session);
+
 }  // namespace pleat

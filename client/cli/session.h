@@ -27,6 +27,7 @@ struct Session {
   std::string tls_key;
   bool json = false;
   bool quiet = false;
+  bool force = false;   // existing files may be replaced
   bool strict = false;  // warnings are errors
 
   // The callback of the chosen verb in the parser sets these two.

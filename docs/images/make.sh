@@ -13,6 +13,6 @@ trap 'rm -rf "$work"' EXIT
 for name in input edited; do
   take=$work/edited.pc2
   [ $name = edited ] || take=$work/performer.pc2
-  "$pleat" render "$take" -q -o docs/images/$name.png --label $name --frames 20,45,70,95 \
+  "$pleat" render "$take" -q --force -o docs/images/$name.png --label $name --frames 20,45,70,95 \
     --tile-width 260 --tile-height 330
 done

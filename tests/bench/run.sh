@@ -68,12 +68,12 @@ until grep -q "listening on" "$out/pleatd.log"; do sleep .1; done
 address=$(sed -n 's/^listening on //p' "$out/pleatd.log")
 "$pleat" train "${inputs[0]}" --server "$address" -o "$out/live.pleat" --quiet --report "$out/live.json" >/dev/null
 model=$(python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["model_id"])' "$out/live.json")
-"$pleat" motion "$out/live.pleat" "${inputs[0]}" -o "$out/live_motion.json" --quiet
+"$pleat" motion "$out/live.pleat" "${inputs[0]}" -o "$out/live_motion.json" --quiet >/dev/null
 load() {  # NAME FLAG...
   local name=$1
   shift
   echo "-- $name: $*"
-  "$pleat" bench "$model" --server "$address" --motion "$out/live_motion.json" --plot "build/bench/$name.png" "$@"
+  "$pleat" bench "$model" --server "$address" --motion "$out/live_motion.json" --force --plot "build/bench/$name.png" "$@"
 }
 load one_client --clients 1 --rate 30 --seconds 10
 load one_client_points --clients 1 --rate 30 --seconds 10 --encoding points
@@ -84,31 +84,31 @@ echo "== compression by that server, from upload to download"
 for where in "--server $address" ""; do
   TIMEFORMAT="%R s ${where:-here}"
   # shellcheck disable=SC2086  # a flag and its value
-  time "$pleat" compress "${inputs[0]}" $where --kg 1 -o "$out/x.plt" --quiet --report "$out/c.json"
+  time "$pleat" compress "${inputs[0]}" $where --kg 1 --force -o "$out/x.plt" --quiet --report "$out/c.json" >/dev/null
   python3 tests/bench/summarize.py "$out/c.json"
 done
 kill $pleatd
 
 for input in "${inputs[@]}"; do
   echo "== train $input"
-  "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --report "$out/train.json"
+  "$pleat" train "$input" --local --force -o "$out/model.pleat" --quiet --report "$out/train.json" >/dev/null
   python3 tests/bench/summarize.py "$out/train.json"
   for smoothness in .001 .01 .1; do
-    "$pleat" train "$input" --local -o "$out/model.pleat" --quiet --smooth $smoothness \
-      --report "$out/train.json"
+    "$pleat" train "$input" --local --force -o "$out/model.pleat" --quiet --smooth $smoothness \
+      --report "$out/train.json" >/dev/null
     python3 tests/bench/summarize.py "$out/train.json"
   done
   for refine in none joints; do
     for protocol in every5th blocks10 last30; do
       "$pleat" evaluate "$input" --protocol $protocol --refine $refine --learner gp --measure gp \
-        --quiet --report "$out/e.json" >/dev/null
+        --quiet --force --report "$out/e.json" >/dev/null
       python3 tests/bench/summarize.py "$out/e.json" "$protocol --refine $refine"
     done
   done
   for protocol in reconstruct every5th blocks10 last30; do
     for variant in "--resolution 100" "--resolution 5" "--resolution 5 --upsampling rbf" "--preset paper"; do
       # shellcheck disable=SC2086  # a variant is several words
-      "$pleat" evaluate "$input" --protocol $protocol $variant --quiet --report "$out/e.json" >/dev/null
+      "$pleat" evaluate "$input" --protocol $protocol $variant --quiet --force --report "$out/e.json" >/dev/null
       python3 tests/bench/summarize.py "$out/e.json" "$protocol $variant"
     done
   done
@@ -126,7 +126,7 @@ experiments() {  # experiments NAME INPUT [flags...]: all four, on training fram
     for preset in paper default; do
       echo "== $name $experiment --preset $preset $*"
       "$pleat" evaluate "$input" --experiment $experiment --preset $preset "$@" --quiet \
-        --out "$figures/$name-$preset"
+        --force --out "$figures/$name-$preset"
     done
   done
 }
@@ -149,7 +149,7 @@ fi
 if [ -f "$data/skirt/walk_a.pc2" ]; then
   for refine in none joints full; do
     "$pleat" evaluate "$data/skirt/walk_a.pc2" --protocol cross --test "$data/skirt/walk_b.pc2" \
-      --refine $refine --quiet --report "$out/e.json" >/dev/null
+      --refine $refine --quiet --force --report "$out/e.json" >/dev/null
     python3 tests/bench/summarize.py "$out/e.json" "skirt walk_a -> walk_b --refine $refine"
   done
 fi

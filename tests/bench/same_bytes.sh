@@ -27,10 +27,10 @@ stream_all() {  # BIN OUT INPUT NAME SERVER: what comes over the wire
   rm "$out/$name.report.json"  # has times in it
   for encoding in mesh points; do
     "$bin/pleat" pose "$model" --server "$server" -q --motion "$out/$name.json" --encoding $encoding \
-      -o "$out/$name.$encoding"
+      -o "$out/$name.$encoding/"
   done
   "$bin/pleat" pose "$model" --server "$server" -q --motion "$out/$name.json" --content control --format drc \
-    -o "$out/$name.control"
+    -o "$out/$name.control/"
   "$bin/pleat" pose "$model" --server "$server" -q --motion "$out/$name.json" --content parameters \
     -o "$out/$name.parameters.pc2"
 }
@@ -45,11 +45,11 @@ sums() {  # BIN OUT INPUT...
   trap 'kill -TERM $pid 2>/dev/null || true' RETURN
   until grep -q '^listening on ' "$out/pleatd.out"; do kill -0 $pid; sleep 0.05; done
   for input in "$out/files/made/performer.pc2" "$@"; do
-    write_all "$bin" "$out/files" "$input" "$(basename "${input%.*}")"
-    stream_all "$bin" "$out/files" "$input" "$(basename "${input%.*}")" "$(sed -n 's/^listening on //p' "$out/pleatd.out")"
+    write_all "$bin" "$out/files" "$input" "$(basename "${input%.*}")" >&2
+    stream_all "$bin" "$out/files" "$input" "$(basename "${input%.*}")" "$(sed -n 's/^listening on //p' "$out/pleatd.out")" >&2
   done
   for learner in regional gp sgplvm back-constrained ridge; do
-    "$bin/pleat" train "$out/files/made/performer.pc2" --local -q --learner $learner -o "$out/files/$learner.pleat"
+    "$bin/pleat" train "$out/files/made/performer.pc2" --local -q --learner $learner -o "$out/files/$learner.pleat" >&2
   done
   for name in $(cd "$out/files" && LC_ALL=C ls); do  # a folder counts as its files in order
     printf '%s  %s\n' "$(cd "$out/files" && find "$name" -type f -print0 | LC_ALL=C sort -z | xargs -0 cat | sha256sum |

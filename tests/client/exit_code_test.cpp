@@ -14,6 +14,7 @@ TEST(ExitCode, EveryKindOfFailureHasItsOwnCode) {
   EXPECT_EQ(ExitCodeOf(absl::DataLossError("x")), ExitCode::kBadInput);
   EXPECT_EQ(ExitCodeOf(absl::NotFoundError("x")), ExitCode::kNotFound);
   EXPECT_EQ(ExitCodeOf(absl::FailedPreconditionError("x")), ExitCode::kRefused);
+  EXPECT_EQ(ExitCodeOf(absl::UnimplementedError("x")), ExitCode::kRefused);
   EXPECT_EQ(ExitCodeOf(absl::UnavailableError("x")), ExitCode::kUnavailable);
   EXPECT_EQ(ExitCodeOf(absl::DeadlineExceededError("x")), ExitCode::kUnavailable);
   EXPECT_EQ(ExitCodeOf(absl::CancelledError("x")), ExitCode::kCancelled);

@@ -30,8 +30,8 @@ class Bench : public testing::Test {
   }
 
   std::vector<std::string> Command(const std::vector<std::string>& more) {
-    std::vector<std::string> command = {"bench",  id_,        "--server",
-                                        address_, "--report", File("b.json")};
+    std::vector<std::string> command = {"bench",        id_,      "--server", address_, "--report",
+                                        File("b.json"), "--force"};
     command.insert(command.end(), more.begin(), more.end());
     return command;
   }

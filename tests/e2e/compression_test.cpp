@@ -53,7 +53,7 @@ TEST(Compression, GivesTheSameBytesAndFramesHereAndThere) {
     for (const std::vector<std::string>& source : {std::vector<std::string>{here},
                                                    {here, "--server", address},
                                                    {id.substr(0, 10), "--server", address}}) {
-      std::vector<std::string> command = {"decompress", "-o", pleat.File("out.pseq")};
+      std::vector<std::string> command = {"decompress", "--force", "-o", pleat.File("out.pseq")};
       command.insert(command.end(), source.begin(), source.end());
       command.insert(command.end(), range.begin(), range.end());
       result = pleat.Run(command);

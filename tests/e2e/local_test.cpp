@@ -173,9 +173,10 @@ TEST(Local, CompressesWithAPromiseAndDecodesRanges) {
   ASSERT_EQ(few.num_frames(), 3);
   EXPECT_EQ(few.frame(0), decoded.frame(17));
 
-  EXPECT_EQ(pleat.Run({"compress", input, "-o", file}).exit_code, 2);
-  EXPECT_EQ(pleat.Run({"decompress", file, "-o", copy, "--frames", "3"}).exit_code, 2);
-  EXPECT_EQ(pleat.Run({"decompress", file, "-o", copy, "--frames", "3:99"}).exit_code, 3);
+  EXPECT_EQ(pleat.Run({"compress", input, "--force", "-o", file}).exit_code, 2);
+  EXPECT_EQ(pleat.Run({"decompress", file, "--force", "-o", copy, "--frames", "3"}).exit_code, 2);
+  EXPECT_EQ(pleat.Run({"decompress", file, "--force", "-o", copy, "--frames", "3:99"}).exit_code,
+            3);
   EXPECT_EQ(pleat.Run({"decompress", copy, "-o", pleat.File("no.pc2")}).exit_code, 3);
 }
 

@@ -52,4 +52,10 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
                    refused == 1 ? " line above" : " lines above"));
 }
 
+absl::Status CheckIsClip(const MeshSequence& sequence, const std::string& input) {
+  if (sequence.num_frames() >= 2) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("'", input, "' is one frame; a clip needs two frames"));
+}
+
 }  // namespace pleat

@@ -19,4 +19,7 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
                                        const std::string& fps = "",
                                        std::vector<InputNote>* notes = nullptr);
 
+// kInvalidArgument when the sequence, read from `input`, is a single frame.
+absl::Status CheckIsClip(const MeshSequence& sequence, const std::string& input);
+
 }  // namespace pleat

@@ -119,10 +119,12 @@ absl::StatusOr<RigMeasurement> MeasureRig(const std::string& input, const MeshSe
   measurement.height_m = ComputeBounds(first).sizes().y();
   measurement.mesh = InspectMesh(used.topology(), first);
 
+  const bool does_fit = options.fit && used.num_frames() > 1;
+  const double rig_share = does_fit ? .25 : 1;
   const double start = MonotonicSeconds();
   const std::clock_t cpu_start = std::clock();
   absl::StatusOr<Rig> rig =
-      AutoRig(used, options.rig, &measurement.summary, progress.Stage("rig", 0, .5));
+      AutoRig(used, options.rig, &measurement.summary, progress.Stage("rig", 0, rig_share));
   measurement.rig_seconds = MonotonicSeconds() - start;
   measurement.rig_cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   if (absl::IsCancelled(rig.status())) return rig.status();
@@ -134,9 +136,9 @@ absl::StatusOr<RigMeasurement> MeasureRig(const std::string& input, const MeshSe
                            ScoreJoints(sequence, *measurement.rig, *truth, options,
                                        options.first_frame + measurement.summary.rest_frame));
   }
-  if (options.fit && used.num_frames() > 1) {
-    PLEAT_RETURN_IF_ERROR(
-        MeasureFit(sequence, used, truth, options, &measurement, progress.Stage("fit", .5, 1)));
+  if (does_fit) {
+    PLEAT_RETURN_IF_ERROR(MeasureFit(sequence, used, truth, options, &measurement,
+                                     progress.Stage("fit", rig_share, 1)));
   }
   return measurement;
 }

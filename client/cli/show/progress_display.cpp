@@ -85,21 +85,24 @@ bool ProgressDisplay::Due(const ProgressUpdate& update, double now) const {
 void ProgressDisplay::Update(const ProgressUpdate& update, std::optional<double> eta_seconds) {
   std::lock_guard lock(mutex_);
   const double now = clock_seconds_();
+  // A job that starts again, or a fraction that is no number, leaves the bar where it is.
+  if (update.fraction > fraction_) fraction_ = std::min(update.fraction, 1.0);
   const bool new_stage = update.stage != stage_;
   if (new_stage) {
     if (!stage_.empty()) stage_seconds_[stage_] += now - stage_start_seconds_;
     stage_ = update.stage;
     stage_start_seconds_ = now;
   }
-  if (!Due(update, now)) return;
+  const ProgressUpdate shown{update.stage, fraction_, update.objective};
+  if (!Due(shown, now)) return;
   last_drawn_seconds_ = now;
   drawn_stage_ = stage_;
   if (style_ == ProgressStyle::kBar) {
-    out_ << '\r' << FormatProgressBar(update, now - start_seconds_, eta_seconds, kTerminalColumns)
+    out_ << '\r' << FormatProgressBar(shown, now - start_seconds_, eta_seconds, kTerminalColumns)
          << "\x1b[K" << std::flush;
     line_open_ = true;
   } else {
-    out_ << FormatProgressLine(update, now - start_seconds_, eta_seconds) << std::endl;
+    out_ << FormatProgressLine(shown, now - start_seconds_, eta_seconds) << std::endl;
   }
 }
 

@@ -25,7 +25,8 @@ std::string FormatDuration(double seconds);
 
 enum class ProgressStyle { kSilent, kLines, kBar };
 
-// Draws updates and adds up the seconds that each stage took. Thread-safe.
+// Draws updates and adds up the seconds that each stage took. What it draws never runs backwards.
+// Thread-safe.
 class ProgressDisplay {
  public:
   ProgressDisplay(std::ostream& out, ProgressStyle style, std::function<double()> clock_seconds);
@@ -53,6 +54,7 @@ class ProgressDisplay {
   double last_drawn_seconds_;
   std::string stage_, drawn_stage_;
   std::map<std::string, double> stage_seconds_;
+  double fraction_ = 0;  // the largest so far
   bool line_open_ = false;
 };
 

@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
+#include "cli/io/output_path.h"
 #include "cli/service.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
@@ -30,6 +31,7 @@ struct StoredThings {
   // Null when they cannot be downloaded.
   absl::StatusOr<std::string> (*download)(CharacterService& service, const std::string& id,
                                           const Progress& progress);
+  std::string file_ending;  // of a download, with the dot
   nlohmann::ordered_json (*json)(const Info&);
   std::vector<std::string> header;
   std::vector<std::string> (*row)(const Info&);
@@ -42,6 +44,13 @@ struct StoredVerbOptions {
 template <typename Info>
 absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOptions& options,
                            const Session& session) {
+  if (options.action != "list" && options.id.empty()) {
+    return UsageError(absl::StrCat("'", options.action, "' needs an id"));
+  }
+  if (options.action == "download" && options.output.empty()) {
+    return UsageError("'download' needs -o FILE");
+  }
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(session, {{"-o", options.output, {things.file_ending}}}));
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
   PLEAT_ASSIGN_OR_RETURN(const std::vector<Info> infos, things.list(*service));
   if (options.action == "list") {
@@ -54,11 +63,9 @@ absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOpt
     *session.out << (session.json ? JsonText(json) : FormatTable(things.header, rows));
     return absl::OkStatus();
   }
-  if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
   PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(infos, options.id, things.kind));
   if (options.action == "delete") return things.remove(*service, id);
   if (options.action == "download") {
-    if (options.output.empty()) return UsageError("'download' needs -o FILE");
     ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
     PLEAT_ASSIGN_OR_RETURN(
         const std::string bytes,
@@ -86,7 +93,11 @@ void AddStoredVerb(CLI::App& app, Session& session, StoredThings<Info> things) {
       ->capture_default_str();
   verb->add_option("ID", options->id,
                    absl::StrCat("id of a ", things.kind, ", or its first digits"));
-  if (can_download) verb->add_option("-o,--output", options->output, "file to download to");
+  if (can_download) {
+    verb->add_option("-o,--output", options->output,
+                     absl::StrCat("file to download to (", things.file_ending, ")"));
+    AddForceFlag(verb, session);
+  }
   AddServerFlags(verb, session);
 }
 

@@ -9,6 +9,7 @@
 #include "cli/exit_code.h"
 #include "cli/interrupt.h"
 #include "cli/io/model_input.h"
+#include "cli/io/output_path.h"
 #include "cli/load/load_report.h"
 #include "cli/load/load_run.h"
 #include "cli/service.h"
@@ -150,6 +151,8 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
 }
 
 absl::Status RunBench(const BenchVerbOptions& options, const Session& session) {
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(
+      session, {{"--report", options.report, {".json"}}, {"--plot", options.plot, {".png"}}}));
   PLEAT_ASSIGN_OR_RETURN(const LoadReport report, Measure(options, session));
   const nlohmann::ordered_json json = LoadReportJson(report);
   if (!options.report.empty()) {
@@ -216,6 +219,7 @@ void AddBenchVerb(CLI::App& app, Session& session) {
       ->excludes(arrivals);
   verb->add_option("--report", options->report, "JSON report (pleat.bench/1)");
   verb->add_option("--plot", options->plot, "PNG: percentiles of the latency and its parts");
+  AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }
 

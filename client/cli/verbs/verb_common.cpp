@@ -9,7 +9,7 @@ CLI::App* AddVerb(CLI::App& app, Session& session, const std::string& name,
                   const std::string& description, std::function<absl::Status()> run) {
   CLI::App* verb = app.add_subcommand(name, description);
   verb->add_flag("--json", session.json, "print the result as JSON on stdout, nothing else");
-  verb->add_flag("--quiet,-q", session.quiet, "no progress");
+  verb->add_flag("--quiet,-q", session.quiet, "no progress on stderr; results and warnings stay");
   verb->add_flag(
       "--strict", session.strict,
       "end with exit code 5 where there would be a warning, or a doubt about which files "
@@ -59,6 +59,10 @@ void AddOptionalServerFlags(CLI::App* verb, Session& session) {
 
 bool RunsOnService(const Session& session) {
   return !session.server.empty() || !session.data_dir.empty();
+}
+
+void AddForceFlag(CLI::App* verb, Session& session) {
+  verb->add_flag("--force", session.force, "replace files that exist");
 }
 
 void AddInProcessFlag(CLI::App* verb, Session& session) {

@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
+#include "cli/io/output_path.h"
 #include "cli/service.h"
 #include "cli/show/input_notes_json.h"
 #include "cli/show/json_text.h"
@@ -100,6 +101,8 @@ void PrintText(const CompressVerbOptions& flags, const MeshSequence& sequence,
 
 absl::Status RunCompress(const CompressVerbOptions& flags, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, ChooseGoal(flags));
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(
+      session, {{"-o", flags.output, {".plt"}}, {"--report", flags.report, {".json"}}}));
   std::vector<InputNote> notes;
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
                          ReadInput(session, flags.input, flags.fps, &notes));
@@ -115,7 +118,7 @@ absl::Status RunCompress(const CompressVerbOptions& flags, const Session& sessio
   }
   if (session.json) {
     *session.out << JsonText(json);
-  } else if (!session.quiet) {
+  } else {
     PrintText(flags, sequence, compressed.record, *session.out);
   }
   return absl::OkStatus();
@@ -149,6 +152,7 @@ void AddCompressVerb(CLI::App& app, Session& session) {
                    "in this process: 0 = one per core; the result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
+  AddForceFlag(verb, session);
   AddOptionalServerFlags(verb, session);
 }
 

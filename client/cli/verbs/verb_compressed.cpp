@@ -31,6 +31,7 @@ void AddCompressedVerb(CLI::App& app, Session& session) {
            [](CharacterService& service, const std::string& id, const Progress& progress) {
              return service.compressed_sequences().Download(id, progress);
            },
+       .file_ending = ".plt",
        .json = CompressedSequenceJson,
        .header = {"id", "name", "frames", "vertices", "max mm", "KG %", "size"},
        .row = Row});

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/animation_writer.h"
+#include "cli/io/output_path.h"
 #include "cli/service.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
@@ -121,6 +122,7 @@ absl::Status DecodeOnService(const std::string& input, FrameRange range, const S
 absl::Status RunDecompress(const DecompressVerbOptions& flags, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const AnimationFormat format,
                          ChooseAnimationFormat(flags.format, flags.output, AnimationFormat::kObj));
+  PLEAT_RETURN_IF_ERROR(CheckAnimationOutput(session, flags.output, format, flags.format));
   PLEAT_ASSIGN_OR_RETURN(const FrameRange range, ParseRange(flags.frames));
   const double start_seconds = MonotonicSeconds();
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
@@ -139,7 +141,7 @@ absl::Status RunDecompress(const DecompressVerbOptions& flags, const Session& se
                                          {"num_vertices", output.num_vertices()},
                                          {"seconds", seconds}};
     *session.out << JsonText(json);
-  } else if (!session.quiet) {
+  } else {
     *session.out << absl::StrFormat("%s: %d frames of %d vertices in %.2f s\n", flags.output,
                                     output.num_frames(), output.num_vertices(), seconds);
   }
@@ -160,6 +162,7 @@ void AddDecompressVerb(CLI::App& app, Session& session) {
   verb->add_option("--format", options->format,
                    "auto (by the ending of OUT; a folder gets obj), pc2, pseq, obj, ply or drc")
       ->capture_default_str();
+  AddForceFlag(verb, session);
   AddOptionalServerFlags(verb, session);
 }
 

@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
+#include "cli/io/output_path.h"
 #include "cli/show/error_text.h"
 #include "cli/show/experiment_files.h"
 #include "cli/show/json_text.h"
@@ -96,6 +97,9 @@ absl::StatusOr<Clips> ReadClips(const Session& session, EvaluateVerbOptions* opt
     PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, options->inputs[i], options->fps));
     options->evaluate.more_training_clips.push_back(std::move(clip));
   }
+  if (options->inputs.size() == 1) {
+    PLEAT_RETURN_IF_ERROR(CheckIsClip(sequence, options->inputs.front()));
+  }
   Clips clips{std::move(sequence), std::nullopt};
   if (!options->test_input.empty()) {
     PLEAT_ASSIGN_OR_RETURN(clips.test, ReadInput(session, options->test_input, options->fps));
@@ -107,6 +111,7 @@ absl::StatusOr<Clips> ReadClips(const Session& session, EvaluateVerbOptions* opt
 absl::Status RunExperimentVerb(EvaluateVerbOptions options, const Session& session) {
   absl::StatusOr<Experiment> experiment = ParseExperiment(options.experiment);
   if (!experiment.ok()) return UsageError(std::string(experiment.status().message()));
+  PLEAT_RETURN_IF_ERROR(CheckOutputFolder(session, "--out", options.out));
   PLEAT_ASSIGN_OR_RETURN(const Clips clips, ReadClips(session, &options));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   PLEAT_ASSIGN_OR_RETURN(const ExperimentReport report,
@@ -135,6 +140,7 @@ absl::Status RunExperimentVerb(EvaluateVerbOptions options, const Session& sessi
 absl::Status RunEvaluate(EvaluateVerbOptions options, const Session& session) {
   PLEAT_RETURN_IF_ERROR(ResolveFlags(&options));
   if (!options.experiment.empty()) return RunExperimentVerb(std::move(options), session);
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(session, {{"--report", options.report, {".json"}}}));
   const double start_seconds = MonotonicSeconds();
   PLEAT_ASSIGN_OR_RETURN(const Clips clips, ReadClips(session, &options));
   const double read_seconds = MonotonicSeconds() - start_seconds;
@@ -188,6 +194,7 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   AddTrainFlags(verb, &options->flags);
+  AddForceFlag(verb, session);
   AddInProcessFlag(verb, session);
 }
 

@@ -5,6 +5,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/io/animation_writer.h"
 #include "cli/io/frame_rate.h"
+#include "cli/io/output_path.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
@@ -61,6 +62,7 @@ absl::Status RunGenerate(GenerateOptions options, const Session& session) {
   }
   PLEAT_ASSIGN_OR_RETURN(const AnimationFormat format,
                          ChooseAnimationFormat(options.format, options.output));
+  PLEAT_RETURN_IF_ERROR(CheckOutputFolder(session, "-o", options.output));
   PLEAT_ASSIGN_OR_RETURN(const Performer performer, Generate(options.performer, session));
 
   const MeshSequence& sequence = performer.sequence;
@@ -128,6 +130,7 @@ void AddGenerateVerb(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--yaw", options->performer.yaw_degrees, "facing of frame 0 about +y from +z")
       ->capture_default_str();
+  AddForceFlag(verb, session);
   AddInProcessFlag(verb, session);
 }
 

@@ -29,6 +29,7 @@ void AddModelsVerb(CLI::App& app, Session& session) {
                     const std::string& id) { return service.models().Delete(id); },
        .download = [](CharacterService& service, const std::string& id,
                       const Progress& progress) { return service.models().Download(id, progress); },
+       .file_ending = ".pleat",
        .json = ModelJson,
        .header = {"id", "name", "learner", "vertices", "frames", "error %", "size"},
        .row = Row});

@@ -5,6 +5,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/io/model_input.h"
 #include "cli/io/motion_edit.h"
+#include "cli/io/output_path.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/motion_file.h"
@@ -19,12 +20,13 @@ struct MotionVerbOptions {
 };
 
 absl::Status RunMotion(const MotionVerbOptions& options, const Session& session) {
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(session, {{"-o", options.output, {".json"}}}));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
                          LoadModel(session, options.model));
   const std::vector<std::string> joint_names = JointNames(model->skeleton());
   PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options.source, options.fps, *model, session));
   for (const std::string& warning : motion.warnings) {
-    if (session.talkative()) *session.err << "warning: " << warning << "\n";
+    *session.err << "warning: " << warning << "\n";
   }
   PLEAT_ASSIGN_OR_RETURN(motion.track,
                          EditMotion(joint_names, std::move(motion.track), options.edits));
@@ -36,7 +38,7 @@ absl::Status RunMotion(const MotionVerbOptions& options, const Session& session)
     *session.out << absl::StrFormat(
         "{\"schema\":\"pleat.motion_written/1\",\"num_frames\":%d,\"num_joints\":%d}\n",
         motion.track.num_frames(), joint_names.size());
-  } else if (!session.quiet) {
+  } else {
     *session.out << absl::StrFormat("%s: %d frames of %d joints\n", options.output,
                                     motion.track.num_frames(), joint_names.size());
   }
@@ -67,6 +69,7 @@ void AddMotionVerb(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--bone-scale", options->bone_scales,
                    "JOINT=FACTOR: length of the bone that ends in JOINT, kept in the motion");
+  AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }
 

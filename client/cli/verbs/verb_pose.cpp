@@ -14,6 +14,7 @@
 #include "cli/io/frame_rate.h"
 #include "cli/io/model_input.h"
 #include "cli/io/motion_edit.h"
+#include "cli/io/output_path.h"
 #include "cli/service.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
@@ -65,7 +66,7 @@ absl::StatusOr<ClipQuery> ReadQuery(const PoseVerbOptions& options, const Skelet
                                     const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(Motion motion, ReadMotion(options.motion, skeleton));
   for (const std::string& warning : motion.warnings) {
-    if (session.talkative()) *session.err << "warning: " << warning << "\n";
+    *session.err << "warning: " << warning << "\n";
   }
   PLEAT_ASSIGN_OR_RETURN(std::vector<double> scales,
                          ParseJointFactors(JointNames(skeleton), options.bone_scales));
@@ -98,7 +99,7 @@ void PrintSummary(const PoseVerbOptions& options, const Confidence& confidence, 
                                            {"lowest_frame", confidence.lowest_frame}}},
                                          {"seconds", seconds}};
     *session.out << JsonText(json);
-  } else if (!session.quiet) {
+  } else {
     *session.out << absl::StrFormat("%s: %d frames of %d vertices in %.2f s", options.output,
                                     confidence.num_frames, num_vertices, seconds);
     if (!options.skinned_only) {
@@ -227,6 +228,7 @@ absl::StatusOr<int> PoseFromService(const PoseVerbOptions& options, AnimationFor
 absl::Status RunPose(const PoseVerbOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const AnimationFormat format,
                          ChooseAnimationFormat(options.format, options.output));
+  PLEAT_RETURN_IF_ERROR(CheckAnimationOutput(session, options.output, format, options.format));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   const Progress progress = InterruptibleProgress(&display).Stage("pose", 0, 1);
   const double start_seconds = MonotonicSeconds();
@@ -263,6 +265,7 @@ void AddPoseVerb(CLI::App& app, Session& session) {
   verb->add_option("--bone-scale", options->bone_scales,
                    "JOINT=FACTOR: length of the bone that ends in JOINT; wins over the motion's");
   verb->add_flag("--skinned-only", options->skinned_only, "without the learned detail");
+  AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }
 

@@ -11,6 +11,7 @@
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
 #include "cli/io/model_input.h"
+#include "cli/io/output_path.h"
 #include "cli/show/error_sheet.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/rig_sheet.h"
@@ -126,15 +127,16 @@ absl::StatusOr<RigSheetRow> SequenceRigRow(const std::string& label, const MeshS
                                            const std::vector<int>& frames, const Session& session) {
   PLEAT_RETURN_IF_ERROR(CheckFrames(label, sequence, frames));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
+  const Progress progress = InterruptibleProgress(&display);
   AutoRigSummary summary;
-  PLEAT_ASSIGN_OR_RETURN(const Rig rig,
-                         AutoRig(sequence, {}, &summary, InterruptibleProgress(&display)));
+  PLEAT_ASSIGN_OR_RETURN(const Rig rig, AutoRig(sequence, {}, &summary,
+                                                progress.Stage("rig", 0, frames.empty() ? 1 : .5)));
   RigSheetRow row{label, sequence.topology(), rig.skeleton, summary.yaw_degrees, {}};
   row.views.push_back(ViewOf(absl::StrCat("rest: frame ", summary.rest_frame), rig,
                              Pose::Rest(rig.skeleton), rig.rest_positions));
   if (frames.empty()) return row;
   PLEAT_ASSIGN_OR_RETURN(const PoseTrack track, FitPoses(sequence.Subset(frames), rig, {}, nullptr,
-                                                         InterruptibleProgress(&display)));
+                                                         progress.Stage("fit", .5, 1)));
   for (size_t k = 0; k < frames.size(); ++k) {
     row.views.push_back(ViewOf(absl::StrCat("frame ", frames[k]), rig, track.pose(k),
                                sequence.FrameAsDouble(frames[k])));
@@ -195,12 +197,13 @@ absl::Status RunRender(RenderVerbOptions options, const Session& session) {
   if (!options.frames.empty()) {
     PLEAT_ASSIGN_OR_RETURN(options.sheet.frames, ParseFrameList(options.frames));
   }
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(session, {{"-o", options.output, {".png"}}}));
   options.sheet.count = options.count.value_or(options.compare ? 4 : options.sheet.count);
   PLEAT_ASSIGN_OR_RETURN(const std::string png, options.compare ? DrawComparison(options, session)
                                                 : options.rig   ? DrawRigs(options, session)
                                                                 : DrawSheet(options, session));
   PLEAT_RETURN_IF_ERROR(WriteFile(options.output, png));
-  if (!session.quiet) *session.out << options.output << "\n";
+  *session.out << options.output << "\n";
   return absl::OkStatus();
 }
 
@@ -241,6 +244,7 @@ void AddRenderVerb(CLI::App& app, Session& session) {
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }
 

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
+#include "cli/io/output_path.h"
 #include "cli/io/placed_joints.h"
 #include "cli/io/rig_measurement.h"
 #include "cli/show/json_text.h"
@@ -107,6 +108,8 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
     return UsageError("--at takes one INPUT");
   }
   PLEAT_ASSIGN_OR_RETURN(options.measurement.rig.placed_joints, ParsePlacedJoints(options.placed));
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(
+      session, {{"-o", options.output, {".json"}}, {"--report", options.report, {".json"}}}));
   options.measurement.fit = !options.no_fit;
   std::vector<RigMeasurement> rows;
   for (size_t i = 0; i < options.inputs.size(); ++i) {
@@ -133,7 +136,7 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
   }
   if (session.json) {
     *session.out << JsonText(report);
-  } else if (!session.quiet) {
+  } else {
     PrintText(rows, *session.out);
   }
   if (num_refused == 0) {
@@ -177,6 +180,7 @@ void AddRigVerb(CLI::App& app, Session& session) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  AddForceFlag(verb, session);
   AddInProcessFlag(verb, session);
 }
 

@@ -28,6 +28,7 @@ void AddSequencesVerb(CLI::App& app, Session& session) {
        .remove = [](CharacterService& service,
                     const std::string& id) { return service.sequences().Delete(id); },
        .download = nullptr,
+       .file_ending = "",
        .json = SequenceJson,
        .header = {"id", "name", "frames", "vertices", "faces", "fps", "size"},
        .row = Row});

@@ -15,6 +15,7 @@
 #include "absl/strings/str_format.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
+#include "cli/io/output_path.h"
 #include "cli/service.h"
 #include "cli/show/error_text.h"
 #include "cli/show/info_json.h"
@@ -174,34 +175,59 @@ absl::Status PrintDetached(const JobInfo& job, const Session& session) {
   return absl::OkStatus();
 }
 
-absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
+// A server that is not there is no reason to give up.
+absl::Status WithLocalHint(const absl::Status& status, const Session& session) {
+  if (session.local || !absl::IsUnavailable(status)) return status;
+  return absl::UnavailableError(
+      absl::StrCat(status.message(), "; --local trains in this process, without a server"));
+}
+
+absl::StatusOr<std::vector<MeshSequence>> ReadClips(const TrainVerbOptions& options,
+                                                    const Session& session,
+                                                    std::vector<InputNote>* notes) {
+  std::vector<MeshSequence> clips;
+  for (const std::string& input : options.inputs) {
+    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, input, options.fps, notes));
+    clips.push_back(std::move(clip));
+  }
+  // Clips of one frame each may teach something together.
+  if (clips.size() == 1) PLEAT_RETURN_IF_ERROR(CheckIsClip(clips[0], options.inputs[0]));
+  return clips;
+}
+
+absl::Status CheckFlags(const TrainVerbOptions& options, const Session& session) {
   const bool here = session.local && session.data_dir.empty();
   if (options.output.empty() && here) return UsageError("--local without --data-dir needs -o FILE");
   if (!options.locked.empty() && options.rig.empty()) {
     return UsageError("--lock needs --rig: `pleat rig INPUT -o rig.json` writes the automatic one");
   }
   if (options.detach && session.local) return UsageError("--detach needs a server");
+  return CheckOutputFiles(
+      session, {{"-o", options.output, {".pleat"}}, {"--report", options.report, {".json"}}});
+}
+
+absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
+  PLEAT_RETURN_IF_ERROR(CheckFlags(options, session));
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions train, ResolveTrainFlags(options.flags));
   const double start_seconds = MonotonicSeconds();
-  std::vector<MeshSequence> clips;
   std::vector<InputNote> notes;
-  for (const std::string& input : options.inputs) {
-    PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, input, options.fps, &notes));
-    clips.push_back(std::move(clip));
-  }
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<MeshSequence> clips,
+                         ReadClips(options, session, &notes));
   const double read_seconds = MonotonicSeconds() - start_seconds;
 
   PLEAT_ASSIGN_OR_RETURN(const std::optional<UserRig> rig, ReadUserRig(options, clips[0]));
   const UserRig* user_rig = rig ? &*rig : nullptr;
 
   TrainedModel trained;
-  if (here) {
+  if (session.local && session.data_dir.empty()) {
     PLEAT_ASSIGN_OR_RETURN(trained, TrainHere(clips, user_rig, train, options.resources, session));
   } else {
-    PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(*service, clips, user_rig, train, session));
+    const absl::StatusOr<std::unique_ptr<CharacterService>> opened = OpenService(session);
+    if (!opened.ok()) return WithLocalHint(opened.status(), session);
+    CharacterService& service = **opened;
+    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(service, clips, user_rig, train, session));
     if (options.detach) return PrintDetached(job, session);
-    PLEAT_ASSIGN_OR_RETURN(trained, TrainOnService(*service, job, session));
+    PLEAT_ASSIGN_OR_RETURN(trained, TrainOnService(service, job, session));
   }
   trained.seconds = StepSeconds(trained.seconds);
   trained.seconds["read"] = read_seconds;
@@ -217,7 +243,7 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   }
   if (session.json) {
     *session.out << JsonText(report);
-  } else if (!session.quiet) {
+  } else {
     PrintText(trained, options.output, *session.out);
   }
   return RefuseWarningsWhenStrict(session, trained.model->record().warnings.size());
@@ -245,6 +271,7 @@ void AddTrainVerb(CLI::App& app, Session& session) {
                    "joints of --rig that refinement leaves where they are: NAME,NAME,...")
       ->delimiter(',');
   AddTrainFlags(verb, &options->flags);
+  AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }
 

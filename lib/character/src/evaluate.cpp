@@ -112,15 +112,21 @@ absl::Status MeasureAll(const ModelsByLearner& models,
                         const std::map<std::string, DetailPredictor>& baselines,
                         const TestSide& test, const Progress& progress, EvaluateReport* report) {
   const std::shared_ptr<const CharacterModel>& any_model = models.begin()->second;
+  const double num_steps = 1.0 + double(models.size()) + double(baselines.size());
+  int step = 0;
+  const auto next = [&] {
+    const int begin = step++;
+    return progress.Stage("predict", begin / num_steps, step / num_steps);
+  };
   PLEAT_ASSIGN_OR_RETURN(report->skinned,
-                         MeasureModel(any_model, test, report->diagonal_m, true, progress));
+                         MeasureModel(any_model, test, report->diagonal_m, true, next()));
   for (const auto& [name, model] : models) {
     PLEAT_ASSIGN_OR_RETURN(report->learners[name],
-                           MeasureModel(model, test, report->diagonal_m, false, progress));
+                           MeasureModel(model, test, report->diagonal_m, false, next()));
   }
   for (const auto& [name, predictor] : baselines) {
     PLEAT_ASSIGN_OR_RETURN(report->baselines[name], MeasureBaseline(predictor, *any_model, test,
-                                                                    report->diagonal_m, progress));
+                                                                    report->diagonal_m, next()));
   }
   return absl::OkStatus();
 }

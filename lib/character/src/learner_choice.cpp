@@ -165,7 +165,7 @@ absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Trai
       best = candidates[i];
     }
   }
-  if (!best) return absl::InternalError("no learner gave a finite validation error");
+  if (!best) return absl::FailedPreconditionError("no learner gave a finite validation error");
   return *best;
 }
 

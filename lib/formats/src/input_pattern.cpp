@@ -33,7 +33,10 @@ absl::StatusOr<std::vector<std::string>> Expand(const std::string& pattern) {
   std::vector<std::string> paths(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc);
   globfree(&matches);
   if (result == 0 || result == GLOB_NOMATCH) return paths;
-  return absl::InternalError(absl::StrCat("cannot expand '", pattern, "'"));
+  if (result == GLOB_NOSPACE) {
+    return absl::ResourceExhaustedError(absl::StrCat("'", pattern, "' fits too many files"));
+  }
+  return absl::InvalidArgumentError(absl::StrCat("cannot look for '", pattern, "'"));
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ absl::StatusOr<Eigen::MatrixXd> SolveHeatEquilibrium(
   // One factorization serves all bones: they differ in the right side only.
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system);
   if (solver.info() != Eigen::Success) {
-    return absl::InternalError("the heat equilibrium of the surface could not be solved");
+    return absl::FailedPreconditionError("the heat equilibrium of the surface could not be solved");
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(0.9));
   const Eigen::MatrixXd weights = solver.solve(heat);

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -27,8 +28,10 @@ absl::Status Run(draco::ExpertEncoder* encoder, std::string* bytes) {
     if (!status.ok()) {
       return absl::InternalError(absl::StrCat("Draco cannot encode: ", status.error_msg_string()));
     }
-  } catch (const std::exception& error) {
-    return absl::InternalError(absl::StrCat("Draco cannot encode: ", error.what()));
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError("there is not enough memory to encode with Draco");
+  } catch (const std::exception&) {
+    return absl::InternalError("Draco cannot encode: a value is out of its range");
   }
   bytes->assign(buffer.data(), buffer.size());
   return absl::OkStatus();

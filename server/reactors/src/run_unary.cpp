@@ -11,7 +11,6 @@
 #include <string>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 
@@ -64,7 +63,8 @@ absl::Status CallGuarded(const std::function<absl::Status()>& handler) {
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("the server has not enough memory for this call");
   } catch (const std::exception& error) {
-    return absl::InternalError(absl::StrCat("unexpected exception: ", error.what()));
+    spdlog::error("unexpected exception: {}", error.what());  // for operators, not for callers
+    return absl::InternalError("a fault of the server; its log says more");
   }
 }
 

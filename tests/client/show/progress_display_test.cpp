@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "cli/session.h"
 
@@ -87,6 +91,56 @@ TEST(ProgressDisplay, BarIsRedrawnInPlaceAndEndsItsLine) {
   const std::string text = out.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 2);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+}
+
+// A job may start again, and a server may say anything.
+TEST(ProgressDisplay, NeverRunsBackwards) {
+  std::ostringstream out;
+  double now = 1;
+  ProgressDisplay display(out, ProgressStyle::kBar, [&now] { return now; });
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double fraction : {.1, .6, .2, nan, -1.0, .7, 5.0, .3}) {
+    now += 1;
+    display.Update({"fit", fraction, std::nullopt});
+  }
+  std::vector<int> percents;
+  std::istringstream words(out.str());
+  for (std::string word, last; words >> word; last = word) {
+    if (word == "%") percents.push_back(std::stoi(last));
+  }
+  EXPECT_THAT(percents, ::testing::ElementsAre(10, 60, 60, 60, 60, 70, 100, 100));
+}
+
+// The stages of training never take just the share of the bar that they have: the seconds were
+// measured on a dance and on a skirt, and the shares are those of TrainCharacter.
+TEST(ProgressDisplay, AfterAQuarterOfTheTimeTheEstimateHoldsWithinAFactorOfTwo) {
+  const std::vector<double> shares = {.06, .24, .03, .35, .29, .03};
+  for (const std::vector<double>& seconds :
+       {std::vector<double>{7.5, 22, 2, 24, 18, 2}, std::vector<double>{6, 35, 6, 82, 68, 2}}) {
+    const double total = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+    std::ostringstream out;
+    double now = 0;
+    ProgressDisplay display(out, ProgressStyle::kLines, [&now] { return now; });
+    double stage_start = 0, done = 0;
+    for (size_t i = 0; stage_start < total / 4; ++i) {
+      const double end = std::min(stage_start + seconds[i], total / 4);
+      for (; now < end; now += .01) {
+        display.Update({"train", done + shares[i] * (now - stage_start) / seconds[i], {}});
+      }
+      stage_start += seconds[i];
+      done += shares[i];
+    }
+    const std::string text = out.str();
+    const size_t line = text.rfind("train: ");
+    int percent = 0, elapsed = 0, minutes = 0, left = 0;
+    ASSERT_EQ(std::sscanf(text.c_str() + line, "train: %d %%, %d s, %d min %d s left", &percent,
+                          &elapsed, &minutes, &left),
+              4)
+        << text;
+    left += 60 * minutes;
+    EXPECT_GT(left, (total - elapsed) / 2) << text;
+    EXPECT_LT(left, (total - elapsed) * 2) << text;
+  }
 }
 
 TEST(ProgressDisplay, AddsUpTheSecondsOfStages) {

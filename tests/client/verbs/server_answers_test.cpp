@@ -36,7 +36,7 @@ TEST_F(ServerAnswersTest, EveryErrorHasTheExitCodeOfItsKind) {
         std::pair(PERMISSION_DENIED, ExitCode::kRefused),
         std::pair(RESOURCE_EXHAUSTED, ExitCode::kLimit),
         std::pair(FAILED_PRECONDITION, ExitCode::kRefused), std::pair(ABORTED, ExitCode::kRefused),
-        std::pair(OUT_OF_RANGE, ExitCode::kBadInput), std::pair(UNIMPLEMENTED, ExitCode::kInternal),
+        std::pair(OUT_OF_RANGE, ExitCode::kBadInput), std::pair(UNIMPLEMENTED, ExitCode::kRefused),
         std::pair(INTERNAL, ExitCode::kInternal), std::pair(DATA_LOSS, ExitCode::kBadInput),
         std::pair(UNAUTHENTICATED, ExitCode::kRefused)}) {
     EXPECT_CALL(server_.sequences, ListSequences).WillOnce(Return(grpc::Status(code, "because")));
@@ -52,7 +52,7 @@ TEST_F(ServerAnswersTest, ADamagedDownloadLeavesTheFileThatWasThere) {
   ServeModel(id);
   ServeDownloads("not what the id says");
   ASSERT_THAT(WriteFile(output_, "precious"), IsOk());
-  const Outcome outcome = Run({"models", "download", id, "-o", output_});
+  const Outcome outcome = Run({"models", "download", id, "--force", "-o", output_});
   EXPECT_EQ(outcome.code, ExitCode::kBadInput);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(id), HasSubstr("download it again")));
   EXPECT_EQ(ReadFile(output_).value(), "precious");
@@ -143,7 +143,8 @@ TEST_F(ServerAnswersTest, AClipThatBreaksOffLeavesNoStreamThatLooksComplete) {
     out->Write(frame);
     return Refusal();
   });
-  const Outcome outcome = Run({"pose", id, "--motion", files_.motion_path(), "-o", output_});
+  const Outcome outcome =
+      Run({"pose", id, "--motion", files_.motion_path(), "--force", "-o", output_});
   EXPECT_EQ(outcome.code, ExitCode::kRefused);
   EXPECT_TRUE(std::filesystem::exists(output_ + "/frame_0000.drc"));
   EXPECT_FALSE(std::filesystem::exists(output_ + "/stream.json"));

@@ -19,7 +19,7 @@ class DecompressVerbTest : public testing::Test {
     ASSERT_EQ(made.code, ExitCode::kOk) << made.err;
   }
   Outcome Decompress(std::vector<std::string> flags) const {
-    flags.insert(flags.begin(), {"decompress", path_, "-o", output_});
+    flags.insert(flags.begin(), {"decompress", path_, "--force", "-o", output_});
     return RunPleat(flags);
   }
   MeshSequence Written() const { return ReadSequence(output_).value(); }
@@ -85,13 +85,13 @@ TEST_F(DecompressVerbTest, OtherFilesAreNamedWithTheReason) {
 TEST_F(DecompressVerbTest, AServiceDecodesUploadedFilesAndStoredIds) {
   ASSERT_EQ(Decompress({"-q"}).code, ExitCode::kOk);
   const std::string here = ReadFile(output_).value();
-  const Outcome uploaded = files_.RunInStore({"decompress", path_, "-o", output_, "-q"});
+  const Outcome uploaded = files_.RunInStore({"decompress", path_, "--force", "-o", output_, "-q"});
   ASSERT_EQ(uploaded.code, ExitCode::kOk) << uploaded.err;
   EXPECT_EQ(ReadFile(output_).value(), here);
   const auto list = nlohmann::json::parse(files_.RunInStore({"compressed", "--json"}).out);
   ASSERT_EQ(list.size(), 1u);
-  const Outcome stored = files_.RunInStore(
-      {"decompress", list[0]["id"].get<std::string>(), "-o", output_, "--frames", "2:4", "-q"});
+  const Outcome stored = files_.RunInStore({"decompress", list[0]["id"].get<std::string>(),
+                                            "--force", "-o", output_, "--frames", "2:4", "-q"});
   ASSERT_EQ(stored.code, ExitCode::kOk) << stored.err;
   EXPECT_EQ(Written().num_frames(), 2);
 }

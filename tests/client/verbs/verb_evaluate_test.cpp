@@ -91,8 +91,9 @@ TEST_F(EvaluateVerb, RenderComparesAModelWithItsInput) {
       RunPleat({"render", input_, model, "--compare", "--scale-mm", "10", "-o", png});
   ASSERT_EQ(drawn.code, ExitCode::kOk) << drawn.err;
   EXPECT_THAT(ReadFile(png).value(), StartsWith("\x89PNG"));
-  EXPECT_EQ(RunPleat({"render", input_, model, "--compare", "--frames", "40", "-o", png}).code,
-            ExitCode::kBadInput);
+  EXPECT_EQ(
+      RunPleat({"render", input_, model, "--compare", "--frames", "40", "--force", "-o", png}).code,
+      ExitCode::kBadInput);
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{"render", input_},
                                                 {"render", input_, model, "--rig"},
                                                 {"render", input_, model, model}}) {

@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 class MotionVerbTest : public testing::Test {
  protected:
   Outcome Edit(const std::string& source, std::vector<std::string> flags) const {
-    flags.insert(flags.begin(), {"motion", files_.model_path(), source, "-o", output_});
+    flags.insert(flags.begin(), {"motion", files_.model_path(), source, "--force", "-o", output_});
     return RunPleat(flags);
   }
   Motion Read(const std::string& path) const {

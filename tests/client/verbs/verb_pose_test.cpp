@@ -17,7 +17,7 @@ class PoseVerbTest : public testing::Test {
  protected:
   Outcome PoseTo(const std::string& output, std::vector<std::string> flags = {}) const {
     flags.insert(flags.begin(), {"pose", files_.model_path(), "--motion", files_.motion_path(),
-                                 "-o", files_.File(output)});
+                                 "--force", "-o", files_.File(output)});
     return RunPleat(flags);
   }
   MeshSequence Read(const std::string& name) const {

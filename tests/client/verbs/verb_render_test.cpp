@@ -13,7 +13,8 @@ class RenderVerbTest : public testing::Test {
  protected:
   Outcome Render(std::vector<std::string> inputs, std::vector<std::string> flags) const {
     inputs.insert(inputs.begin(), "render");
-    flags.insert(flags.end(), {"-o", output_, "--tile-width", "48", "--tile-height", "64"});
+    flags.insert(flags.end(),
+                 {"--force", "-o", output_, "--tile-width", "48", "--tile-height", "64"});
     inputs.insert(inputs.end(), flags.begin(), flags.end());
     return RunPleat(inputs);
   }

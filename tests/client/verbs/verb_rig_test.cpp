@@ -92,8 +92,8 @@ TEST(RigVerb, RenderDrawsTheRig) {
                       folder.File("rig.png")})
                 .code,
             ExitCode::kUsage);
-  EXPECT_EQ(RunPleat({"render", folder.File("figure.pseq"), "--rig", "--frames", "7", "-o",
-                      folder.File("rig.png")})
+  EXPECT_EQ(RunPleat({"render", folder.File("figure.pseq"), "--rig", "--frames", "7", "--force",
+                      "-o", folder.File("rig.png")})
                 .code,
             ExitCode::kBadInput);
 }

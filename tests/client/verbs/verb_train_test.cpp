@@ -78,6 +78,30 @@ TEST_F(TrainVerbTest, CommandLinesThatLackSomethingAreUsageErrors) {
   }
 }
 
+TEST_F(TrainVerbTest, OneFrameIsNoClip) {
+  ASSERT_THAT(WriteSequenceFile(files_.File("one.pseq"), MakeSwayingTube(1)), IsOk());
+  for (const char* verb : {"train", "evaluate"}) {
+    std::vector<std::string> arguments = {verb, files_.File("one.pseq"), "--local"};
+    if (verb == std::string("train")) arguments.insert(arguments.end(), {"-o", model_});
+    const Outcome outcome = RunPleat(arguments);
+    EXPECT_EQ(outcome.code, ExitCode::kBadInput) << verb;
+    EXPECT_THAT(outcome.err, HasSubstr("one.pseq' is one frame; a clip needs two frames")) << verb;
+  }
+}
+
+TEST_F(TrainVerbTest, WithoutAServerTheOtherWayIsNamed) {
+  const Outcome outcome =
+      RunPleat({"train", files_.sequence_path(), "--server", "127.0.0.1:1", "-o", model_});
+  EXPECT_EQ(outcome.code, ExitCode::kUnavailable);
+  EXPECT_THAT(outcome.err, HasSubstr("--local trains in this process"));
+}
+
+TEST_F(TrainVerbTest, QuietKeepsTheResult) {
+  const Outcome outcome = TrainHere({"-o", model_, "-q"});
+  EXPECT_THAT(outcome.out, HasSubstr("learner ridge"));
+  EXPECT_EQ(outcome.err, "");
+}
+
 TEST_F(TrainVerbTest, RigsThatDoNotFitAreRefusedByName) {
   EXPECT_THAT(TrainHere({"-o", model_, "--lock", "tail"}).err, HasSubstr("tail"));
   const MeshSequence other = MakeSwayingTube(3, "other", 5, 4);
