@@ -114,6 +114,37 @@ TEST_F(GlbContainerTest, AccessorsThatLeaveTheFileAreRefused) {
   }
 }
 
+// A list of indices 0, 127 (in bytes) and values that lie in the first view.
+TEST_F(GlbContainerTest, SparseListsThatLeaveTheFileAreRefused) {
+  root_["accessors"][0]["count"] = 20;
+  root_["accessors"][0].erase("bufferView");
+  root_["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", 1}, {"byteOffset", 3}, {"componentType", 5121}}},
+      {"values", {{"bufferView", 0}}}};
+  ASSERT_THAT(Read(root_), IsOk());
+  for (const auto& [path, value] : std::vector<std::pair<std::string, json>>{
+           {"/accessors/0/count", 1'000'000'000},
+           {"/accessors/0/sparse/count", 0},
+           {"/accessors/0/sparse/count", 2},
+           {"/accessors/0/sparse/count", 1'000'000'000},
+           {"/accessors/0/sparse/indices", 7},
+           {"/accessors/0/sparse/indices/byteOffset", 0},
+           {"/accessors/0/sparse/indices/byteOffset", 4},
+           {"/accessors/0/sparse/indices/byteOffset", -1},
+           {"/accessors/0/sparse/indices/componentType", 5126},
+           {"/accessors/0/sparse/indices/componentType", 5125},
+           {"/accessors/0/sparse/indices/bufferView", 2},
+           {"/accessors/0/sparse/values/bufferView", 1},
+           {"/accessors/0/sparse/values/byteOffset", 13},
+           {"/bufferViews/0/byteStride", 16}}) {
+    json changed = root_;
+    changed[json::json_pointer(path)] = value;
+    EXPECT_THAT(Read(changed), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("GLB: ")))
+        << path << value;
+  }
+}
+
 TEST_F(GlbContainerTest, WhatIsNotSupportedIsSaid) {
   json sparse = root_;
   sparse["accessors"][0]["sparse"] = json::object();

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "figure_glb.h"
 #include "pleat/base/file.h"
 #include "support/hostile_bytes.h"
 #include "support/skinned_figure.h"
@@ -18,15 +18,8 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-SkinnedFigure SmallFigure() { return MakeSkinnedFigure({.num_rings = 2, .num_sides = 3}); }
-
 UserRig RigOf(const SkinnedFigure& figure) {
   return {figure.rig.skeleton, figure.rig.weights, 0, {1, 4, 17}};
-}
-
-MeshSequence StillClip(const SkinnedFigure& figure) {
-  return *MeshSequence::Create(figure.topology, {figure.rig.rest_positions.cast<float>()},
-                               {.name = "figure"});
 }
 
 TEST(RigFile, RoundTripIsExact) {
@@ -161,155 +154,11 @@ TEST(RigFile, ResolvesForTheClip) {
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("unit")));
 }
 
-// --- GLB ---
-
-// A binary glTF of a figure: the skin's joints in reverse order, an armature node that scales from
-// centimeters, weights of joints (that of a bone belongs to the joint it turns about).
-std::string MakeGlb(const SkinnedFigure& figure, const std::function<void(json&)>& edit = {}) {
-  const Skeleton& skeleton = figure.rig.skeleton;
-  const int num_joints = skeleton.num_joints();
-  const int num_vertices = figure.topology.num_vertices();
-  std::string binary;
-  json root;
-  const auto add = [&](const auto& values, int component, const char* type, int count) {
-    json view = {{"buffer", 0},
-                 {"byteOffset", binary.size()},
-                 {"byteLength", values.size() * sizeof(values[0])}};
-    root["bufferViews"].push_back(view);
-    root["accessors"].push_back({{"bufferView", root["bufferViews"].size() - 1},
-                                 {"componentType", component},
-                                 {"type", type},
-                                 {"count", count}});
-    binary.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
-    binary.resize((binary.size() + 3) / 4 * 4);
-  };
-  std::vector<float> positions, weights, binds;
-  std::vector<uint16_t> joints;
-  for (int v = 0; v < num_vertices; ++v) {
-    for (int k = 0; k < 3; ++k) {
-      positions.push_back(static_cast<float>(100 * figure.rig.rest_positions(k, v)));
-    }
-    const VertexInfluences& influences = figure.rig.weights.vertex(v);
-    for (int k = 0; k < 4; ++k) {
-      const int parent = influences.weights[k] > 0 ? skeleton.parent(influences.bones[k]) : 0;
-      joints.push_back(static_cast<uint16_t>(num_joints - 1 - parent));
-      weights.push_back(influences.weights[k]);
-    }
-  }
-  root["scene"] = 0;
-  root["nodes"] = {{{"name", "armature"}, {"scale", {.01, .01, .01}}, {"children", {1}}}};
-  for (int j = 0; j < num_joints; ++j) {
-    const Eigen::Vector3d parent = skeleton.parent(j) < 0
-                                       ? Eigen::Vector3d(0, 0, 0)
-                                       : skeleton.rest_position(skeleton.parent(j));
-    const Eigen::Vector3d offset = 100 * (skeleton.rest_position(j) - parent);
-    json node = {{"name", skeleton.joint(j).name},
-                 {"translation", {offset.x(), offset.y(), offset.z()}}};
-    for (const int child : skeleton.children(j)) node["children"].push_back(child + 1);
-    root["nodes"].push_back(node);
-  }
-  root["nodes"].push_back({{"name", "body"}, {"mesh", 0}, {"skin", 0}});
-  for (int j = num_joints - 1; j >= 0; --j) {
-    root["skins"][0]["joints"].push_back(j + 1);
-    for (int k = 0; k < 16; ++k) {
-      binds.push_back(k % 5 == 0 ? 1.f
-                      : k >= 12  ? static_cast<float>(-100 * skeleton.rest_position(j)[k - 12])
-                                 : 0.f);
-    }
-  }
-  add(positions, 5126, "VEC3", num_vertices);
-  add(joints, 5123, "VEC4", num_vertices);
-  add(weights, 5126, "VEC4", num_vertices);
-  add(binds, 5126, "MAT4", num_joints);
-  root["skins"][0]["inverseBindMatrices"] = 3;
-  root["meshes"] = {
-      {{"primitives", {{{"attributes", {{"POSITION", 0}, {"JOINTS_0", 1}, {"WEIGHTS_0", 2}}}}}}}};
-  root["buffers"] = {{{"byteLength", binary.size()}}};
-  root["asset"]["version"] = "2.0";
-  if (edit) edit(root);
-  std::string text = root.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto u32 = [](size_t value) {
-    const auto narrow = static_cast<uint32_t>(value);
-    return std::string(reinterpret_cast<const char*>(&narrow), 4);
-  };
-  return "glTF" + u32(2) + u32(28 + text.size() + binary.size()) + u32(text.size()) + "JSON" +
-         text + u32(binary.size()) + std::string("BIN\0", 4) + binary;
-}
-
-TEST(RigGlb, GivesNamesHierarchyPlacesAndWeights) {
-  const SkinnedFigure figure = SmallFigure();
-  const Skeleton& skeleton = figure.rig.skeleton;
-  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigGlb(MakeGlb(figure)));
-  ASSERT_EQ(file.skeleton.num_joints(), skeleton.num_joints());
-  for (const Joint& joint : skeleton.joints()) {
-    const int j = file.skeleton.FindJoint(joint.name);
-    ASSERT_GE(j, 0) << joint.name;
-    EXPECT_LT((file.skeleton.rest_position(j) - joint.rest_position).norm(), 1e-5);
-    if (joint.parent >= 0) {
-      EXPECT_EQ(file.skeleton.joint(file.skeleton.parent(j)).name,
-                skeleton.joint(joint.parent).name);
-    }
-  }
-  PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, ResolveRig(file, StillClip(figure)));
-  // No leaf of the template moves anything, so no end is added.
-  EXPECT_EQ(rig.skeleton.num_joints(), skeleton.num_joints());
-  EXPECT_EQ(rig.weights->num_vertices(), figure.topology.num_vertices());
-}
-
-TEST(RigGlb, AnotherMeshIsRefused) {
-  const SkinnedFigure figure = SmallFigure();
-  PLEAT_ASSERT_OK_AND_ASSIGN(RigFile file, DecodeRigGlb(MakeGlb(figure)));
-  file.positions.row(1).array() += .3;
-  EXPECT_THAT(ResolveRig(file, StillClip(figure)),
-              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("nearest vertex")));
-}
-
-TEST(RigGlb, SaysWhatIsWrong) {
-  const SkinnedFigure figure = SmallFigure();
-  const auto expect_fault = [&](const std::function<void(json&)>& edit, const char* word) {
-    const absl::StatusOr<RigFile> file = DecodeRigGlb(MakeGlb(figure, edit));
-    EXPECT_FALSE(file.ok()) << word;
-    EXPECT_THAT(std::string(file.status().message()), HasSubstr(word));
-  };
-  expect_fault([](json& r) { r.erase("skins"); }, "no skin");
-  expect_fault([](json& r) { r["skins"][0]["joints"] = {1}; }, "2 to 256");
-  expect_fault([](json& r) { r["skins"][0]["joints"][0] = 999; }, "not a node");
-  expect_fault([](json& r) { r["skins"][0]["joints"][0] = 1; }, "twice");
-  expect_fault([](json& r) { r["nodes"][0]["children"] = {0}; }, "ancestor");
-  expect_fault([](json& r) { r["nodes"][0]["children"] = {77}; }, "out of range");
-  expect_fault([](json& r) { r["nodes"][1]["rotation"] = {0, 0, 0, 0}; }, "rotation");
-  expect_fault([](json& r) { r["accessors"][0]["count"] = 1000000; }, "beyond");
-  expect_fault([](json& r) { r["accessors"][1]["count"] = 3; }, "length");
-  expect_fault([](json& r) { r["bufferViews"][0]["byteOffset"] = 1 << 30; }, "beyond");
-  expect_fault([](json& r) { r["bufferViews"][0]["byteStride"] = 1 << 20; }, "beyond");
-  expect_fault([](json& r) { r["buffers"][0]["uri"] = "/etc/passwd"; }, "own binary");
-  expect_fault([](json& r) { r["accessors"][0]["sparse"] = json::object(); }, "sparse");
-  expect_fault([](json& r) { r["accessors"][2]["type"] = "VEC3"; }, "VEC4");
-  expect_fault([](json& r) { r["meshes"][0]["primitives"][0]["attributes"].erase("JOINTS_0"); },
-               "JOINTS_0");
-  expect_fault([](json& r) { r["nodes"].back().erase("skin"); }, "no mesh");
-  EXPECT_THAT(DecodeRigGlb(MakeGlb(figure), {.max_vertices = 10}),
-              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("10")));
-}
-
-TEST(RigGlb, DamagedBytesNeverCrash) {
-  const std::string bytes = MakeGlb(MakeSkinnedFigure({.num_rings = 1, .num_sides = 1}));
-  ForEachTruncation(bytes, [](const std::string& cut) { EXPECT_FALSE(DecodeRigGlb(cut).ok()); });
-  std::string head = bytes;  // every byte of the header and the beginning of the JSON
-  for (size_t i = 0; i < std::min<size_t>(bytes.size(), 2500); ++i) {
-    for (const int value : {0, 255, int{'9'}, int{'-'}}) {
-      head[i] = static_cast<char>(value);
-      (void)DecodeRigGlb(head).ok();
-    }
-    head[i] = bytes[i];
-  }
-}
-
 TEST(RigFile, TheEndingChoosesTheFormat) {
   const TemporaryFolder folder;
   ASSERT_THAT(WriteFile(folder.File("a.json"), kSmall), IsOk());
-  ASSERT_THAT(WriteFile(folder.File("a.GLB"), MakeGlb(SmallFigure())), IsOk());
+  ASSERT_THAT(WriteFile(folder.File("a.GLB"), PackFigureGltf(MakeFigureGltf(SmallFigure()))),
+              IsOk());
   EXPECT_THAT(ReadRigFile(folder.File("a.json")), IsOk());
   EXPECT_THAT(ReadRigFile(folder.File("a.GLB")), IsOk());
   EXPECT_THAT(ReadRigFile(folder.File("b.json")),

@@ -53,6 +53,14 @@ size_t ComponentBytes(int type) {
   }
 }
 
+// Returns number i of a list of unsigned integers.
+size_t LoadIndex(const char* list, int type, size_t i) {
+  const char* data = list + i * ComponentBytes(type);
+  return static_cast<size_t>(type == kUnsignedByte    ? Load<uint8_t>(data)
+                             : type == kUnsignedShort ? Load<uint16_t>(data)
+                                                      : Load<uint32_t>(data));
+}
+
 // Returns a non-negative whole number of a JSON object, `fallback` when it is missing, and -1 when
 // it is anything else or above 2^40.
 int64_t Size(const json& object, const char* name, int64_t fallback) {
@@ -83,7 +91,19 @@ absl::Status CheckExtensions(const json& root) {
 }  // namespace
 
 double GlbAccessor::At(size_t i, int k) const {
-  const char* data = data_ + i * stride_ + k * ComponentBytes(component_type_);
+  const char* element = data_ ? data_ + i * stride_ : nullptr;
+  size_t begin = 0, end = num_sparse_;
+  while (begin < end) {
+    const size_t middle = begin + (end - begin) / 2;
+    const size_t index = LoadIndex(sparse_indices_, sparse_index_type_, middle);
+    if (index == i) {
+      element = sparse_values_ + middle * num_components_ * ComponentBytes(component_type_);
+      break;
+    }
+    (index < i ? begin : end) = index < i ? middle + 1 : middle;
+  }
+  if (!element) return 0;
+  const char* data = element + k * ComponentBytes(component_type_);
   switch (component_type_) {
     case kByte:
       return is_normalized_ ? std::max(-1.0, Load<int8_t>(data) / 127) : Load<int8_t>(data);
@@ -146,35 +166,89 @@ absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_
   if (!accessor.is_object() || accessor.value("type", json()) != std::string(type)) {
     return Fault(absl::StrCat("an accessor of type ", std::string(type), " is missing"));
   }
-  if (accessor.contains("sparse") || !accessor.contains("bufferView")) {
-    return Fault("sparse accessors are not supported");
+  GlbAccessor result;
+  const int64_t component = Size(accessor, "componentType", 0);
+  result.component_type_ = static_cast<int>(std::clamp<int64_t>(component, 0, kFloat));
+  result.is_normalized_ = accessor.value("normalized", json()) == true;
+  result.num_components_ = type == "MAT4" ? 16 : type == "VEC4" ? 4 : type == "VEC3" ? 3 : 1;
+  const auto element_bytes =
+      static_cast<int64_t>(result.num_components_ * ComponentBytes(result.component_type_));
+  const int64_t count = Size(accessor, "count", -1);
+  if (element_bytes == 0 || count < 1 || count > static_cast<int64_t>(binary_.size())) {
+    return Fault("an accessor reaches beyond its buffer");
   }
-  const json& view = Entry("bufferViews", accessor["bufferView"]);
+  result.count_ = static_cast<size_t>(count);
+  if (accessor.contains("bufferView")) {
+    PLEAT_ASSIGN_OR_RETURN(result.data_,
+                           Elements(accessor["bufferView"], Size(accessor, "byteOffset", 0), count,
+                                    element_bytes, &result.stride_));
+  } else if (!accessor.contains("sparse")) {
+    return Fault("an accessor has no buffer view");
+  }
+  if (accessor.contains("sparse")) {
+    PLEAT_RETURN_IF_ERROR(ReadSparse(accessor["sparse"], element_bytes, &result));
+  }
+  return result;
+}
+
+absl::StatusOr<const char*> GlbContainer::Elements(const json& view_index, int64_t offset,
+                                                   int64_t count, int64_t element_bytes,
+                                                   size_t* stride) const {
+  const json& view = Entry("bufferViews", view_index);
   if (!view.is_object()) return Fault("an accessor's buffer view is missing");
   const json& buffer = Entry("buffers", view.value("buffer", json()));
   if (view.value("buffer", json()) != 0 || !buffer.is_object() || buffer.contains("uri")) {
     return Fault("only the file's own binary chunk is read, no other files");
   }
-  GlbAccessor result;
-  const int64_t component = Size(accessor, "componentType", 0);
-  result.component_type_ = static_cast<int>(std::max<int64_t>(component, 0));
-  result.is_normalized_ = accessor.value("normalized", json()) == true;
-  const size_t num_components = type == "MAT4" ? 16 : type == "VEC4" ? 4 : type == "VEC3" ? 3 : 1;
-  const size_t element = num_components * ComponentBytes(result.component_type_);
-  const int64_t count = Size(accessor, "count", -1), offset = Size(accessor, "byteOffset", 0);
   const int64_t view_offset = Size(view, "byteOffset", 0), view_size = Size(view, "byteLength", -1);
-  const int64_t stride = Size(view, "byteStride", static_cast<int64_t>(element));
-  if (element == 0 || count < 1 || offset < 0 || view_offset < 0 || view_size < 0 || stride < 1 ||
+  const int64_t step = Size(view, "byteStride", element_bytes);
+  if (offset < 0 || view_offset < 0 || view_size < 0 || step < 1 ||
       view_offset > static_cast<int64_t>(binary_.size()) ||
       view_size > static_cast<int64_t>(binary_.size()) - view_offset || offset > view_size ||
-      static_cast<int64_t>(element) > view_size - offset ||
-      (count - 1) > (view_size - offset - static_cast<int64_t>(element)) / stride) {
+      element_bytes > view_size - offset ||
+      (count - 1) > (view_size - offset - element_bytes) / step) {
     return Fault("an accessor reaches beyond its buffer");
   }
-  result.data_ = binary_.data() + view_offset + offset;
-  result.count_ = static_cast<size_t>(count);
-  result.stride_ = static_cast<size_t>(stride);
-  return result;
+  *stride = static_cast<size_t>(step);
+  return binary_.data() + view_offset + offset;
+}
+
+absl::Status GlbContainer::ReadSparse(const json& sparse, int64_t element_bytes,
+                                      GlbAccessor* accessor) const {
+  const json indices = sparse.is_object() ? sparse.value("indices", json()) : json();
+  const json values = sparse.is_object() ? sparse.value("values", json()) : json();
+  if (!indices.is_object() || !values.is_object()) {
+    return Fault("a sparse accessor lacks its indices or values");
+  }
+  const int64_t count = Size(sparse, "count", -1);
+  const int64_t index_type = Size(indices, "componentType", 0);
+  if (count < 1 || count > static_cast<int64_t>(accessor->count_) ||
+      (index_type != kUnsignedByte && index_type != kUnsignedShort && index_type != kUnsignedInt)) {
+    return Fault("a sparse accessor has a bad count or type of its indices");
+  }
+  accessor->sparse_index_type_ = static_cast<int>(index_type);
+  const auto index_bytes = static_cast<int64_t>(ComponentBytes(accessor->sparse_index_type_));
+  size_t index_stride = 0, value_stride = 0;
+  PLEAT_ASSIGN_OR_RETURN(accessor->sparse_indices_, Elements(indices.value("bufferView", json()),
+                                                             Size(indices, "byteOffset", 0), count,
+                                                             index_bytes, &index_stride));
+  PLEAT_ASSIGN_OR_RETURN(accessor->sparse_values_,
+                         Elements(values.value("bufferView", json()), Size(values, "byteOffset", 0),
+                                  count, element_bytes, &value_stride));
+  if (static_cast<int64_t>(index_stride) != index_bytes ||
+      static_cast<int64_t>(value_stride) != element_bytes) {
+    return Fault("the buffer views of a sparse accessor must not have a byteStride");
+  }
+  accessor->num_sparse_ = static_cast<size_t>(count);
+  for (size_t i = 0; i < accessor->num_sparse_; ++i) {
+    const size_t index = LoadIndex(accessor->sparse_indices_, accessor->sparse_index_type_, i);
+    if (index >= accessor->count_ ||
+        (i > 0 &&
+         index <= LoadIndex(accessor->sparse_indices_, accessor->sparse_index_type_, i - 1))) {
+      return Fault("the indices of a sparse accessor must ascend and be its elements");
+    }
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace pleat

@@ -19,8 +19,13 @@ class GlbAccessor {
 
  private:
   friend class GlbContainer;
-  const char* data_ = nullptr;
+  const char* data_ = nullptr;  // null: all elements are zero but for those of the sparse list
   size_t count_ = 0, stride_ = 0;
+  // The sparse list: the ascending indices of elements that are replaced, and their values.
+  const char *sparse_indices_ = nullptr, *sparse_values_ = nullptr;
+  size_t num_sparse_ = 0;
+  int sparse_index_type_ = 0;
+  size_t num_components_ = 0;
   int component_type_ = 0;  // a constant of glTF, such as 5126 for float
   bool is_normalized_ = false;
 };
@@ -35,11 +40,18 @@ class GlbContainer {
   const nlohmann::json& List(const char* name) const;
   // Returns an entry of such a list, or null when `index` is not an index of it.
   const nlohmann::json& Entry(const char* name, const nlohmann::json& index) const;
-  // Returns the accessor `index`. kInvalidArgument when it is not of `type` ("VEC3", ...), reaches
-  // beyond the file or is sparse, or when its buffer is not the file's own.
+  // Returns the accessor `index`. kInvalidArgument when it is not of `type` ("VEC3", ...) or
+  // reaches beyond the file, or when its buffer is not the file's own. It has no more elements than
+  // the file has bytes, also where it is sparse and has no buffer view.
   absl::StatusOr<GlbAccessor> Access(const nlohmann::json& index, std::string_view type) const;
 
  private:
+  // Returns where `count` elements begin in a buffer view, and their stride in bytes.
+  absl::StatusOr<const char*> Elements(const nlohmann::json& view, int64_t offset, int64_t count,
+                                       int64_t element_bytes, size_t* stride) const;
+  absl::Status ReadSparse(const nlohmann::json& sparse, int64_t element_bytes,
+                          GlbAccessor* accessor) const;
+
   nlohmann::json root_;
   std::string_view binary_;
 };

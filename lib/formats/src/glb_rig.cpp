@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "glb_container.h"
 #include "pleat/base/status.h"
@@ -59,14 +60,48 @@ absl::StatusOr<Eigen::Matrix4d> LocalTransform(const json& node) {
   return transform.matrix();
 }
 
-// Reads nodes, skin, skeleton and meshes, in this order, because each needs the one before. The
-// mesh is placed by the skin alone: glTF ignores the transform of a node whose mesh is skinned.
+std::string SkinName(const json& skin) {
+  const auto name = skin.is_object() ? skin.find("name") : skin.end();
+  return skin.is_object() && name != skin.end() && name->is_string() ? name->get<std::string>()
+                                                                     : std::string();
+}
+
+// Returns the index of the skin with this name or else this number. An empty text is enough when
+// the file has one skin.
+absl::StatusOr<size_t> ChooseSkin(const json& skins, const std::string& choice) {
+  constexpr size_t kMaxNamed = 8;
+  if (skins.empty()) return Fault("the file has no skin: export the armature with the mesh");
+  if (choice.empty() && skins.size() == 1) return 0;
+  size_t chosen = skins.size(), num_named = 0;
+  for (size_t s = 0; !choice.empty() && s < skins.size(); ++s) {
+    if (SkinName(skins[s]) != choice) continue;
+    chosen = s;
+    ++num_named;
+  }
+  if (num_named == 1) return chosen;
+  if (num_named == 0 && absl::SimpleAtoi(choice, &chosen) && chosen < skins.size()) return chosen;
+  std::string list;
+  for (size_t s = 0; s < std::min(kMaxNamed, skins.size()); ++s) {
+    absl::StrAppend(&list, s > 0 ? ", " : "", s, " '", SkinName(skins[s]), "'");
+  }
+  if (skins.size() > kMaxNamed) absl::StrAppend(&list, ", ...");
+  const std::string fault =
+      choice.empty() ? "" : absl::StrCat("--skin '", choice, "' is not one: ");
+  return Fault(absl::StrCat(fault, "the file has ", skins.size(), " skins: ", list,
+                            "; choose one by name or number with --skin"));
+}
+
+// Reads nodes, skin, skeleton and meshes, in this order, because each needs the one before. Mesh
+// and joints stay in the space of the mesh, in which the inverse bind matrices place the joints at
+// rest. Nodes only show the pose in which the file was saved, and glTF ignores the transform of a
+// node whose mesh is skinned.
 class SkinReader {
  public:
   SkinReader(const GlbContainer& glb, const MeshLimits& limits) : glb_(glb), limits_(limits) {}
 
-  absl::StatusOr<RigFile> Read() {
+  absl::StatusOr<RigFile> Read(std::string_view skin) {
     PLEAT_RETURN_IF_ERROR(ReadNodes());
+    PLEAT_ASSIGN_OR_RETURN(skin_, ChooseSkin(glb_.List("skins"), std::string(skin)));
     PLEAT_RETURN_IF_ERROR(ReadSkin());
     PLEAT_RETURN_IF_ERROR(MakeSkeleton());
     PLEAT_RETURN_IF_ERROR(ReadMeshes());
@@ -110,9 +145,8 @@ class SkinReader {
   }
 
   absl::Status ReadSkin() {
-    const json& skins = glb_.List("skins");
-    if (skins.empty()) return Fault("the file has no skin: export the armature with the mesh");
-    const json joints = skins[0].is_object() ? skins[0].value("joints", json()) : json();
+    const json& skin = glb_.List("skins")[skin_];
+    const json joints = skin.is_object() ? skin.value("joints", json()) : json();
     if (!joints.is_array() || joints.size() < 2 || joints.size() > kMaxUserJoints) {
       return Fault(absl::StrCat("the skin must have 2 to ", kMaxUserJoints, " joints"));
     }
@@ -125,11 +159,11 @@ class SkinReader {
     if (std::set<int>(joint_nodes_.begin(), joint_nodes_.end()).size() != joint_nodes_.size()) {
       return Fault("the skin lists a joint twice");
     }
-    inverse_binds_.assign(joint_nodes_.size(), Eigen::Matrix4d::Identity());
-    if (!skins[0].contains("inverseBindMatrices")) return absl::OkStatus();
+    if (!skin.contains("inverseBindMatrices")) return absl::OkStatus();
     PLEAT_ASSIGN_OR_RETURN(const GlbAccessor matrices,
-                           glb_.Access(skins[0]["inverseBindMatrices"], "MAT4"));
+                           glb_.Access(skin["inverseBindMatrices"], "MAT4"));
     if (matrices.count() < joint_nodes_.size()) return Fault("too few inverse bind matrices");
+    inverse_binds_.resize(joint_nodes_.size());
     for (size_t j = 0; j < joint_nodes_.size(); ++j) {
       for (int k = 0; k < 16; ++k) inverse_binds_[j](k % 4, k / 4) = matrices.At(j, k);
       if (!inverse_binds_[j].allFinite() || std::abs(inverse_binds_[j].determinant()) < 1e-18) {
@@ -186,17 +220,23 @@ class SkinReader {
   absl::Status MakeSkeleton() {
     PLEAT_ASSIGN_OR_RETURN(const std::vector<int> order, ParentsFirst());
     new_index_.assign(joint_nodes_.size(), -1);
-    // The rest pose is taken as the file shows it. An armature may be turned or scaled
-    // (centimeters), and then it carries mesh and joints along.
-    PLEAT_ASSIGN_OR_RETURN(const Eigen::Matrix4d root, GlobalTransform(joint_nodes_[order[0]]));
-    world_from_bind_ = root * inverse_binds_[order[0]];
+    if (!inverse_binds_.empty()) {
+      // Nodes may be posed, so this is only where a mesh in another place or unit may be.
+      PLEAT_ASSIGN_OR_RETURN(const Eigen::Matrix4d root, GlobalTransform(joint_nodes_[order[0]]));
+      file_.shown_from_mesh = root * inverse_binds_[order[0]];
+    }
     std::vector<Joint> joints;
     for (const int j : order) {
       new_index_[j] = static_cast<int>(joints.size());
       const int parent = ParentJoint(j);
-      const Eigen::Vector4d bind = inverse_binds_[j].inverse().col(3);
+      Eigen::Matrix4d mesh_from_joint;
+      if (inverse_binds_.empty()) {
+        PLEAT_ASSIGN_OR_RETURN(mesh_from_joint, GlobalTransform(joint_nodes_[j]));
+      } else {
+        mesh_from_joint = inverse_binds_[j].inverse();
+      }
       joints.push_back({UniqueName(j, joints), parent < 0 ? -1 : new_index_[parent],
-                        (world_from_bind_ * (bind / bind.w())).head<3>()});
+                        mesh_from_joint.col(3).hnormalized()});
     }
     absl::StatusOr<Skeleton> skeleton = Skeleton::Create(std::move(joints));
     if (!skeleton.ok()) return Fault(std::string(skeleton.status().message()));
@@ -207,7 +247,7 @@ class SkinReader {
   absl::Status ReadMeshes() {
     std::vector<Eigen::Vector3d> positions;
     for (const json& node : glb_.List("nodes")) {
-      if (!node.contains("mesh") || node.value("skin", json()) != 0) continue;
+      if (!node.contains("mesh") || node.value("skin", json()) != skin_) continue;
       const json& mesh = glb_.Entry("meshes", node["mesh"]);
       const json primitives = mesh.is_object() ? mesh.value("primitives", json()) : json();
       if (!primitives.is_array()) return Fault("a mesh has no primitives");
@@ -218,8 +258,7 @@ class SkinReader {
     if (positions.empty()) return Fault("no mesh uses the skin");
     file_.positions.resize(3, static_cast<Eigen::Index>(positions.size()));
     for (size_t v = 0; v < positions.size(); ++v) {
-      file_.positions.col(static_cast<Eigen::Index>(v)) =
-          (world_from_bind_ * positions[v].homogeneous()).head<3>();
+      file_.positions.col(static_cast<Eigen::Index>(v)) = positions[v];
     }
     return absl::OkStatus();
   }
@@ -263,23 +302,25 @@ class SkinReader {
 
   const GlbContainer& glb_;
   const MeshLimits& limits_;
+  size_t skin_ = 0;
   std::vector<int> parents_;      // the parent of every node, -1 = none
   std::vector<int> joint_nodes_;  // the node of every joint of the skin
+  // joint_from_mesh of every joint of the skin, at rest; empty when the file has none.
   std::vector<Eigen::Matrix4d> inverse_binds_;
   std::vector<int> new_index_;  // the index in file_.skeleton of every joint of the skin
-  Eigen::Matrix4d world_from_bind_ = Eigen::Matrix4d::Identity();
   RigFile file_;
 };
 
 }  // namespace
 
-absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits) {
+absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits,
+                                     std::string_view skin) {
   if (bytes.size() > limits.max_document_bytes) {
     return absl::ResourceExhaustedError(
         absl::StrCat("GLB: ", bytes.size(), " bytes; the limit is ", limits.max_document_bytes));
   }
   PLEAT_ASSIGN_OR_RETURN(const GlbContainer glb, GlbContainer::Open(bytes));
-  return SkinReader(glb, limits).Read();
+  return SkinReader(glb, limits).Read(skin);
 }
 
 }  // namespace pleat

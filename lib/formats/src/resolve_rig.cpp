@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "align_rig.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/rig_file.h"
 #include "pleat/geometry/point_index.h"
@@ -47,7 +48,7 @@ absl::StatusOr<std::vector<std::vector<JointInfluence>>> CarryByPlace(const RigF
     if (!(std::sqrt(squared_distance) <= kMaxVertexDistance * diagonal)) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "rig: vertex %d of the clip is %.3g m from the nearest vertex of the file: its mesh must "
-          "be the clip's frame %d (rest_frame), in meters, Y up",
+          "be the clip's frame %d (rest_frame), or differ from it by a rigid motion and a unit",
           v, std::sqrt(squared_distance), file.rest_frame));
     }
     influences[v] = file.influences[static_cast<size_t>(nearest)];
@@ -109,7 +110,9 @@ std::vector<int> LockedJoints(const RigFile& file, const Skeleton& skeleton) {
 
 }  // namespace
 
-absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip) {
+absl::StatusOr<UserRig> ResolveRig(const RigFile& given, const MeshSequence& clip,
+                                   std::vector<InputNote>* notes) {
+  RigFile file = given;
   if (file.rest_frame >= clip.num_frames()) {
     return absl::InvalidArgumentError(absl::StrCat("rig: rest_frame ", file.rest_frame, " of ",
                                                    clip.name(), ", which has ", clip.num_frames(),
@@ -117,25 +120,25 @@ absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip
   }
   const Eigen::Matrix3Xd rest = clip.FrameAsDouble(file.rest_frame);
   const double diagonal = BoundsDiagonal(rest);
+  const bool by_place = file.positions.cols() > 0;
+  if (by_place) {
+    PLEAT_RETURN_IF_ERROR(AlignRig(rest, kMaxVertexDistance * diagonal, &file, notes));
+    PLEAT_ASSIGN_OR_RETURN(file.influences, CarryByPlace(file, rest, diagonal));
+  }
   PLEAT_RETURN_IF_ERROR(CheckJoints(file.skeleton, rest, diagonal));
   UserRig rig{file.skeleton, std::nullopt, file.rest_frame, LockedJoints(file, file.skeleton)};
   if (file.influences.empty()) return rig;
-  const bool by_place = file.positions.cols() > 0;
   if (!by_place && static_cast<Eigen::Index>(file.influences.size()) != rest.cols()) {
     return absl::InvalidArgumentError(absl::StrCat("rig: weights of ", file.influences.size(),
                                                    " vertices; ", clip.name(), " has ",
                                                    rest.cols()));
   }
-  RigFile of_clip = file;
-  if (by_place) {
-    PLEAT_ASSIGN_OR_RETURN(of_clip.influences, CarryByPlace(file, rest, diagonal));
-  }
   if (file.influences_are_of_bones) {
-    PLEAT_ASSIGN_OR_RETURN(rig.weights, BoneWeights(of_clip));
+    PLEAT_ASSIGN_OR_RETURN(rig.weights, BoneWeights(file));
     return rig;
   }
   PLEAT_ASSIGN_OR_RETURN(UserRig converted,
-                         RigFromJointWeights(file.skeleton, of_clip.influences, rest));
+                         RigFromJointWeights(file.skeleton, file.influences, rest));
   converted.rest_frame = file.rest_frame;
   converted.locked_joints = LockedJoints(file, converted.skeleton);
   return converted;

@@ -233,25 +233,29 @@ absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits) {
+absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits,
+                                    std::string_view skin) {
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, limits.max_document_bytes));
   if (std::string_view(bytes).starts_with("glTF")) {
-    return WithContext(path, DecodeRigGlb(bytes, limits));
+    return WithContext(path, DecodeRigGlb(bytes, limits, skin));
   }
   PLEAT_RETURN_IF_ERROR(RefuseForeignBytes(bytes, path));
   const std::string ending = absl::AsciiStrToLower(path);
   if (absl::EndsWith(ending, ".gltf") || IsGltfText(bytes)) {
     absl::StatusOr<std::string> packed = PackGltf(bytes, path, limits);
     if (!packed.ok()) return WithContext(path, packed.status());
-    absl::StatusOr<RigFile> rig = DecodeRigGlb(*packed, limits);
+    absl::StatusOr<RigFile> rig = DecodeRigGlb(*packed, limits, skin);
     if (rig.ok()) return rig;
     return absl::Status(rig.status().code(),
                         absl::StrCat(path, ": ", rig.status().message(),
                                      " (glTF text is read with the buffers beside it; export as "
                                      "GLB to have mesh and skeleton in one file)"));
   }
-  return WithContext(path, absl::EndsWith(ending, ".glb") ? DecodeRigGlb(bytes, limits)
-                                                          : DecodeRigJson(bytes, limits));
+  if (absl::EndsWith(ending, ".glb")) {
+    return WithContext(path, DecodeRigGlb(bytes, limits, skin));
+  }
+  if (!skin.empty()) return WithContext(path, Fault("only GLB and glTF have skins to choose from"));
+  return WithContext(path, DecodeRigJson(bytes, limits));
 }
 
 std::string EncodeRig(const UserRig& rig) {

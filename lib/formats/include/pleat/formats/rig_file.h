@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/mesh/input_note.h"
 #include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/skinning/user_rig.h"
@@ -22,9 +23,12 @@ struct RigFile {
   // True: the influences are those of Pleat's bones, each named by the joint that it ends in.
   // False: they are those of joints, as other programs write them.
   bool influences_are_of_bones = false;
-  // Where the weighted vertices of a GLB lie, 3 x N, meters. Empty: the vertices are those of the
-  // clip, in its order.
+  // Where the weighted vertices of a GLB lie, 3 x N, in the space of the skeleton. Empty: the
+  // vertices are those of the clip, in its order.
   Eigen::Matrix3Xd positions;
+  // Of a GLB: where the nodes place mesh and skeleton, judged by the root. Only a guess of the unit
+  // and the up axis, because the nodes may be posed.
+  Eigen::Matrix4d shown_from_mesh = Eigen::Matrix4d::Identity();
   int rest_frame = 0;
   bool is_locked = false;          // locks all joints, including those that are added
   std::vector<int> locked_joints;  // ascending
@@ -33,20 +37,25 @@ struct RigFile {
 // Reads a rig from hostile JSON. kInvalidArgument says what is wrong and where, kResourceExhausted
 // names the limit that is exceeded.
 absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& limits = {});
-// Reads the first skin of a hostile binary glTF 2.0 file: its joints with parents before children,
-// rest positions from the inverse bind matrices, and the first four influences of every vertex of
-// the mesh primitives that use the skin. The errors are those of DecodeRigJson, also for buffers
-// outside the file, for sparse accessors and for compressed meshes.
-absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits = {});
+// Reads a skin of a hostile binary glTF 2.0 file: its joints with parents before children, rest
+// positions from the inverse bind matrices (from the nodes where there are none), and the first
+// four influences of every vertex of the mesh primitives that use the skin. skin: the name or the
+// number of the skin, counted from 0; it may be empty when the file has one. The errors are those
+// of DecodeRigJson, also for buffers outside the file and for compressed meshes.
+absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits = {},
+                                     std::string_view skin = {});
 // Reads a GLB, glTF text (.gltf) with its buffers beside it, or JSON. What the bytes are counts
-// more than the ending. The errors name the file.
-absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits = {});
+// more than the ending. JSON has no skins, and `skin` is an error there. The errors name the file.
+absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& limits = {},
+                                    std::string_view skin = {});
 
 // Returns the rig for the clip's own vertices. What EncodeRig wrote comes back as it was. The
 // weights of a GLB are carried over by place: each vertex of the clip takes those of the nearest
-// vertex of the file. kInvalidArgument when counts differ, when the meshes do not lie on each other
-// within 1 % of the diagonal, or when a joint lies far from the mesh.
-absl::StatusOr<UserRig> ResolveRig(const RigFile& file, const MeshSequence& clip);
+// vertex of the file. A GLB that differs from the clip by a rigid motion or a unit is aligned, and
+// `notes`, which may be null, says how. kInvalidArgument when counts differ, when the meshes do not
+// lie on each other within 1 % of the diagonal, or when a joint lies far from the mesh.
+absl::StatusOr<UserRig> ResolveRig(const RigFile& given, const MeshSequence& clip,
+                                   std::vector<InputNote>* notes = nullptr);
 
 // Locks the joints with these names. kInvalidArgument names the first one that is not there.
 absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file);
