@@ -28,6 +28,7 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
+#include "pleat/base/utf8.h"
 #include "pleat/character/train_character.h"
 #include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
@@ -39,6 +40,7 @@ namespace {
 struct TrainVerbOptions {
   std::vector<std::string> inputs;
   std::string output, report, fps, rig;
+  std::string skin;                 // of `rig`, by name or number
   std::vector<std::string> locked;  // the joints of `rig` that are locked
   TrainFlags flags;
   TrainResources resources;
@@ -70,11 +72,17 @@ absl::StatusOr<TrainedModel> TrainHere(const std::vector<MeshSequence>& clips, c
 
 // Returns the rig of --rig for the first clip, with the joints of --lock, or none without --rig.
 absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& options,
-                                                   const MeshSequence& clip) {
+                                                   const MeshSequence& clip, const Session& session,
+                                                   std::vector<InputNote>* notes) {
   if (options.rig.empty()) return std::optional<UserRig>();
-  PLEAT_ASSIGN_OR_RETURN(RigFile file, ReadRigFile(options.rig));
+  PLEAT_ASSIGN_OR_RETURN(RigFile file, ReadRigFile(options.rig, {}, options.skin));
   PLEAT_RETURN_IF_ERROR(LockJoints(options.locked, &file));
-  PLEAT_ASSIGN_OR_RETURN(UserRig rig, ResolveRig(file, clip));
+  std::vector<InputNote> rig_notes;
+  PLEAT_ASSIGN_OR_RETURN(UserRig rig, ResolveRig(file, clip, &rig_notes));
+  for (const InputNote& note : rig_notes) {
+    *session.err << SeverityName(note.severity) << ": " << EscapeControls(note.text) << "\n";
+  }
+  notes->insert(notes->end(), rig_notes.begin(), rig_notes.end());
   return std::optional<UserRig>(std::move(rig));
 }
 
@@ -201,6 +209,9 @@ absl::Status CheckFlags(const TrainVerbOptions& options, const Session& session)
   if (!options.locked.empty() && options.rig.empty()) {
     return UsageError("--lock needs --rig: `pleat rig INPUT -o rig.json` writes the automatic one");
   }
+  if (!options.skin.empty() && options.rig.empty()) {
+    return UsageError("--skin chooses a skin of the GLB that --rig names");
+  }
   if (options.detach && session.local) return UsageError("--detach needs a server");
   return CheckOutputFiles(
       session, {{"-o", options.output, {".pleat"}}, {"--report", options.report, {".json"}}});
@@ -215,7 +226,8 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
                          ReadClips(options, session, &notes));
   const double read_seconds = MonotonicSeconds() - start_seconds;
 
-  PLEAT_ASSIGN_OR_RETURN(const std::optional<UserRig> rig, ReadUserRig(options, clips[0]));
+  PLEAT_ASSIGN_OR_RETURN(const std::optional<UserRig> rig,
+                         ReadUserRig(options, clips[0], session, &notes));
   const UserRig* user_rig = rig ? &*rig : nullptr;
 
   TrainedModel trained;
@@ -267,6 +279,8 @@ void AddTrainVerb(CLI::App& app, Session& session) {
   verb->add_option(
       "--rig", options->rig,
       "your own rig instead of the automatic one: .json or .glb (docs/formats/rig.md)");
+  verb->add_option("--skin", options->skin,
+                   "name or number (from 0) of the skin of --rig, where a GLB has several");
   verb->add_option("--lock", options->locked,
                    "joints of --rig that refinement leaves where they are: NAME,NAME,...")
       ->delimiter(',');
