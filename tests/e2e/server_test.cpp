@@ -112,10 +112,12 @@ TEST(Server, AnOwnRigWithALockedJointGivesTheSameBytesHereAndThere) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_FALSE(Bytes(local).empty());
   EXPECT_TRUE(Bytes(remote) == Bytes(local));
-  result = pleat.Run({"train", input, "--local", "-o", local, "--rig", rig, "--lock", "tail"});
+  result = pleat.Run(
+      {"train", input, "--local", "-o", pleat.File("other.pleat"), "--rig", rig, "--lock", "tail"});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("'tail'"));
-  result = pleat.Run({"train", input, "--local", "-o", local, "--lock", "head"});
+  result =
+      pleat.Run({"train", input, "--local", "-o", pleat.File("other.pleat"), "--lock", "head"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--rig"));
 }

@@ -67,6 +67,8 @@ TEST_F(TrainVerbTest, CommandLinesThatLackSomethingAreUsageErrors) {
                   "--local without --data-dir needs -o FILE"),
         std::pair(std::vector<std::string>{"train", input, "--lock", "head", "-o", model_},
                   "--lock needs --rig"),
+        std::pair(std::vector<std::string>{"train", input, "--local", "--skin", "1", "-o", model_},
+                  "--skin chooses"),
         std::pair(std::vector<std::string>{"train", input, "--local", "--detach", "-o", model_},
                   "--detach needs a server"),
         std::pair(
