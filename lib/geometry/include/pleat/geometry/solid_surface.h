@@ -26,8 +26,8 @@ struct SurfaceReport {
 
 // A copy of the mesh, welded and oriented. The user's own mesh and vertex order are untouched.
 struct SolidSurface {
-  Eigen::Matrix3Xd positions;            // 3 x W, only vertices that a triangle uses
-  Eigen::Matrix3Xi triangles;            // 3 x F, consistently oriented, outward
+  Eigen::Matrix3Xd positions;  // 3 x W, only vertices that a triangle uses
+  Eigen::Matrix3Xi triangles;  // 3 x F, consistently oriented, outward
   // V: column of `positions`; -1 = in no triangle, or in such without area alone.
   std::vector<int> vertex_from_input;
   std::vector<int> triangle_components;  // F: component index, numbered by first triangle
