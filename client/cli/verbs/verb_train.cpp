@@ -198,8 +198,6 @@ absl::StatusOr<std::vector<MeshSequence>> ReadClips(const TrainVerbOptions& opti
     PLEAT_ASSIGN_OR_RETURN(MeshSequence clip, ReadInput(session, input, options.fps, notes));
     clips.push_back(std::move(clip));
   }
-  // Clips of one frame each may teach something together.
-  if (clips.size() == 1) PLEAT_RETURN_IF_ERROR(CheckIsClip(clips[0], options.inputs[0]));
   return clips;
 }
 
@@ -229,6 +227,8 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const std::optional<UserRig> rig,
                          ReadUserRig(options, clips[0], session, &notes));
   const UserRig* user_rig = rig ? &*rig : nullptr;
+  // Clips of one frame each may teach something together.
+  if (clips.size() == 1) PLEAT_RETURN_IF_ERROR(CheckIsClip(clips[0], options.inputs[0]));
 
   TrainedModel trained;
   if (session.local && session.data_dir.empty()) {
