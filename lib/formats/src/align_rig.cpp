@@ -53,8 +53,8 @@ Eigen::Matrix3Xd Distinct(const Eigen::Matrix3Xd& points) {
     return std::array<double, 3>{points(0, i), points(1, i), points(2, i)};
   };
   std::ranges::sort(order, {}, key);
-  const auto repeated = std::ranges::unique(order, {}, key);
-  order.erase(repeated.begin(), repeated.end());
+  const auto is_same = [&](Eigen::Index a, Eigen::Index b) { return key(a) == key(b); };
+  order.erase(std::unique(order.begin(), order.end(), is_same), order.end());
   return points(Eigen::all, order);
 }
 
