@@ -41,15 +41,20 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
   for (InputNote& jump : DescribeJumps(FindFrameJumps(*sequence), report.frame_names)) {
     report.notes.push_back(std::move(jump));
   }
-  for (const InputNote& note : report.notes) {
-    *session.err << SeverityName(note.severity) << ": " << EscapeControls(note.text) << "\n";
-  }
-  if (notes != nullptr) notes->insert(notes->end(), report.notes.begin(), report.notes.end());
+  SayNotes(session, report.notes, notes);
   const auto refused = std::ranges::count_if(report.notes, IsRefusedWhenStrict);
   if (!session.strict || refused == 0) return sequence;
   return absl::FailedPreconditionError(
       absl::StrCat("'", input, "' is refused because of --strict: see the ", refused,
                    refused == 1 ? " line above" : " lines above"));
+}
+
+void SayNotes(const Session& session, const std::vector<InputNote>& notes,
+              std::vector<InputNote>* collected) {
+  for (const InputNote& note : notes) {
+    *session.err << SeverityName(note.severity) << ": " << EscapeControls(note.text) << "\n";
+  }
+  if (collected != nullptr) collected->insert(collected->end(), notes.begin(), notes.end());
 }
 
 absl::Status CheckIsClip(const MeshSequence& sequence, const std::string& input) {

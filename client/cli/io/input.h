@@ -19,6 +19,10 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
                                        const std::string& fps = "",
                                        std::vector<InputNote>* notes = nullptr);
 
+// Prints notes on session.err, as ReadInput does, and appends them to `collected` (may be null).
+void SayNotes(const Session& session, const std::vector<InputNote>& notes,
+              std::vector<InputNote>* collected);
+
 // kInvalidArgument when the sequence, read from `input`, is a single frame.
 absl::Status CheckIsClip(const MeshSequence& sequence, const std::string& input);
 

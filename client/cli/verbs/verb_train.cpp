@@ -28,7 +28,6 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
-#include "pleat/base/utf8.h"
 #include "pleat/character/train_character.h"
 #include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
@@ -79,10 +78,7 @@ absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& optio
   PLEAT_RETURN_IF_ERROR(LockJoints(options.locked, &file));
   std::vector<InputNote> rig_notes;
   PLEAT_ASSIGN_OR_RETURN(UserRig rig, ResolveRig(file, clip, &rig_notes));
-  for (const InputNote& note : rig_notes) {
-    *session.err << SeverityName(note.severity) << ": " << EscapeControls(note.text) << "\n";
-  }
-  notes->insert(notes->end(), rig_notes.begin(), rig_notes.end());
+  SayNotes(session, rig_notes, notes);
   return std::optional<UserRig>(std::move(rig));
 }
 

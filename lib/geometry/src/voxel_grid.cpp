@@ -87,6 +87,20 @@ void ForNeighbors(const VoxelGrid& grid, int index, const Visit& visit) {
   if (z + 1 < nz) visit(index + nx * ny);
 }
 
+// Visits the voxels that hang together with `seed`, which the caller has entered. enter(voxel) says
+// whether a neighbor belongs to them and was not entered before, and marks it.
+template <typename Enter>
+void Flood(const VoxelGrid& grid, int seed, const Enter& enter) {
+  std::vector<int> stack = {seed};
+  while (!stack.empty()) {
+    const int index = stack.back();
+    stack.pop_back();
+    ForNeighbors(grid, index, [&](int next) {
+      if (enter(next)) stack.push_back(next);
+    });
+  }
+}
+
 }  // namespace
 
 VoxelGrid VoxelGrid::Around(const Eigen::AlignedBox3d& box, int resolution, int padding) {
@@ -137,38 +151,27 @@ std::vector<uint8_t> SquaredVoxelDistances(const VoxelGrid& grid, const VoxelMas
 
 VoxelMask FloodOutside(const VoxelGrid& grid, const VoxelMask& walls) {
   VoxelMask outside(walls.size(), 0);
-  std::vector<int> stack = {0};
   outside[0] = 1;
-  while (!stack.empty()) {
-    const int index = stack.back();
-    stack.pop_back();
-    ForNeighbors(grid, index, [&](int next) {
-      if (outside[next] != 0 || walls[next] != 0) return;
-      outside[next] = 1;
-      stack.push_back(next);
-    });
-  }
+  Flood(grid, 0, [&](int voxel) {
+    if (outside[voxel] != 0 || walls[voxel] != 0) return false;
+    outside[voxel] = 1;
+    return true;
+  });
   return outside;
 }
 
 int LabelPieces(const VoxelGrid& grid, const VoxelMask& mask, std::vector<int>* labels) {
   labels->assign(mask.size(), 0);
   int num_pieces = 0;
-  std::vector<int> stack;
   for (int seed = 0; seed < grid.num_voxels(); ++seed) {
     if (mask[seed] == 0 || (*labels)[seed] != 0) continue;
     ++num_pieces;
     (*labels)[seed] = num_pieces;
-    stack = {seed};
-    while (!stack.empty()) {
-      const int index = stack.back();
-      stack.pop_back();
-      ForNeighbors(grid, index, [&](int next) {
-        if (mask[next] == 0 || (*labels)[next] != 0) return;
-        (*labels)[next] = num_pieces;
-        stack.push_back(next);
-      });
-    }
+    Flood(grid, seed, [&](int voxel) {
+      if (mask[voxel] == 0 || (*labels)[voxel] != 0) return false;
+      (*labels)[voxel] = num_pieces;
+      return true;
+    });
   }
   return num_pieces;
 }

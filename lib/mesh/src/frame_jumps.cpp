@@ -18,7 +18,7 @@ constexpr double kScale = 1.25;
 constexpr EdgeChange kLargest = {.share_moderate = 0.4, .share_large = 0.1, .share_extreme = 0.03};
 // A jump is also this many times what the clip does elsewhere.
 constexpr double kLiveliness = 4;
-// Of a single frame that the motion goes back from.
+// Replaces share_moderate for a single frame that the motion goes back from.
 constexpr double kModerateOutAndBack = 0.15;
 constexpr int kMaxEdges = 4096;
 constexpr size_t kMaxGroups = 16;

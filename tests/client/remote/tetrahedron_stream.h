@@ -32,7 +32,7 @@ class TetrahedronStream {
   FrameEncoder encoder_;
 };
 
-// Of a skeleton of one joint, at (x, 0, 0).
+// A pose of a skeleton of one joint, which stands at (x, 0, 0).
 inline Pose PoseAt(double x) {
   Pose pose;
   pose.root_position = {x, 0, 0};

@@ -26,8 +26,8 @@ struct RigFile {
   // Where the weighted vertices of a GLB lie, 3 x N, in the space of the skeleton. Empty: the
   // vertices are those of the clip, in its order.
   Eigen::Matrix3Xd positions;
-  // Of a GLB: where the nodes place mesh and skeleton, judged by the root. Only a guess of the unit
-  // and the up axis, because the nodes may be posed.
+  // Where the nodes of a GLB place mesh and skeleton, judged by the root. It is only a guess of the
+  // unit and the up axis, because the nodes may be posed.
   Eigen::Matrix4d shown_from_mesh = Eigen::Matrix4d::Identity();
   int rest_frame = 0;
   bool is_locked = false;          // locks all joints, including those that are added
