@@ -16,8 +16,9 @@ add_compile_options(-Wall -Wextra -Werror -Wno-psabi -ffp-contract=off)
 string(REPLACE "-O2" "-O3" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 
-# Tests spend their time in the library: optimizing their own code costs more than it gives.
-set(PLEAT_TEST_OPTIONS -O1)
+# Tests and the command line spend their time in the library: optimizing their own code costs more
+# than it gives.
+set(PLEAT_COLD_OPTIONS -O1)
 
 if(PLEAT_SANITIZE)
   # Less optimization: the compiler takes most of the time of these workflows, not the tests.

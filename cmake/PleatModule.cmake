@@ -70,7 +70,7 @@ function(pleat_add_tests name)
   endif()
   target_link_libraries(${name}_test PRIVATE ${module} ${ARG_LIBRARIES} pleat_test_support
                         GTest::gmock_main)
-  target_compile_options(${name}_test PRIVATE ${PLEAT_TEST_OPTIONS})
+  target_compile_options(${name}_test PRIVATE ${PLEAT_COLD_OPTIONS})
   if(ARG_PRECOMPILED)
     pleat_use_precompiled(${name}_test ${ARG_PRECOMPILED})
   else()

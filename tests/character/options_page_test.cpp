@@ -12,6 +12,7 @@
 #include "absl/strings/str_replace.h"
 #include "pleat/base/file.h"
 #include "pleat/character/train_options.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -60,7 +61,7 @@ TEST(OptionsPageTest, HoldsEveryOptionAsTheTableHasIt) {
   VisitTrainOptions(defaults, [&](const char* name, const auto& value) {
     absl::StrAppend(&expected, "\n", Section(name, value));
   });
-  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string page, ReadFile(PLEAT_SOURCE_DIR "/docs/options.md"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string page, ReadFile(InSourceFolder("docs/options.md")));
   EXPECT_EQ(page.substr(std::min(page.size(), page.find("\n## "))), expected);
 }
 

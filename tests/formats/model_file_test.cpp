@@ -7,6 +7,7 @@
 #include "model_builder.h"
 #include "pleat/base/file.h"
 #include "support/hostile_bytes.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -139,8 +140,8 @@ class GoldenModelTest : public ::testing::TestWithParam<std::tuple<Learner, int>
 
 TEST_P(GoldenModelTest, StaysReadable) {
   const auto [learner, version] = GetParam();
-  const std::string path = absl::StrCat(PLEAT_SOURCE_DIR "/tests/golden/model_v", version, "_",
-                                        LearnerName(learner), ".pleat");
+  const std::string path = InSourceFolder(
+      absl::StrCat("tests/golden/model_v", version, "_", LearnerName(learner), ".pleat"));
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string golden, ReadFile(path));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(golden));
   const auto expected = SmallModelBuilder(learner).Build();

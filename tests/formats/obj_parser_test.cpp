@@ -35,6 +35,17 @@ TEST(ObjParserTest, KnownFacesAreRecognizedAndSayTheSame) {
   }
 }
 
+// The texture coordinates of later frames are not read, but where their statements end is seen.
+TEST(ObjParserTest, JoinedLinesAreNoStatementsInLaterFramesEither) {
+  ObjFaceText faces;
+  const std::string text = absl::StrCat(kVertices, "vt 1 \\\nv 5 5 5\n", kFaces);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const ObjFrame first, Parse(text, nullptr, &faces));
+  EXPECT_EQ(first.mesh.positions.cols(), 4);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const ObjFrame second, Parse(text, &faces));
+  EXPECT_TRUE(second.has_known_faces);
+  EXPECT_EQ(second.mesh.positions, first.mesh.positions);
+}
+
 TEST(ObjParserTest, FacesThatMayMeanSomethingElseAreParsedAgain) {
   ObjFaceText faces;
   ASSERT_THAT(Parse(absl::StrCat(kVertices, kFaces), nullptr, &faces), IsOk());

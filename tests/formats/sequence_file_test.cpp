@@ -3,6 +3,7 @@
 #include "pleat/base/file.h"
 #include "support/hostile_bytes.h"
 #include "support/mesh_shapes.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -125,7 +126,7 @@ TEST(SequenceFileTest, EveryCorruptionFailsOrIsAValidSequence) {
 // tests/golden/sequence_v1.pseq was written from docs/formats/sequence_file.md by other code.
 TEST(SequenceFileTest, GoldenFileOfVersion1StaysReadable) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                             ReadFile(PLEAT_SOURCE_DIR "/tests/golden/sequence_v1.pseq"));
+                             ReadFile(InSourceFolder("tests/golden/sequence_v1.pseq")));
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence, DecodeSequence(bytes));
   EXPECT_EQ(sequence.name(), "tiny");
   EXPECT_EQ(sequence.num_frames(), 2);

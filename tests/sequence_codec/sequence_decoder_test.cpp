@@ -7,6 +7,7 @@
 #include "pleat/sequence_codec/compress_sequence.h"
 #include "sequence_codec/compressed_clip.h"
 #include "support/hostile_bytes.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -134,7 +135,7 @@ TEST(SequenceDecoderTest, LimitsHold) {
 // A file of the first release: it must decode to the same positions for ever, on every machine.
 TEST(SequenceDecoderTest, TheGoldenFileStaysReadable) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                             ReadFile(PLEAT_SOURCE_DIR "/tests/golden/compressed_v1.plt"));
+                             ReadFile(InSourceFolder("tests/golden/compressed_v1.plt")));
   PLEAT_ASSERT_OK_AND_ASSIGN(SequenceDecoder decoder, SequenceDecoder::Open(bytes));
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence decoded, decoder.DecodeAll());
   EXPECT_EQ(decoded.name(), "waving torus");
@@ -144,7 +145,7 @@ TEST(SequenceDecoderTest, TheGoldenFileStaysReadable) {
 
 TEST(SequenceDecoderTest, TheGoldenFileWithAListOfFacesStaysReadable) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                             ReadFile(PLEAT_SOURCE_DIR "/tests/golden/compressed_v2.plt"));
+                             ReadFile(InSourceFolder("tests/golden/compressed_v2.plt")));
   PLEAT_ASSERT_OK_AND_ASSIGN(SequenceDecoder decoder, SequenceDecoder::Open(bytes));
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence decoded, decoder.DecodeAll());
   EXPECT_EQ(decoded.num_frames(), 3);

@@ -13,6 +13,7 @@
 #include "pleat/store/v1/records.pb.h"
 #include "pleat/wire/service_messages.h"
 #include "store/record_samples.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -21,10 +22,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const char kGoldenFolder[] = PLEAT_SOURCE_DIR "/tests/golden/records/";
-
 std::string Golden(const std::string& name) {
-  absl::StatusOr<std::string> bytes = ReadFile(kGoldenFolder + name + ".bin");
+  absl::StatusOr<std::string> bytes =
+      ReadFile(InSourceFolder("tests/golden/records/" + name + ".bin"));
   EXPECT_THAT(bytes, IsOk());
   return bytes.value_or("");
 }
@@ -153,7 +153,8 @@ TEST(RecordsTest, EqualContentGivesTheBytesOfTheFirstVersion) {
 // A whole catalog of 0.1.0, not only its rows.
 TEST(RecordsTest, ACatalogOfTheFirstVersionIsRead) {
   TemporaryFolder folder;
-  std::filesystem::copy_file(std::string(kGoldenFolder) + "catalogue.db", folder.File("c.db"));
+  std::filesystem::copy_file(InSourceFolder("tests/golden/records/catalogue.db"),
+                             folder.File("c.db"));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, catalog->List(EntryKind::kJob));
   ASSERT_EQ(jobs.size(), 2u);

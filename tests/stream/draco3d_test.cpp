@@ -10,6 +10,7 @@
 #include "draco/compression/decode.h"
 #include "pleat/base/file.h"
 #include "pleat/stream/frame_encoder.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 #include "support/test_meshes.h"
@@ -113,7 +114,7 @@ TEST(Draco3dTest, NodeReadsEveryPayload) {
     GTEST_SKIP() << "node with the package draco3d is not on this machine (NODE_PATH)";
   }
   const Payloads payloads;
-  EXPECT_EQ(Output("node " PLEAT_SOURCE_DIR "/tests/stream/draco3d.js " + payloads.folder()),
+  EXPECT_EQ(Output("node " + InSourceFolder("tests/stream/draco3d.js ") + payloads.folder()),
             payloads.expected());
 }
 
@@ -122,7 +123,7 @@ TEST(Draco3dTest, ThreeJsReadsEveryPayload) {
     GTEST_SKIP() << "node with the package three is not on this machine (NODE_PATH)";
   }
   const Payloads payloads;
-  EXPECT_EQ(Output("node " PLEAT_SOURCE_DIR "/tests/stream/dracoloader.mjs " + payloads.folder()),
+  EXPECT_EQ(Output("node " + InSourceFolder("tests/stream/dracoloader.mjs ") + payloads.folder()),
             payloads.expected());
 }
 

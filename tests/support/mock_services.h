@@ -1,4 +1,5 @@
-// The five services as gMock classes, and the sessions that they hand out.
+// The five services as gMock classes, and the sessions that they hand out. Constructors and
+// destructors are compiled in one place: they instantiate the whole of gMock for every method.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -24,9 +25,13 @@ class MockUpload : public ContentUpload<Info> {
   MOCK_METHOD(uint64_t, received_bytes, (), (const, override));
   MOCK_METHOD(absl::StatusOr<Info>, Finish, (), (override));
 };
+extern template class MockUpload<SequenceInfo>;
+extern template class MockUpload<CompressedSequenceInfo>;
 
 class MockSequenceService : public SequenceService {
  public:
+  MockSequenceService();
+  ~MockSequenceService() override;
   MOCK_METHOD(absl::StatusOr<SequenceInfo>, Upload, (const MeshSequence&, const Progress&),
               (override));
   MOCK_METHOD(absl::StatusOr<SequenceInfo>, Get, (const std::string& id), (override));
@@ -39,12 +44,16 @@ class MockSequenceService : public SequenceService {
 
 class MockJobSubscription : public JobSubscription {
  public:
+  MockJobSubscription();
+  ~MockJobSubscription() override;
   MOCK_METHOD(JobUpdate, current, (), (const, override));
   MOCK_METHOD(absl::Status, status, (), (const, override));
 };
 
 class MockJobService : public JobService {
  public:
+  MockJobService();
+  ~MockJobService() override;
   MOCK_METHOD(absl::StatusOr<JobInfo>, CreateTraining, (const TrainingRequest& request),
               (override));
   MOCK_METHOD(absl::StatusOr<JobInfo>, CreateCompression,
@@ -58,6 +67,8 @@ class MockJobService : public JobService {
 
 class MockModelService : public ModelService {
  public:
+  MockModelService();
+  ~MockModelService() override;
   MOCK_METHOD(absl::StatusOr<ModelInfo>, Get, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::vector<ModelInfo>>, List, (), (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
@@ -69,6 +80,8 @@ class MockModelService : public ModelService {
 
 class MockPoseSession : public PoseSession {
  public:
+  MockPoseSession();
+  ~MockPoseSession() override;
   MOCK_METHOD(const StreamHeader&, header, (), (const, override));
   MOCK_METHOD(absl::StatusOr<EncodedFrame>, Show, (const std::vector<const Pose*>& poses),
               (override));
@@ -76,6 +89,8 @@ class MockPoseSession : public PoseSession {
 
 class MockClipSession : public ClipSession {
  public:
+  MockClipSession();
+  ~MockClipSession() override;
   MOCK_METHOD(const StreamHeader&, header, (), (const, override));
   MOCK_METHOD(bool, done, (), (const, override));
   MOCK_METHOD(int, next_frame, (), (const, override));
@@ -84,6 +99,8 @@ class MockClipSession : public ClipSession {
 
 class MockPoseStream : public PoseStream {
  public:
+  MockPoseStream();
+  ~MockPoseStream() override;
   MOCK_METHOD(const StreamHeader&, header, (), (const, override));
   MOCK_METHOD(bool, HasRoom, (), (const, override));
   MOCK_METHOD(void, Push, (const LivePose& pose), (override));
@@ -95,6 +112,8 @@ class MockPoseStream : public PoseStream {
 
 class MockPoseService : public PoseService {
  public:
+  MockPoseService();
+  ~MockPoseService() override;
   using Consume = std::function<absl::Status(int frame_index, const EvaluatedFrame&)>;
   MOCK_METHOD(absl::Status, EvaluateClip, (const ClipQuery& query, const Consume& consume),
               (override));
@@ -111,12 +130,16 @@ class MockPoseService : public PoseService {
 
 class MockDecodeSession : public DecodeSession {
  public:
+  MockDecodeSession();
+  ~MockDecodeSession() override;
   MOCK_METHOD(absl::StatusOr<MeshSequence>, Shape, (), (override));
   MOCK_METHOD(absl::StatusOr<const Eigen::Matrix3Xf*>, Next, (), (override));
 };
 
 class MockCompressedSequenceService : public CompressedSequenceService {
  public:
+  MockCompressedSequenceService();
+  ~MockCompressedSequenceService() override;
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Upload,
               (const std::string& file, const Progress&), (override));
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Get, (const std::string& id), (override));
@@ -133,3 +156,9 @@ class MockCompressedSequenceService : public CompressedSequenceService {
 };
 
 }  // namespace pleat
+
+extern template class ::testing::StrictMock<pleat::MockSequenceService>;
+extern template class ::testing::StrictMock<pleat::MockJobService>;
+extern template class ::testing::StrictMock<pleat::MockModelService>;
+extern template class ::testing::StrictMock<pleat::MockPoseService>;
+extern template class ::testing::StrictMock<pleat::MockCompressedSequenceService>;

@@ -8,12 +8,14 @@
 #include <optional>
 #include <string>
 
+#include "support/source_folder.h"
+
 namespace pleat {
 
 // Path of `relative` in the folder of captured sequences (environment variable PLEAT_SHARED_DATA,
 // else shared/data beside the checkout); nullopt when the file is not on this machine.
 inline std::optional<std::string> FindSharedData(const std::string& relative) {
-  std::filesystem::path folder = PLEAT_SOURCE_DIR "/../shared/data";
+  std::filesystem::path folder = InSourceFolder("../shared/data");
   if (const char* from_environment = std::getenv("PLEAT_SHARED_DATA")) folder = from_environment;
   const std::filesystem::path path = folder / relative;
   if (!std::filesystem::exists(path)) return std::nullopt;

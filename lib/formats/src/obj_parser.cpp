@@ -114,8 +114,8 @@ class ObjParser {
   // Only the first frame's texture coordinates are kept; of the others their number matters.
   void ParseTexcoord() {
     ++num_texcoords_;
+    lines_.ContinueLine();  // even if nothing is read: a joined line is no statement of its own
     if (known_ != nullptr) return;
-    lines_.ContinueLine();
     Eigen::Vector2f texcoord = Eigen::Vector2f::Zero();
     if (!lines_.ReadFloat(&texcoord.x()) ||
         (!lines_.AtLineEnd() && !lines_.ReadFloat(&texcoord.y()))) {
