@@ -19,6 +19,18 @@ set(PLEAT_PRECOMPILED_PACKAGES_grpc gRPC::grpc++)
 set(PLEAT_PRECOMPILED_PACKAGES_server_test GTest::gmock gRPC::grpc++)
 set(PLEAT_PRECOMPILED_PACKAGES_cli CLI11::CLI11 nlohmann_json::nlohmann_json)
 
+# pleat_compile_in_batches(TARGET) compiles several sources of a target as one: what they all
+# instantiate (gMock's matchers, CLI11, JSON, the stubs of gRPC) is compiled once for each batch and
+# not once for each file, which is most of the time of such files. Names in anonymous namespaces must
+# then differ within the target; the compiler says so when they do not.
+option(PLEAT_BATCHES "Compile sources with large headers in batches" ON)
+set(PLEAT_BATCH_SIZE 7)
+
+function(pleat_compile_in_batches target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${PLEAT_BATCHES}
+                        UNITY_BUILD_BATCH_SIZE ${PLEAT_BATCH_SIZE})
+endfunction()
+
 function(pleat_use_precompiled target layer)
   if(NOT PLEAT_PRECOMPILED_HEADERS)
     return()

@@ -1,6 +1,7 @@
-// A small sequence whose frames differ.
+// A small sequence whose frames differ, and what tests do with it.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "pleat/mesh/mesh_sequence.h"
@@ -27,6 +28,15 @@ inline MeshSequence MovingTetrahedron(int num_frames) {
              *Topology::FromTriangles(4, triangles), std::move(frames),
              {.name = "tetrahedron", .frame_rate = {24, 1}, .appearance = {}, .frame_names = {}})
       .value();
+}
+
+// The same animation with every vertex of every frame moved.
+inline MeshSequence Moved(const MeshSequence& sequence, const Eigen::Vector3f& by) {
+  std::vector<Eigen::Matrix3Xf> frames;
+  for (int t = 0; t < sequence.num_frames(); ++t) {
+    frames.emplace_back(sequence.frame(t).colwise() + by);
+  }
+  return MeshSequence::Create(sequence.topology(), std::move(frames)).value();
 }
 
 }  // namespace pleat

@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kSchema[] = "pleat.drc/1";
 constexpr uint64_t kMaxHeaderBytes = uint64_t{1} << 28;
-constexpr int kMaxFrames = 1'000'000;
+constexpr int kMaxFolderFrames = 1'000'000;
 
 std::string FramePath(const std::string& folder, int t) {
   return absl::StrFormat("%s/frame_%04d.drc", folder, t);
@@ -92,9 +92,9 @@ absl::StatusOr<DracoFolder> ParseHeader(const std::string& text, const std::stri
         ": not what 'pleat pose' writes: it is no JSON, or a field is missing or of another "
         "kind"));
   }
-  if (folder.num_frames < 1 || folder.num_frames > kMaxFrames) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path, ": num_frames ", folder.num_frames, " is outside 1 to ", kMaxFrames));
+  if (folder.num_frames < 1 || folder.num_frames > kMaxFolderFrames) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": num_frames ", folder.num_frames,
+                                                   " is outside 1 to ", kMaxFolderFrames));
   }
   return folder;
 }

@@ -17,7 +17,7 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxFrames = 1'000'000;
+constexpr int kMaxEditedFrames = 1'000'000;
 
 struct JointValue {
   std::vector<int> joints;
@@ -100,9 +100,9 @@ absl::StatusOr<PoseTrack> ScaleTime(const PoseTrack& track, double time_scale) {
     return UsageError(absl::StrCat("--time-scale ", time_scale, " is outside 0.01 to 100"));
   }
   if (time_scale == 1) return track;
-  if (track.num_frames() * time_scale > kMaxFrames) {
-    return UsageError(
-        absl::StrCat("--time-scale ", time_scale, " makes more than ", kMaxFrames, " frames"));
+  if (track.num_frames() * time_scale > kMaxEditedFrames) {
+    return UsageError(absl::StrCat("--time-scale ", time_scale, " makes more than ",
+                                   kMaxEditedFrames, " frames"));
   }
   PoseTrack::Parts scaled{.fps = track.fps(), .clip_starts = {}};
   for (const int begin : track.clip_starts()) {

@@ -6,7 +6,7 @@
 namespace pleat {
 namespace {
 
-std::vector<std::string> Row(const CompressedSequenceInfo& info) {
+std::vector<std::string> CompressedSequenceRow(const CompressedSequenceInfo& info) {
   return {info.id.substr(0, 12),
           info.name,
           absl::StrCat(info.num_frames),
@@ -34,7 +34,7 @@ void AddCompressedVerb(CLI::App& app, Session& session) {
        .file_ending = ".plt",
        .json = CompressedSequenceJson,
        .header = {"id", "name", "frames", "vertices", "max mm", "KG %", "size"},
-       .row = Row});
+       .row = CompressedSequenceRow});
 }
 
 }  // namespace pleat

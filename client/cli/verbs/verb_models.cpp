@@ -6,7 +6,7 @@
 namespace pleat {
 namespace {
 
-std::vector<std::string> Row(const ModelInfo& model) {
+std::vector<std::string> ModelRow(const ModelInfo& model) {
   return {model.id.substr(0, 12),
           model.name,
           model.record.learner,
@@ -32,7 +32,7 @@ void AddModelsVerb(CLI::App& app, Session& session) {
        .file_ending = ".pleat",
        .json = ModelJson,
        .header = {"id", "name", "learner", "vertices", "frames", "error %", "size"},
-       .row = Row});
+       .row = ModelRow});
 }
 
 }  // namespace pleat

@@ -6,7 +6,7 @@
 namespace pleat {
 namespace {
 
-std::vector<std::string> Row(const SequenceInfo& info) {
+std::vector<std::string> SequenceRow(const SequenceInfo& info) {
   return {info.id.substr(0, 12),
           info.name,
           absl::StrCat(info.num_frames),
@@ -31,7 +31,7 @@ void AddSequencesVerb(CLI::App& app, Session& session) {
        .file_ending = "",
        .json = SequenceJson,
        .header = {"id", "name", "frames", "vertices", "faces", "fps", "size"},
-       .row = Row});
+       .row = SequenceRow});
 }
 
 }  // namespace pleat

@@ -17,10 +17,6 @@ namespace {
 constexpr uint64_t kMaxShapeBytes = uint64_t{1} << 30;
 constexpr size_t kBytesPerVertex = 3 * sizeof(float);
 
-absl::Status BrokenStream(absl::string_view why) {
-  return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
-}
-
 // Puts the parts of a stream together: first those of the shape, then those of the positions, frame
 // by frame. Parts are read when they are needed, except for the first positions, which say that the
 // shape is complete; they wait in part_ for the first call of Next. The server is not trusted:

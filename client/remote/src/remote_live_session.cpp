@@ -50,7 +50,7 @@ constexpr auto kConnectTime = std::chrono::seconds(2);
 using Stream = grpc::ClientReaderWriter<v1::LiveSessionRequest, v1::LiveSessionResponse>;
 using LivePoseMessage = v1::LiveSessionRequest::LivePose;
 
-absl::Status BrokenStream(absl::string_view why) {
+absl::Status BrokenSession(absl::string_view why) {
   return absl::DataLossError(absl::StrCat("the server's live session is wrong: ", why));
 }
 
@@ -146,9 +146,9 @@ class RemoteLiveSession final : public LiveSession {
     stream_->Write(start_);  // when it fails, so does the read that follows
     v1::LiveSessionResponse response;
     if (!stream_->Read(&response)) return FinishStream();
-    if (!response.has_header()) return BrokenStream("no header");
+    if (!response.has_header()) return BrokenSession("no header");
     PLEAT_ASSIGN_OR_RETURN(StreamHeader header, FromProto(response.header()));
-    if (header.content != options_.stream.content) return BrokenStream("another content");
+    if (header.content != options_.stream.content) return BrokenSession("another content");
     num_received_ = num_acknowledged_ = 0;
     if (!header_.has_value()) {
       header_ = std::move(header);
@@ -159,7 +159,7 @@ class RemoteLiveSession final : public LiveSession {
     }
     if (header.topology != header_->topology || header.vertex_order != header_->vertex_order ||
         header.num_vertices != header_->num_vertices || !(header.box == header_->box)) {
-      return BrokenStream("the header is another one after reconnecting");
+      return BrokenSession("the header is another one after reconnecting");
     }
     return absl::OkStatus();
   }
@@ -205,13 +205,13 @@ class RemoteLiveSession final : public LiveSession {
       frame->resumed = true;
     }
     if (ended_) return end_;
-    if (!response.has_frame() && !response.has_rejection()) return BrokenStream("a second header");
+    if (!response.has_frame() && !response.has_rejection()) return BrokenSession("a second header");
     TakeAnswer(response.report(), response.has_rejection(), frame);
     if (response.has_rejection()) {
       frame->number = response.rejection().number();
       frame->draco.clear();
       frame->positions.resize(3, 0);
-      if (response.rejection().code() == 0) return BrokenStream("a rejection without an error");
+      if (response.rejection().code() == 0) return BrokenSession("a rejection without an error");
       return absl::Status(static_cast<absl::StatusCode>(response.rejection().code()),
                           response.rejection().message());
     }

@@ -19,10 +19,6 @@ v1::Character CharacterOf(const std::string& model_id, const PoseSessionOptions&
   return ToProto(CharacterQuery{model_id, options.bone_scales, options.skinned_only});
 }
 
-absl::Status BrokenStream(absl::string_view why) {
-  return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
-}
-
 absl::StatusOr<EncodedFrame> FrameOf(v1::Frame* message, StreamContent content) {
   EncodedFrame frame{.confidence = message->confidence(), .mark = MarkOf(*message)};
   if (content == StreamContent::kParameters) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "channel.h"
 #include "pleat/remote/remote_options.h"
 #include "pleat/v1/compressed_sequence_service.grpc.pb.h"
@@ -15,6 +16,11 @@
 #include "pleat/v1/sequence_service.grpc.pb.h"
 
 namespace pleat {
+
+// The error for a stream of frames whose messages are not what the protocol says.
+inline absl::Status BrokenStream(absl::string_view why) {
+  return absl::DataLossError(absl::StrCat("the server's stream of frames is wrong: ", why));
+}
 
 struct RemoteState {
   std::string address;  // empty when the channel was given

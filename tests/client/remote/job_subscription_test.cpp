@@ -19,13 +19,13 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Return;
-using Writer = grpc::ServerWriter<v1::WatchJobResponse>;
+using JobWriter = grpc::ServerWriter<v1::WatchJobResponse>;
 
 class JobSubscriptionScriptTest : public testing::Test {
  protected:
   // A script of one watch: these states with rising fractions, then the end.
   auto Show(std::vector<JobState> states, std::function<grpc::Status()> end) {
-    return [states, end](grpc::ServerContext*, const v1::WatchJobRequest* request, Writer* out) {
+    return [states, end](grpc::ServerContext*, const v1::WatchJobRequest* request, JobWriter* out) {
       JobInfo info;
       info.id = request->id();
       for (const JobState state : states) {
@@ -91,7 +91,7 @@ TEST_F(JobSubscriptionScriptTest, WhereNoStateComesThereIsNoSubscription) {
 }
 
 TEST_F(JobSubscriptionScriptTest, AStateThatIsNoneEndsTheWatchWithItsField) {
-  EXPECT_CALL(server_.jobs, WatchJob).WillOnce([](auto*, auto*, Writer* out) {
+  EXPECT_CALL(server_.jobs, WatchJob).WillOnce([](auto*, auto*, JobWriter* out) {
     v1::WatchJobResponse response;
     response.mutable_job()->set_id("j");
     while (out->Write(response)) {  // until the client hangs up

@@ -16,16 +16,16 @@ namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-using Response = v1::DecodeFramesResponse;
+using FramesResponse = v1::DecodeFramesResponse;
 
-Response Shape(const std::string& bytes) {
-  Response response;
+FramesResponse Shape(const std::string& bytes) {
+  FramesResponse response;
   response.set_shape(bytes);
   return response;
 }
 
-Response Positions(int frame, int first_vertex, const std::string& xyz) {
-  Response response;
+FramesResponse Positions(int frame, int first_vertex, const std::string& xyz) {
+  FramesResponse response;
   response.mutable_positions()->set_frame(frame);
   response.mutable_positions()->set_first_vertex(first_vertex);
   response.mutable_positions()->set_xyz(xyz);
@@ -40,7 +40,7 @@ std::string Vertices(int count, float x = 1) {
 
 struct Stream {
   std::string name, message;
-  std::vector<Response> parts;
+  std::vector<FramesResponse> parts;
 };
 
 class DecodeStreamTest : public testing::Test {
@@ -48,16 +48,16 @@ class DecodeStreamTest : public testing::Test {
   static std::string Tetrahedron() { return EncodeSequence(MovingTetrahedron(1)); }
 
   // Decodes the frames 2 and 3 of a stream of `parts`.
-  absl::Status Decode(const std::vector<Response>& parts, grpc::Status end = grpc::Status::OK,
+  absl::Status Decode(const std::vector<FramesResponse>& parts, grpc::Status end = grpc::Status::OK,
                       FrameRange range = {2, 4}) {
     frames_.clear();
     EXPECT_CALL(server_.compressed, DecodeFrames)
         .WillOnce([parts, end, range](grpc::ServerContext*, const v1::DecodeFramesRequest* request,
-                                      grpc::ServerWriter<Response>* out) {
+                                      grpc::ServerWriter<FramesResponse>* out) {
           EXPECT_EQ(request->id(), "id");
           EXPECT_EQ(request->begin_frame(), range.begin);
           EXPECT_EQ(request->end_frame(), range.end);
-          for (const Response& part : parts) out->Write(part);
+          for (const FramesResponse& part : parts) out->Write(part);
           return end;
         });
     const auto client = server_.Open();
@@ -88,14 +88,14 @@ TEST_F(DecodeStreamTest, PartsOfAnySizeBecomeFrames) {
 }
 
 TEST_F(DecodeStreamTest, WhatIsNoStreamOfFramesIsNamed) {
-  const Response shape = Shape(Tetrahedron()), frame_2 = Positions(2, 0, Vertices(4)),
-                 frame_3 = Positions(3, 0, Vertices(4));
+  const FramesResponse shape = Shape(Tetrahedron()), frame_2 = Positions(2, 0, Vertices(4)),
+                       frame_3 = Positions(3, 0, Vertices(4));
   const std::string out_of_place = "a part does not follow", early = "it ended too early";
   for (const Stream& stream : std::vector<Stream>{
            {"nothing", early, {}},
            {"only a shape", early, {shape}},
-           {"an empty part first", "empty part", {Response()}},
-           {"an empty part later", "empty part", {shape, frame_2, Response()}},
+           {"an empty part first", "empty part", {FramesResponse()}},
+           {"an empty part later", "empty part", {shape, frame_2, FramesResponse()}},
            {"a shape in the middle", "a second shape", {shape, frame_2, shape}},
            {"another frame first", out_of_place, {shape, frame_3}},
            {"a frame twice", out_of_place, {shape, frame_2, frame_2}},

@@ -16,17 +16,17 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using Response = v1::EvaluateClipResponse;
+using ClipResponse = v1::EvaluateClipResponse;
 
 class RemotePosesTest : public testing::Test {
  protected:
-  Response Header() const {
-    Response response;
+  ClipResponse Header() const {
+    ClipResponse response;
     *response.mutable_header() = stream_.header();
     return response;
   }
-  Response Frame(uint64_t number) {
-    Response response;
+  ClipResponse Frame(uint64_t number) {
+    ClipResponse response;
     *response.mutable_frame() = stream_.Frame(number);
     return response;
   }
@@ -36,13 +36,13 @@ class RemotePosesTest : public testing::Test {
     return {"m", PoseTrack::FromValid(std::move(track)), {2}, true};
   }
   // Two poses, to which the server answers with `parts`.
-  absl::Status EvaluateClip(const std::vector<Response>& parts,
+  absl::Status EvaluateClip(const std::vector<ClipResponse>& parts,
                             grpc::Status end = grpc::Status::OK) {
     EXPECT_CALL(server_.poses, EvaluateClip)
         .WillOnce([this, parts, end](grpc::ServerContext*, const v1::EvaluateClipRequest* request,
-                                     grpc::ServerWriter<Response>* out) {
+                                     grpc::ServerWriter<ClipResponse>* out) {
           request_ = *request;
-          for (const Response& part : parts) out->Write(part);
+          for (const ClipResponse& part : parts) out->Write(part);
           return end;
         });
     frames_.clear();
@@ -78,15 +78,15 @@ TEST_F(RemotePosesTest, AClipAsksForWhatWasAskedAndDecodesWhatComes) {
 TEST_F(RemotePosesTest, WhatIsNoStreamOfTheClipIsNamed) {
   struct Stream {
     std::string message;
-    std::vector<Response> parts;
+    std::vector<ClipResponse> parts;
     size_t num_frames;  // that are seen before
   };
-  Response damaged = Frame(1), bad_header = Header(), no_topology = Header();
+  ClipResponse damaged = Frame(1), bad_header = Header(), no_topology = Header();
   damaged.mutable_frame()->set_draco(damaged.frame().draco().substr(0, 20));
   for (const Stream& stream : std::vector<Stream>{
            {"it ended too early", {}, 0},
            {"the header is not first", {Frame(0)}, 0},
-           {"the header is not first", {Response()}, 0},
+           {"the header is not first", {ClipResponse()}, 0},
            {"a second header", {Header(), Frame(0), Header()}, 1},
            {"a frame is missing", {Header(), Frame(1)}, 0},
            {"a frame is missing", {Header(), Frame(0), Frame(0)}, 1},

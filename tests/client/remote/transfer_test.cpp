@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::Return;
 using Reader = grpc::ServerReader<v1::UploadSequenceRequest>;
 using Upload = v1::UploadCompressedSequenceResponse;
-using Writer = grpc::ServerWriter<v1::DownloadModelResponse>;
+using ModelWriter = grpc::ServerWriter<v1::DownloadModelResponse>;
 
 std::string SomeBytes(size_t count) {
   Random random(3);
@@ -183,7 +183,7 @@ class DownloadTest : public testing::Test {
   // A script of one call: sends `parts`, then ends so.
   auto Send(std::vector<Part> parts, grpc::Status end = grpc::Status::OK) {
     return [this, parts, end](grpc::ServerContext*, const v1::DownloadModelRequest* request,
-                              Writer* out) {
+                              ModelWriter* out) {
       offsets_.push_back(request->offset_bytes());
       for (const Part& part : parts) {
         v1::DownloadModelResponse response;
@@ -267,14 +267,15 @@ TEST_F(DownloadTest, CancellationEndsTheCall) {
 
 TEST_F(DownloadTest, SomeBytesAreReadAndTheRestIsNotSent) {
   EXPECT_CALL(server_.models, DownloadModel)
-      .WillOnce([](grpc::ServerContext*, const v1::DownloadModelRequest* request, Writer* out) {
-        v1::DownloadModelResponse part;
-        part.set_size_bytes(uint64_t{1} << 40);
-        part.set_data(std::string(1000, 'x'));
-        part.set_offset_bytes(request->offset_bytes());
-        while (out->Write(part)) part.set_offset_bytes(part.offset_bytes() + 1000);
-        return grpc::Status::OK;
-      });
+      .WillOnce(
+          [](grpc::ServerContext*, const v1::DownloadModelRequest* request, ModelWriter* out) {
+            v1::DownloadModelResponse part;
+            part.set_size_bytes(uint64_t{1} << 40);
+            part.set_data(std::string(1000, 'x'));
+            part.set_offset_bytes(request->offset_bytes());
+            while (out->Write(part)) part.set_offset_bytes(part.offset_bytes() + 1000);
+            return grpc::Status::OK;
+          });
   EXPECT_EQ(server_.Open()->models().ReadBytes("m", 10, 1500).value_or(""), std::string(1500, 'x'));
 }
 

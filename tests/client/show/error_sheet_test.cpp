@@ -17,14 +17,6 @@ using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-MeshSequence Moved(const MeshSequence& sequence, const Eigen::Vector3f& by) {
-  std::vector<Eigen::Matrix3Xf> frames;
-  for (int t = 0; t < sequence.num_frames(); ++t) {
-    frames.emplace_back(sequence.frame(t).colwise() + by);
-  }
-  return MeshSequence::Create(sequence.topology(), std::move(frames)).value();
-}
-
 TEST(ErrorSheet, AMeshMovedByTenMillimetersHasTheColorOfTenMillimeters) {
   const MeshSequence truth = MovingTetrahedron(2);
   const ColorScale scale = ErrorScale(25);

@@ -15,15 +15,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// The same animation with every vertex of every frame moved.
-MeshSequence Moved(const MeshSequence& sequence, const Eigen::Vector3f& offset) {
-  std::vector<Eigen::Matrix3Xf> frames;
-  for (int t = 0; t < sequence.num_frames(); ++t) {
-    frames.push_back(sequence.frame(t).colwise() + offset);
-  }
-  return MeshSequence::Create(sequence.topology(), std::move(frames)).value();
-}
-
 class CompareVerbTest : public testing::Test {
  protected:
   void SetUp() override {
