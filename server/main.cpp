@@ -35,12 +35,11 @@ int Run(const ServerOptions& options) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 
+  LocalServiceOptions service_options = options.service;
+  service_options.on_problem = [](const std::string& problem) { spdlog::error("{}", problem); };
   absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
-      LocalCharacterService::Open(options.service);
+      LocalCharacterService::Open(service_options);
   if (!service.ok()) return Fail(service.status());
-  for (const std::string& id : (*service)->missing_files()) {
-    spdlog::error("the file of '{}' is gone from the data folder; restore or delete it", id);
-  }
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);

@@ -8,11 +8,13 @@
 namespace pleat {
 namespace {
 
+constexpr double kScrubHours = 7 * 24;
+
 struct TlsPaths {
   std::string certificate, key, client_ca;
 };
 
-void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
+void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_hours) {
   app->add_option("--data-dir", service->data_dir, "Folder that keeps sequences, jobs and models")
       ->required();
   app->add_option("--workers", service->num_workers, "Jobs that run at the same time")
@@ -37,6 +39,10 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
       ->capture_default_str();
   app->add_option("--reserve-bytes", service->reserve_bytes, "Kept free on the disk")
       ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app->add_option("--scrub-hours", *scrub_hours,
+                  "Time in which every stored file is read and verified once; 0 = never")
+      ->check(CLI::Range(0., 8760.))
       ->capture_default_str();
   ServiceLimits* limits = &service->limits;
   app->add_option("--max-upload-bytes", limits->max_upload_bytes, "Largest sequence file")
@@ -88,7 +94,8 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
   app.set_version_flag("--version", PLEAT_VERSION);
   AddNetworkFlags(&app, &line.options.grpc, &tls);
-  AddServiceFlags(&app, &line.options.service);
+  double scrub_hours = kScrubHours;
+  AddServiceFlags(&app, &line.options.service, &scrub_hours);
   app.add_option("--drain-seconds", line.options.drain_seconds,
                  "How long running calls may go on after SIGTERM")
       ->check(CLI::Range(0, 3600))
@@ -106,6 +113,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
     line.message = out.str();
     return line;
   }
+  line.options.service.scrub_seconds = 3600 * scrub_hours;
   if (const absl::Status status = ReadTlsFiles(tls, &line.options.grpc); !status.ok()) {
     line.exit = true;
     line.exit_code = 2;

@@ -8,12 +8,17 @@ namespace pleat {
 
 absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Open(
     LocalServiceOptions options) {
-  PLEAT_ASSIGN_OR_RETURN(
-      std::unique_ptr<Store> store,
-      Store::Open({.data_dir = options.data_dir, .reserve_bytes = options.reserve_bytes}));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<Store> store,
+                         Store::Open({.data_dir = options.data_dir,
+                                      .reserve_bytes = options.reserve_bytes,
+                                      .on_problem = options.on_problem}));
   std::unique_ptr<LocalCharacterService> service(
       new LocalCharacterService(options, std::move(store)));
   PLEAT_RETURN_IF_ERROR(service->jobs_.Start());
+  if (options.scrub_seconds > 0) {
+    service->scrubber_ =
+        std::make_unique<Scrubber>(&service->files_.store(), options.scrub_seconds);
+  }
   return service;
 }
 

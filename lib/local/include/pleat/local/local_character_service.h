@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "pleat/local/local_models.h"
 #include "pleat/local/local_poses.h"
 #include "pleat/local/local_sequences.h"
+#include "pleat/local/scrubber.h"
 #include "pleat/service/character_service.h"
 
 namespace pleat {
@@ -26,8 +28,11 @@ struct LocalServiceOptions {
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
   uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences together
   uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
+  double scrub_seconds = 0;  // in which every stored file is read once and verified; 0 = never
   ServiceLimits limits{};
   TrainFunction train = TrainCharacter;
+  // Receives sentences for the operator (StoreOptions::on_problem).
+  std::function<void(const std::string& problem)> on_problem{};
 };
 
 // Owns the data folder, the five services over it, and their threads. Thread-safe.
@@ -61,6 +66,7 @@ class LocalCharacterService final : public CharacterService {
   LocalCompressedSequences compressed_sequences_;
   LocalPoses poses_;
   LocalJobs jobs_;
+  std::unique_ptr<Scrubber> scrubber_;  // null: never
 };
 
 }  // namespace pleat
