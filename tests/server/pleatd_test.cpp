@@ -1,16 +1,22 @@
 // The program itself: start, serve, end by a signal, start again on the same folder.
 #include <fcntl.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "pleat/remote/remote_character_service.h"
+#include "pleat/v1/sequence_service.grpc.pb.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -64,6 +70,15 @@ class Daemon {
     return "";
   }
   void Signal(int number) { kill(child_, number); }
+  // The most memory that it has had, in bytes.
+  uint64_t PeakBytes() const {
+    std::ifstream status(absl::StrCat("/proc/", child_, "/status"));
+    for (std::string word; status >> word;) {
+      uint64_t kilobytes = 0;
+      if (word == "VmHWM:" && status >> kilobytes) return kilobytes << 10;
+    }
+    return 0;
+  }
   // Waits for the end; exit code, or -signal.
   int Wait() {
     while (ReadMore()) {
@@ -175,6 +190,54 @@ TEST(PleatdTest, ExplainsItself) {
   Daemon tls(flags);
   EXPECT_EQ(tls.Wait(), 2);
   EXPECT_THAT(tls.output(), HasSubstr("/no/such/file"));
+}
+
+// 14 MiB of gzip became 10.9 GB in version 0.1.0, before any limit was looked at.
+TEST(PleatdTest, ACompressedMessageIsRefusedBeforeItGrows) {
+  TemporaryFolder folder;
+  Daemon daemon(Flags(folder));
+  const std::string address = daemon.WaitForAddress();
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxSendMessageSize(-1);
+  const auto stub = v1::SequenceService::NewStub(
+      grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments));
+  v1::GetSequenceRequest request;
+  request.set_id("small");
+  v1::GetSequenceResponse response;
+  const auto code_of_call = [&](grpc_compression_algorithm algorithm) {
+    grpc::ClientContext context;
+    context.set_compression_algorithm(algorithm);
+    return stub->GetSequence(&context, request, &response).error_code();
+  };
+  EXPECT_EQ(code_of_call(GRPC_COMPRESS_NONE), grpc::StatusCode::INVALID_ARGUMENT);
+  const uint64_t before = daemon.PeakBytes();
+  ASSERT_GT(before, 0u);
+  request.set_id(std::string(200 << 20, 'x'));  // 200 kB of gzip
+  for (const grpc_compression_algorithm algorithm : {GRPC_COMPRESS_GZIP, GRPC_COMPRESS_DEFLATE}) {
+    EXPECT_EQ(code_of_call(algorithm), grpc::StatusCode::UNIMPLEMENTED);
+  }
+  EXPECT_LT(daemon.PeakBytes(), before + (64 << 20));
+  request.set_id("small");
+  EXPECT_EQ(code_of_call(GRPC_COMPRESS_NONE), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST(PleatdTest, TellsTheOperatorWhatAStartFound) {
+  TemporaryFolder folder;
+  std::string id;
+  {
+    Daemon daemon(Flags(folder));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                               RemoteCharacterService::Connect(daemon.WaitForAddress()));
+    id = client->sequences().Upload(MakeSwayingTube(4), {})->id;
+    daemon.Signal(SIGTERM);
+    EXPECT_EQ(daemon.Wait(), 0);
+  }
+  const std::string path = folder.File("blobs/" + id.substr(0, 2) + "/" + id);
+  std::filesystem::rename(path, folder.File("blobs/" + std::string(64, 'a')));
+  Daemon daemon(Flags(folder));
+  daemon.WaitForAddress();
+  EXPECT_THAT(daemon.output(), HasSubstr(absl::StrCat("the file of '", id, "' is gone")));
+  EXPECT_THAT(daemon.output(), HasSubstr("1 files that no entry names were moved"));
 }
 
 TEST(PleatdTest, LogsJson) {

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "pleat/base/status.h"
+#include "pleat/base/thread_priority.h"
 
 namespace pleat {
 namespace {
@@ -132,6 +133,7 @@ void JobManager::Shutdown() {
 }
 
 void JobManager::Work() {
+  if (options_.in_idle_time) RunInIdleTime();
   while (true) {
     std::shared_ptr<JobStateMachine> job;
     {
@@ -158,8 +160,9 @@ void JobManager::RunOne(JobStateMachine* job) {
   } catch (const std::bad_alloc&) {
     outcome = absl::ResourceExhaustedError(
         "the server has not enough memory for this job; use fewer frames or a lower resolution");
-  } catch (const std::exception& error) {
-    outcome = absl::InternalError(absl::StrCat("the job ended with an exception: ", error.what()));
+  } catch (const std::exception&) {
+    // Its text is for programmers and may name anything.
+    outcome = absl::InternalError("the job ended with an exception: a fault of Pleat");
   }
   if (outcome.ok()) {
     job->Succeed(outcome->result_id, outcome->warnings);

@@ -34,7 +34,7 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                         .max_batch = options.max_batch}),
       jobs_(&files_, &sequences_,
             JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
-            options.num_workers) {}
+            options.num_workers, options.jobs_in_idle_time) {}
 
 LocalCharacterService::~LocalCharacterService() { Shutdown(); }
 

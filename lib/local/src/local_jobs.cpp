@@ -53,12 +53,12 @@ class LocalSubscription final : public JobSubscription {
 }  // namespace
 
 LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner,
-                     int num_workers)
+                     int num_workers, bool in_idle_time)
     : files_(files),
       sequences_(sequences),
       runner_(std::move(runner)),
       manager_(
-          JobManagerOptions{.num_workers = num_workers},
+          JobManagerOptions{.num_workers = num_workers, .in_idle_time = in_idle_time},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_.Run(job, progress);
           },

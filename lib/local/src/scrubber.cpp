@@ -1,7 +1,5 @@
 #include "pleat/local/scrubber.h"
 
-#include <pthread.h>
-
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/thread_priority.h"
 
 namespace pleat {
 namespace {
@@ -36,12 +35,6 @@ std::vector<FileToRead> FilesOf(Store* store) {
   }
   for (FileToRead& file : files) file.share /= all_bytes;
   return files;
-}
-
-// Takes processor time that nobody else wants, and only that.
-void UseIdleTime() {
-  const sched_param none{};
-  pthread_setschedparam(pthread_self(), SCHED_IDLE, &none);  // an error leaves it as it is
 }
 
 }  // namespace
@@ -83,7 +76,7 @@ bool Scrubber::RunPass(Store* store, double period_seconds, const Pause& pause) 
 
 Scrubber::Scrubber(Store* store, double period_seconds)
     : stop_(std::make_unique<Stop>()), thread_([this, store, period_seconds] {
-        UseIdleTime();
+        RunInIdleTime();
         const Pause pause = [this](double seconds) { return stop_->Pause(seconds); };
         while (RunPass(store, period_seconds, pause)) {
         }

@@ -1,5 +1,6 @@
 #include "pleat/grpc/grpc_server.h"
 
+#include <grpc/compression.h>
 #include <grpc/support/log.h>
 #include <grpcpp/channel.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
@@ -50,6 +51,15 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
   return grpc::SslServerCredentials(tls);
 }
 
+// gRPC 1.51 inflates a compressed message before it looks at its size: 14 MiB become 11 GB. So
+// nothing is inflated at all, and calls that announce compressed messages end with UNIMPLEMENTED.
+void RefuseCompression(grpc::ServerBuilder* builder) {
+  builder->AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
+  for (const grpc_compression_algorithm algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
+    builder->SetCompressionAlgorithmSupportStatus(algorithm, false);
+  }
+}
+
 void LogForGrpc(gpr_log_func_args* args) {
   const auto level = args->severity == GPR_LOG_SEVERITY_ERROR  ? spdlog::level::warn
                      : args->severity == GPR_LOG_SEVERITY_INFO ? spdlog::level::debug
@@ -89,6 +99,7 @@ class GrpcServerImpl final : public GrpcServer {
     grpc::ResourceQuota quota("pleatd");
     builder.SetResourceQuota(quota.Resize(kMessageMemoryBytes));
     builder.SetMaxReceiveMessageSize(options.max_receive_bytes);
+    RefuseCompression(&builder);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);

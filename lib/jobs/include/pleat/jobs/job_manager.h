@@ -32,6 +32,9 @@ struct JobManagerOptions {
   int num_workers = 1;    // jobs that run at the same time
   int max_queued = 1000;  // jobs that wait; more are refused
   int max_attempts = 3;   // a job that took the server down this often fails
+  // The threads of jobs run in the processor time that nothing else wants, so that live sessions in
+  // the same process keep their pace.
+  bool in_idle_time = false;
   MonotonicClock clock = SteadySeconds;
 };
 

@@ -23,6 +23,7 @@ struct LocalServiceOptions {
   uint64_t reserve_bytes = uint64_t{256} << 20;  // space that is kept free on the disk
   int num_workers = 1;                           // jobs that run at the same time
   int num_threads_per_job = 0;                   // 0 = one per core
+  bool jobs_in_idle_time = false;                // jobs take what live sessions leave
   int num_pose_threads = 0;                      // 0 = one per core
   int max_batch = 8;                             // live poses of a model evaluated together
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
