@@ -1,5 +1,6 @@
 // pleatd: the Pleat server. Exit codes: 0 ended by a signal, 1 cannot run, 2 wrong command line.
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <csignal>
 #include <cstdio>
@@ -22,11 +23,20 @@ std::string Address(const GrpcServerOptions& options, int port) {
   return options.listen.substr(0, colon + 1) + std::to_string(port);
 }
 
+// As many file descriptors as the system allows: every connection takes two.
+void RaiseDescriptorLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 int Run(const ServerOptions& options) {
   if (const absl::Status status = ConfigureLogging(options.logging); !status.ok()) {
     std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
     return 2;
   }
+  RaiseDescriptorLimit();
   // Every thread blocks these signals, so that only sigwait below sees them.
   sigset_t signals;
   sigemptyset(&signals);

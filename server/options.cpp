@@ -67,6 +67,13 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
                   "Uploads, downloads, watches, clips and live sessions together")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+  app->add_option("--max-connections", grpc->connections.max_connections, "Of all clients together")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--max-connections-per-peer", grpc->connections.max_connections_per_peer,
+                  "Of one address")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   app->add_option("--tls-cert", tls->certificate, "PEM file with the server's certificate chain");
   app->add_option("--tls-key", tls->key, "PEM file with its private key");
   app->add_option("--tls-client-ca", tls->client_ca,

@@ -17,6 +17,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/remote/remote_character_service.h"
 #include "pleat/v1/sequence_service.grpc.pb.h"
+#include "server/grpc/sockets.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -219,6 +220,29 @@ TEST(PleatdTest, ACompressedMessageIsRefusedBeforeItGrows) {
   EXPECT_LT(daemon.PeakBytes(), before + (64 << 20));
   request.set_id("small");
   EXPECT_EQ(code_of_call(GRPC_COMPRESS_NONE), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+// After a flood the server answers as before; 0.1.0 was deaf until it was restarted.
+TEST(PleatdTest, AFloodOfConnectionsEndsWhenItEnds) {
+  TemporaryFolder folder;
+  std::vector<std::string> flags = Flags(folder);
+  flags.insert(flags.end(), {"--max-connections-per-peer", "50"});
+  Daemon daemon(flags);
+  const std::string address = daemon.WaitForAddress();
+  const int port = std::stoi(address.substr(address.rfind(':') + 1));
+  {
+    std::vector<TcpClient> flood;
+    for (int i = 0; i < 300; ++i) flood.emplace_back(port, "127.0.0.2");
+    EXPECT_TRUE(flood.back().WaitForEnd());
+    // Other peers are served meanwhile.
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
+    EXPECT_THAT(client->sequences().List(), IsOk());
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
+  EXPECT_THAT(client->sequences().List(), IsOk());
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(), 0);
+  EXPECT_THAT(daemon.output(), HasSubstr("connections refused, the last from 127.0.0.2"));
 }
 
 TEST(PleatdTest, TellsTheOperatorWhatAStartFound) {

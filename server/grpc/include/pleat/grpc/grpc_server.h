@@ -14,6 +14,11 @@ class Channel;
 
 namespace pleat {
 
+struct ConnectionLimits {
+  int max_connections = 4096;           // fewer where the process may have too few file descriptors
+  int max_connections_per_peer = 1024;  // with one address
+};
+
 struct GrpcServerOptions {
   std::string listen = "127.0.0.1:0";  // HOST:PORT or unix:PATH; port 0 takes any free one
   // PEM texts; certificate and key come together. With client_ca, clients must show a certificate
@@ -26,6 +31,7 @@ struct GrpcServerOptions {
   // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
   // 1 GiB.
   int max_receive_bytes = 16 << 20;
+  ConnectionLimits connections{};
   int max_streams_per_connection = 128;
   int max_open_streams = 256;  // uploads, watches, clips, live sessions, downloads
 };
