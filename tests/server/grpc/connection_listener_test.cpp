@@ -6,7 +6,10 @@
 
 #include <condition_variable>
 #include <deque>
+#include <memory>
 #include <mutex>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "server/grpc/sockets.h"
@@ -124,17 +127,23 @@ TEST_F(ConnectionListenerTest, HearsAgainWhenDescriptorsAreBack) {
   for (int i = 0; i < 5; ++i) sockets.push_back(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
-  rlimit none = before;
-  none.rlim_cur = 3;  // below what is open: nothing new can be opened
-  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  rlimit few = before;
+  few.rlim_cur = 512;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<int> fillers;
+  for (int fd = 0; (fd = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0;) fillers.push_back(fd);
+  ASSERT_FALSE(fillers.empty());
   sockaddr_in address{};
   address.sin_family = AF_INET;
   inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
   address.sin_port = htons(static_cast<uint16_t>(listener_->port()));
   for (const int fd : sockets) {
     EXPECT_EQ(connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+    char byte = 0;
+    EXPECT_LE(recv(fd, &byte, 1, 0), 0);  // closed, not left to wait
   }
-  while (listener_->num_refused() == 0) std::this_thread::yield();
+  EXPECT_GE(listener_->num_refused(), sockets.size());
+  for (const int fd : fillers) close(fd);
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
   for (const int fd : sockets) close(fd);
   const TcpClient later = Connect();
