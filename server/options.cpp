@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <sstream>
 
@@ -107,6 +109,11 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
                  "How long running calls may go on after SIGTERM")
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
+  app.add_flag(
+      "--allow-unencrypted", line.options.exposure.allow_unencrypted,
+      "Let other machines connect without TLS: whoever can listen on the network sees all");
+  app.add_flag("--allow-root", line.options.exposure.allow_root,
+               "Let other machines connect to a server that runs as root");
   app.add_option("--log-level", line.options.logging.level,
                  "trace, debug, info, warning, error or off")
       ->capture_default_str();
@@ -121,7 +128,13 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
     return line;
   }
   line.options.service.scrub_seconds = 3600 * scrub_hours;
-  if (const absl::Status status = ReadTlsFiles(tls, &line.options.grpc); !status.ok()) {
+  Exposure& exposure = line.options.exposure;
+  exposure.listen = line.options.grpc.listen;
+  exposure.encrypted = !tls.certificate.empty();
+  exposure.is_root = geteuid() == 0;
+  absl::Status status = CheckExposure(exposure);
+  if (status.ok()) status = ReadTlsFiles(tls, &line.options.grpc);
+  if (!status.ok()) {
     line.exit = true;
     line.exit_code = 2;
     line.message = std::string(status.message()) + "\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "exposure.h"
 #include "pleat/grpc/grpc_server.h"
 #include "pleat/local/local_character_service.h"
 #include "pleat/observe/logging.h"
@@ -15,6 +16,7 @@ struct ServerOptions {
   LocalServiceOptions service;
   GrpcServerOptions grpc;
   LoggingOptions logging;
+  Exposure exposure;          // checked by ParseCommandLine
   double drain_seconds = 10;  // running calls may go on for so long after SIGTERM
 };
 

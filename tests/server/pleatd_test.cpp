@@ -264,6 +264,13 @@ TEST(PleatdTest, TellsTheOperatorWhatAStartFound) {
   EXPECT_THAT(daemon.output(), HasSubstr("1 files that no entry names were moved"));
 }
 
+TEST(PleatdTest, IsNotOpenToOtherMachinesByMistake) {
+  TemporaryFolder folder;
+  Daemon daemon({"--data-dir", folder.path(), "--listen", "0.0.0.0:0"});
+  EXPECT_EQ(daemon.Wait(), 2);
+  EXPECT_THAT(daemon.output(), HasSubstr("--allow-unencrypted"));
+}
+
 TEST(PleatdTest, LogsJson) {
   TemporaryFolder folder;
   std::vector<std::string> flags = Flags(folder);

@@ -47,7 +47,9 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
   const std::string& data_dir = options.data_dir;
   if (data_dir.empty()) return absl::InvalidArgumentError("the data folder has no name");
   std::error_code error;
-  std::filesystem::create_directories(data_dir, error);
+  if (std::filesystem::create_directories(data_dir, error)) {
+    std::filesystem::permissions(data_dir, std::filesystem::perms::owner_all, error);
+  }
   if (error) {
     return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", data_dir, "'"));
   }
