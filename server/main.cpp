@@ -8,6 +8,8 @@
 #include <string>
 
 #include "options.h"
+#include "pleat/metrics/server_metrics.h"
+#include "service_gauges.h"
 
 namespace pleat {
 namespace {
@@ -51,10 +53,26 @@ int Run(const ServerOptions& options) {
   absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
       LocalCharacterService::Open(service_options);
   if (!service.ok()) return Fail(service.status());
+  ServerMetrics metrics;
+  const CallListener calls = {
+      [&](const std::string& method) { metrics.CallStarted(method); },
+      [&](const std::string& method, int status, double seconds) {
+        metrics.CallEnded(method, absl::StatusCodeToString(static_cast<absl::StatusCode>(status)),
+                          seconds);
+      }};
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
+  grpc.call_listener = &calls;
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
+  AddServiceGauges(service->get(), &metrics);
+  AddNetworkGauges(server->get(), &metrics);
+  if (!options.metrics_listen.empty()) {
+    if (const absl::Status status = metrics.Serve(options.metrics_listen); !status.ok()) {
+      return Fail(status);
+    }
+    spdlog::info("metrics at http://{}/metrics", options.metrics_listen);
+  }
   const std::string address = Address(options.grpc, (*server)->port());
   // This line goes to standard output, so that a script can wait for it and read the port.
   std::printf("listening on %s\n", address.c_str());
@@ -70,6 +88,7 @@ int Run(const ServerOptions& options) {
   (*service)->Shutdown();  // jobs are queued again, their watchers end
   spdlog::info("jobs have stopped");
   (*server)->Shutdown(options.drain_seconds);
+  metrics.StopServing();
   spdlog::info("pleatd has ended");
   return 0;
 }

@@ -114,6 +114,8 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
       "Let other machines connect without TLS: whoever can listen on the network sees all");
   app.add_flag("--allow-root", line.options.exposure.allow_root,
                "Let other machines connect to a server that runs as root");
+  app.add_option("--metrics-listen", line.options.metrics_listen,
+                 "HOST:PORT that answers GET /metrics for Prometheus, in plain text");
   app.add_option("--log-level", line.options.logging.level,
                  "trace, debug, info, warning, error or off")
       ->capture_default_str();

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "listening_socket.h"
 #include "pleat/remote/remote_character_service.h"
 #include "pleat/v1/sequence_service.grpc.pb.h"
 #include "server/grpc/sockets.h"
@@ -262,6 +263,39 @@ TEST(PleatdTest, TellsTheOperatorWhatAStartFound) {
   daemon.WaitForAddress();
   EXPECT_THAT(daemon.output(), HasSubstr(absl::StrCat("the file of '", id, "' is gone")));
   EXPECT_THAT(daemon.output(), HasSubstr("1 files that no entry names were moved"));
+}
+
+// The answer of an HTTP server to GET /metrics.
+std::string GetMetrics(int port) {
+  const TcpClient client(port);
+  const std::string request = "GET /metrics HTTP/1.0\r\n\r\n";
+  if (send(client.fd(), request.data(), request.size(), MSG_NOSIGNAL) < 0) return "";
+  std::string answer;
+  char buffer[4096];
+  for (ssize_t count; (count = recv(client.fd(), buffer, sizeof buffer, 0)) > 0;) {
+    answer.append(buffer, static_cast<size_t>(count));
+  }
+  return answer;
+}
+
+TEST(PleatdTest, AnswersPrometheus) {
+  TemporaryFolder folder;
+  // A port that is free now: the flag takes no 0, since Prometheus must know it.
+  const int port = ListeningSocket::Open("127.0.0.1:0")->port();
+  std::vector<std::string> flags = Flags(folder);
+  flags.insert(flags.end(), {"--metrics-listen", absl::StrCat("127.0.0.1:", port)});
+  Daemon daemon(flags);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                             RemoteCharacterService::Connect(daemon.WaitForAddress()));
+  EXPECT_THAT(client->sequences().Get(std::string(64, 'a')), testing::Not(IsOk()));
+  const std::string metrics = GetMetrics(port);
+  for (const char* line :
+       {"pleat_jobs{state=\"queued\"} 0", "pleat_memory_bytes{owner=\"models\"} 0",
+        "pleat_quarantined_files 0", "pleat_connections 1", "pleat_refused_connections 0",
+        "pleat_rpcs_total{method=\"/pleat.v1.SequenceService/GetSequence\",status=\"NOT_FOUND\"} "
+        "1"}) {
+    EXPECT_THAT(metrics, HasSubstr(line));
+  }
 }
 
 TEST(PleatdTest, IsNotOpenToOtherMachinesByMistake) {

@@ -118,6 +118,12 @@ std::vector<JobInfo> JobManager::List() const {
   return jobs;
 }
 
+size_t JobManager::CountInState(JobState state) const {
+  std::lock_guard lock(mutex_);
+  return static_cast<size_t>(std::ranges::count_if(
+      jobs_, [state](const auto& entry) { return entry.second->state() == state; }));
+}
+
 absl::Status JobManager::Cancel(const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
   bool was_waiting = false;

@@ -36,6 +36,16 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
             JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
             options.num_workers, options.jobs_in_idle_time) {}
 
+double LocalCharacterService::FreeDiskBytes() const {
+  const absl::StatusOr<uint64_t> bytes = files_.store().blobs().FreeBytes();
+  return bytes.ok() ? static_cast<double>(*bytes) : -1;
+}
+
+size_t LocalCharacterService::NumQuarantinedFiles() const {
+  const auto files = files_.store().quarantine().List();
+  return files.ok() ? files->size() : 0;
+}
+
 LocalCharacterService::~LocalCharacterService() { Shutdown(); }
 
 }  // namespace pleat

@@ -80,11 +80,16 @@ ConnectionListener::ConnectionListener(ListeningSocket socket, ConnectionLimits 
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       reserve_(open("/dev/null", O_RDONLY | O_CLOEXEC)) {}
 
-ConnectionListener::~ConnectionListener() {
+void ConnectionListener::Stop() {
+  if (!thread_.joinable()) return;
   stopping_ = true;
   const uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = write(wake_, &one, sizeof one);
-  if (thread_.joinable()) thread_.join();
+  thread_.join();
+}
+
+ConnectionListener::~ConnectionListener() {
+  Stop();
   for (const auto& [watcher, peer] : watchers_) close(watcher);
   for (const int fd : {epoll_, wake_, reserve_}) {
     if (fd >= 0) close(fd);

@@ -30,8 +30,10 @@ class ConnectionListener {
   // Errors of ListeningSocket::Open. The descriptors that the process may have bound the limits.
   static absl::StatusOr<std::unique_ptr<ConnectionListener>> Open(const std::string& address,
                                                                   ConnectionLimits limits);
-  ~ConnectionListener();  // stops listening; connections that were handed over go on
+  ~ConnectionListener();  // calls Stop
 
+  // Stops accepting; connections that were handed over go on.
+  void Stop();
   void Start(HandOver hand_over, OnRefused on_refused);
   int port() const { return socket_.port(); }
   int num_open() const { return num_open_.load(std::memory_order_relaxed); }

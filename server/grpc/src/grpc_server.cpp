@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "call_listening.h"
 #include "connection_listener.h"
 #include "pleat/base/status.h"
 #include "services.h"
@@ -112,6 +113,9 @@ class GrpcServerImpl final : public GrpcServer {
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
+    if (options.call_listener != nullptr) {
+      builder.experimental().SetInterceptorCreators(MakeCallListening(options.call_listener));
+    }
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
@@ -129,6 +133,8 @@ class GrpcServerImpl final : public GrpcServer {
   }
 
   int port() const override { return port_; }
+  int num_connections() const override { return listener_->num_open(); }
+  uint64_t num_refused_connections() const override { return listener_->num_refused(); }
 
   std::shared_ptr<grpc::Channel> InProcessChannel() override {
     return server_->InProcessChannel(grpc::ChannelArguments());
@@ -141,7 +147,7 @@ class GrpcServerImpl final : public GrpcServer {
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
     context_.live_sessions.DrainAll();
     WaitForCalls(drain_seconds);
-    listener_.reset();
+    listener_->Stop();
     // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
     server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);
     server_->Wait();
@@ -172,7 +178,7 @@ class GrpcServerImpl final : public GrpcServer {
   std::vector<std::unique_ptr<grpc::Service>> services_;
   std::mutex shutdown_mutex_;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
-  std::unique_ptr<ConnectionListener> listener_;  // null from Shutdown on
+  std::unique_ptr<ConnectionListener> listener_;
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
 };

@@ -72,6 +72,7 @@ class JobManager {
   absl::StatusOr<JobInfo> Create(JobInfo draft);
   absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
   std::vector<JobInfo> List() const;                         // oldest first
+  size_t CountInState(JobState state) const;
   // kNotFound, kFailedPrecondition when the job has ended, or the error of saving it.
   absl::Status Cancel(const std::string& id);
   absl::StatusOr<std::shared_ptr<JobStateMachine>> Find(const std::string& id) const;

@@ -53,6 +53,10 @@ class LocalCharacterService final : public CharacterService {
   // The ids of entries whose file was gone when the data folder was opened.
   const std::vector<std::string>& missing_files() const { return files_.missing_files(); }
 
+  // For an operator. Free bytes of the disk: -1 when it does not answer.
+  double FreeDiskBytes() const;
+  size_t NumQuarantinedFiles() const;
+
   // Stops the workers and ends all subscriptions. Jobs that run are queued for the next process.
   void Shutdown() { jobs_.Shutdown(); }
 

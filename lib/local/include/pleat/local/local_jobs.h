@@ -30,6 +30,8 @@ class LocalJobs final : public JobService {
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
       const std::string& id, std::function<void()> listener) override;
 
+  size_t CountInState(JobState state) const { return manager_.CountInState(state); }
+
   // Takes over the jobs of the process before and starts the workers. Call once.
   absl::Status Start();
   // Stops the workers and ends all subscriptions. Jobs that run are queued for the next process.

@@ -28,7 +28,7 @@ class StoredFiles {
 
   Catalog& catalog() { return store_->catalog(); }
   UploadArea& uploads() { return store_->uploads(); }
-  Store& store() { return *store_; }
+  Store& store() const { return *store_; }
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 

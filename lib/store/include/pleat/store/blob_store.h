@@ -70,6 +70,8 @@ class BlobStore {
     return space_->Reserve(bytes);
   }
 
+  absl::StatusOr<uint64_t> FreeBytes() const { return space_->FreeBytes(); }
+
   const std::string& folder() const { return folder_; }
   // Where the file of `id`, which must be a content id, is or would be.
   std::string PathOf(const std::string& id) const;

@@ -50,6 +50,7 @@ class DiskSpace : public std::enable_shared_from_this<DiskSpace> {
   // kResourceExhausted when the disk would have less than the reserve once everything that is
   // promised has been written.
   absl::StatusOr<SpaceReservation> Reserve(uint64_t bytes);
+  absl::StatusOr<uint64_t> FreeBytes() const { return ask_(); }
 
  private:
   friend class SpaceReservation;
