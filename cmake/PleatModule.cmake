@@ -76,6 +76,7 @@ function(pleat_add_tests name)
   else()
     pleat_use_precompiled(${name}_test test)
   endif()
+  pleat_compile_in_batches(${name}_test)
   gtest_discover_tests(${name}_test TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600 LABELS ${name})
 endfunction()

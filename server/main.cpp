@@ -1,5 +1,6 @@
 // pleatd: the Pleat server. Exit codes: 0 ended by a signal, 1 cannot run, 2 wrong command line.
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <csignal>
 #include <cstdio>
@@ -7,6 +8,8 @@
 #include <string>
 
 #include "options.h"
+#include "pleat/metrics/server_metrics.h"
+#include "service_gauges.h"
 
 namespace pleat {
 namespace {
@@ -22,11 +25,20 @@ std::string Address(const GrpcServerOptions& options, int port) {
   return options.listen.substr(0, colon + 1) + std::to_string(port);
 }
 
+// As many file descriptors as the system allows: every connection takes two.
+void RaiseDescriptorLimit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 int Run(const ServerOptions& options) {
   if (const absl::Status status = ConfigureLogging(options.logging); !status.ok()) {
     std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
     return 2;
   }
+  RaiseDescriptorLimit();
   // Every thread blocks these signals, so that only sigwait below sees them.
   sigset_t signals;
   sigemptyset(&signals);
@@ -35,16 +47,32 @@ int Run(const ServerOptions& options) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 
+  LocalServiceOptions service_options = options.service;
+  service_options.jobs_in_idle_time = true;
+  service_options.on_problem = [](const std::string& problem) { spdlog::error("{}", problem); };
   absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
-      LocalCharacterService::Open(options.service);
+      LocalCharacterService::Open(service_options);
   if (!service.ok()) return Fail(service.status());
-  for (const std::string& id : (*service)->missing_files()) {
-    spdlog::error("the file of '{}' is gone from the data folder; restore or delete it", id);
-  }
+  ServerMetrics metrics;
+  const CallListener calls = {
+      [&](const std::string& method) { metrics.CallStarted(method); },
+      [&](const std::string& method, int status, double seconds) {
+        metrics.CallEnded(method, absl::StatusCodeToString(static_cast<absl::StatusCode>(status)),
+                          seconds);
+      }};
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
+  grpc.call_listener = &calls;
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
+  AddServiceGauges(service->get(), &metrics);
+  AddNetworkGauges(server->get(), &metrics);
+  if (!options.metrics_listen.empty()) {
+    if (const absl::Status status = metrics.Serve(options.metrics_listen); !status.ok()) {
+      return Fail(status);
+    }
+    spdlog::info("metrics at http://{}/metrics", options.metrics_listen);
+  }
   const std::string address = Address(options.grpc, (*server)->port());
   // This line goes to standard output, so that a script can wait for it and read the port.
   std::printf("listening on %s\n", address.c_str());
@@ -60,6 +88,7 @@ int Run(const ServerOptions& options) {
   (*service)->Shutdown();  // jobs are queued again, their watchers end
   spdlog::info("jobs have stopped");
   (*server)->Shutdown(options.drain_seconds);
+  metrics.StopServing();
   spdlog::info("pleatd has ended");
   return 0;
 }

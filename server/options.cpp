@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <sstream>
 
@@ -8,11 +10,13 @@
 namespace pleat {
 namespace {
 
+constexpr double kScrubHours = 7 * 24;
+
 struct TlsPaths {
   std::string certificate, key, client_ca;
 };
 
-void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
+void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_hours) {
   app->add_option("--data-dir", service->data_dir, "Folder that keeps sequences, jobs and models")
       ->required();
   app->add_option("--workers", service->num_workers, "Jobs that run at the same time")
@@ -38,6 +42,10 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service) {
   app->add_option("--reserve-bytes", service->reserve_bytes, "Kept free on the disk")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
+  app->add_option("--scrub-hours", *scrub_hours,
+                  "Time in which every stored file is read and verified once; 0 = never")
+      ->check(CLI::Range(0., 8760.))
+      ->capture_default_str();
   ServiceLimits* limits = &service->limits;
   app->add_option("--max-upload-bytes", limits->max_upload_bytes, "Largest sequence file")
       ->transform(CLI::AsSizeValue(false))
@@ -60,6 +68,13 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
   app->add_option("--max-open-streams", grpc->max_open_streams,
                   "Uploads, downloads, watches, clips and live sessions together")
       ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  app->add_option("--max-connections", grpc->connections.max_connections, "Of all clients together")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--max-connections-per-peer", grpc->connections.max_connections_per_peer,
+                  "Of one address")
+      ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   app->add_option("--tls-cert", tls->certificate, "PEM file with the server's certificate chain");
   app->add_option("--tls-key", tls->key, "PEM file with its private key");
@@ -88,11 +103,19 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
   app.set_version_flag("--version", PLEAT_VERSION);
   AddNetworkFlags(&app, &line.options.grpc, &tls);
-  AddServiceFlags(&app, &line.options.service);
+  double scrub_hours = kScrubHours;
+  AddServiceFlags(&app, &line.options.service, &scrub_hours);
   app.add_option("--drain-seconds", line.options.drain_seconds,
                  "How long running calls may go on after SIGTERM")
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
+  app.add_flag(
+      "--allow-unencrypted", line.options.exposure.allow_unencrypted,
+      "Let other machines connect without TLS: whoever can listen on the network sees all");
+  app.add_flag("--allow-root", line.options.exposure.allow_root,
+               "Let other machines connect to a server that runs as root");
+  app.add_option("--metrics-listen", line.options.metrics_listen,
+                 "HOST:PORT that answers GET /metrics for Prometheus, in plain text");
   app.add_option("--log-level", line.options.logging.level,
                  "trace, debug, info, warning, error or off")
       ->capture_default_str();
@@ -106,7 +129,14 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
     line.message = out.str();
     return line;
   }
-  if (const absl::Status status = ReadTlsFiles(tls, &line.options.grpc); !status.ok()) {
+  line.options.service.scrub_seconds = 3600 * scrub_hours;
+  Exposure& exposure = line.options.exposure;
+  exposure.listen = line.options.grpc.listen;
+  exposure.encrypted = !tls.certificate.empty();
+  exposure.is_root = geteuid() == 0;
+  absl::Status status = CheckExposure(exposure);
+  if (status.ok()) status = ReadTlsFiles(tls, &line.options.grpc);
+  if (!status.ok()) {
     line.exit = true;
     line.exit_code = 2;
     line.message = std::string(status.message()) + "\n";

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "exposure.h"
 #include "pleat/grpc/grpc_server.h"
 #include "pleat/local/local_character_service.h"
 #include "pleat/observe/logging.h"
@@ -15,7 +16,9 @@ struct ServerOptions {
   LocalServiceOptions service;
   GrpcServerOptions grpc;
   LoggingOptions logging;
-  double drain_seconds = 10;  // running calls may go on for so long after SIGTERM
+  std::string metrics_listen;  // HOST:PORT, empty = no metrics
+  Exposure exposure;           // checked by ParseCommandLine
+  double drain_seconds = 10;   // running calls may go on for so long after SIGTERM
 };
 
 // What the command line asks for: options, or a text to print and an exit code (for --help, for

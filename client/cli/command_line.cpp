@@ -40,6 +40,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddModelsVerb(*app, session);
   AddCompressedVerb(*app, session);
   AddBenchVerb(*app, session);
+  AddStoreVerb(*app, session);
   AddVersionVerb(*app, session);
   return app;
 }

@@ -31,6 +31,9 @@ absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& ses
   if (!session.local) return Connect(session);
   LocalServiceOptions options;
   options.data_dir = session.DataFolder();
+  options.on_problem = [err = session.err](const std::string& problem) {
+    *err << "warning: " << problem << "\n";
+  };
   return LocalCharacterService::Open(std::move(options));
 }
 

@@ -10,6 +10,7 @@
 
 #include "pleat/skinning/user_rig.h"
 #include "support/fake_training.h"
+#include "support/not_a_number.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -33,8 +34,6 @@ TEST_P(CharacterModelMisfitTest, IsNamed) {
   EXPECT_THAT(CharacterModel::Create(std::move(parts)),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(GetParam().words)));
 }
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const Misfit kMisfits[] = {
     {"history", [](Parts& p) { p.options.history = 0; }},

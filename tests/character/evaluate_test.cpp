@@ -14,17 +14,10 @@ using ::testing::HasSubstr;
 using ::testing::Key;
 using ::testing::UnorderedElementsAre;
 
-EvaluateOptions Options(EvaluationProtocol protocol) {
-  EvaluateOptions options;
-  options.protocol = protocol;
-  options.train = FastTrainOptions();
-  return options;
-}
-
 TEST(EvaluateTest, HeldOutFramesAreBetterThanSkinningAndTheMean) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
                              EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
-                                               Options(EvaluationProtocol::kEvery5th)));
+                                               FastEvaluateOptions(EvaluationProtocol::kEvery5th)));
   EXPECT_EQ(report.num_test_frames, 12);
   EXPECT_EQ(report.num_train_frames, 48);
   EXPECT_LT(report.hybrid.mean_percent, 0.5 * report.skinned.mean_percent);
@@ -38,9 +31,10 @@ TEST(EvaluateTest, HeldOutFramesAreBetterThanSkinningAndTheMean) {
 }
 
 TEST(EvaluateTest, ReconstructionIsNearZeroForEveryLearner) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
-                             EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
-                                               Options(EvaluationProtocol::kReconstruct)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const EvaluateReport report,
+      EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
+                        FastEvaluateOptions(EvaluationProtocol::kReconstruct)));
   for (const auto& [name, errors] : report.learners) {
     EXPECT_LT(errors.mean_percent, 0.15 * report.skinned.mean_percent) << name;
   }
@@ -58,7 +52,7 @@ TEST(EvaluateTest, NothingThatIsLearnedSeesTheTestFrames) {
   for (const int t : split.test) frames[t].colwise() += Eigen::Vector3f(0.5f, 0, 0.25f);
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence shifted,
                              MeshSequence::Create(sequence.topology(), std::move(frames)));
-  const EvaluateOptions options = Options(EvaluationProtocol::kLast30);
+  const EvaluateOptions options = FastEvaluateOptions(EvaluationProtocol::kLast30);
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport plain,
                              EvaluateCharacter(sequence, std::nullopt, options));
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport moved,
@@ -86,7 +80,7 @@ TEST(EvaluateTest, NeitherTrainingNorSelectionSeesTestFrames) {
     }
     PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence crumpled,
                                MeshSequence::Create(sequence.topology(), std::move(frames)));
-    EvaluateOptions options = Options(protocol);
+    EvaluateOptions options = FastEvaluateOptions(protocol);
     options.train.learner = LearnerChoice::kAuto;
     options.train.iterations = 20;
     options.learners.clear();
@@ -104,13 +98,13 @@ TEST(EvaluateTest, NeitherTrainingNorSelectionSeesTestFrames) {
 
 TEST(EvaluateTest, CrossNeedsASecondClipOfTheSameMesh) {
   EXPECT_THAT(EvaluateCharacter(SmallPerformer().sequence, std::nullopt,
-                                Options(EvaluationProtocol::kCross)),
+                                FastEvaluateOptions(EvaluationProtocol::kCross)),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("second clip")));
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const Performer other,
       GeneratePerformer({.character_seed = 2, .num_frames = 5, .num_vertices = 900}));
   EXPECT_THAT(EvaluateCharacter(SmallPerformer().sequence, other.sequence,
-                                Options(EvaluationProtocol::kCross)),
+                                FastEvaluateOptions(EvaluationProtocol::kCross)),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("connectivity")));
 }
 
@@ -119,7 +113,7 @@ TEST(EvaluateTest, SeveralClipsTeachMoreThanOne) {
                              GeneratePerformer({.seed = 5, .num_frames = 60, .num_vertices = 900}));
   PLEAT_ASSERT_OK_AND_ASSIGN(const Performer test,
                              GeneratePerformer({.seed = 9, .num_frames = 25, .num_vertices = 900}));
-  EvaluateOptions options = Options(EvaluationProtocol::kCross);
+  EvaluateOptions options = FastEvaluateOptions(EvaluationProtocol::kCross);
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport one,
                              EvaluateCharacter(SmallPerformer().sequence, test.sequence, options));
   options.more_training_clips = {more.sequence};
@@ -138,7 +132,7 @@ TEST(EvaluateTest, CrossTestsEveryFrameOfTheSecondClip) {
                              GeneratePerformer({.seed = 9, .num_frames = 25, .num_vertices = 900}));
   // With the first rig; so little is left by a refined one that 60 frames of another motion do not
   // teach it.
-  EvaluateOptions options = Options(EvaluationProtocol::kCross);
+  EvaluateOptions options = FastEvaluateOptions(EvaluationProtocol::kCross);
   options.train.refine = RigRefinement::kNone;
   PLEAT_ASSERT_OK_AND_ASSIGN(const EvaluateReport report,
                              EvaluateCharacter(SmallPerformer().sequence, other.sequence, options));

@@ -15,13 +15,6 @@ using ::testing::HasSubstr;
 constexpr Experiment kAll[] = {Experiment::kFullVsFine, Experiment::kRepresentations,
                                Experiment::kResolutions, Experiment::kSkinnedVsHybrid};
 
-EvaluateOptions Options(EvaluationProtocol protocol) {
-  EvaluateOptions options;
-  options.protocol = protocol;
-  options.train = FastTrainOptions();
-  return options;
-}
-
 const ExperimentRow& RowNamed(const ExperimentReport& report, const std::string& start) {
   for (const ExperimentRow& row : report.rows) {
     if (row.variant.name.rfind(start, 0) == 0) return row;
@@ -65,7 +58,7 @@ TEST(ExperimentTest, FineDetailsBeatTheFullDeformation) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const ExperimentReport report,
       RunExperiment(SmallPerformer().sequence, std::nullopt, Experiment::kFullVsFine,
-                    Options(EvaluationProtocol::kBlocks10)));
+                    FastEvaluateOptions(EvaluationProtocol::kBlocks10)));
   ASSERT_EQ(report.rows.size(), 2u);
   const EvaluateReport& fine = RowNamed(report, "fine").report;
   const EvaluateReport& full = RowNamed(report, "full").report;
@@ -76,7 +69,7 @@ TEST(ExperimentTest, FineDetailsBeatTheFullDeformation) {
 }
 
 TEST(ExperimentTest, RowsAreWhatAnEvaluationOfTheirOptionsGives) {
-  const EvaluateOptions options = Options(EvaluationProtocol::kLast30);
+  const EvaluateOptions options = FastEvaluateOptions(EvaluationProtocol::kLast30);
   PLEAT_ASSERT_OK_AND_ASSIGN(const ExperimentReport report,
                              RunExperiment(SmallPerformer().sequence, std::nullopt,
                                            Experiment::kRepresentations, options));
@@ -98,7 +91,7 @@ TEST(ExperimentTest, ResolutionsGoFromAllVerticesToFivePercent) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const ExperimentReport report,
       RunExperiment(SmallPerformer().sequence, std::nullopt, Experiment::kResolutions,
-                    Options(EvaluationProtocol::kReconstruct)));
+                    FastEvaluateOptions(EvaluationProtocol::kReconstruct)));
   ASSERT_EQ(report.rows.size(), 6u);
   for (size_t i = 1; i < 6; ++i) {
     EXPECT_LT(report.rows[i].report.num_control_vertices,
@@ -108,7 +101,7 @@ TEST(ExperimentTest, ResolutionsGoFromAllVerticesToFivePercent) {
 }
 
 TEST(ExperimentTest, HybridIsMeasuredAgainstSkinningLearnersAndBaselines) {
-  EvaluateOptions options = Options(EvaluationProtocol::kBlocks10);
+  EvaluateOptions options = FastEvaluateOptions(EvaluationProtocol::kBlocks10);
   options.learners = {LearnerChoice::kRidge, LearnerChoice::kGp};
   PLEAT_ASSERT_OK_AND_ASSIGN(const ExperimentReport report,
                              RunExperiment(SmallPerformer().sequence, std::nullopt,

@@ -6,14 +6,13 @@
 
 #include "pleat/character/pose_evaluator.h"
 #include "support/fake_training.h"
+#include "support/not_a_number.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class PoseParametersTest : public ::testing::Test {
  protected:

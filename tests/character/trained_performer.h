@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "pleat/character/evaluate.h"
 #include "pleat/character/train_character.h"
 #include "pleat/performer/performer.h"
 
@@ -15,6 +16,12 @@ inline const Performer& SmallPerformer() {
 }
 
 inline TrainOptions FastTrainOptions() { return {.learner = LearnerChoice::kGp}; }
+inline EvaluateOptions FastEvaluateOptions(EvaluationProtocol protocol) {
+  EvaluateOptions options;
+  options.protocol = protocol;
+  options.train = FastTrainOptions();
+  return options;
+}
 
 inline std::shared_ptr<const CharacterModel> SmallCharacter() {
   static const std::shared_ptr<const CharacterModel> model =

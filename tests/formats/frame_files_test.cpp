@@ -9,8 +9,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
 absl::Status Sort(const std::vector<std::string>& paths,
                   std::vector<std::string>* sorted = nullptr) {
   const absl::StatusOr<FrameFiles> files = SortFrameFiles(paths);

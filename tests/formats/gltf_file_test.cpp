@@ -16,8 +16,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
 // Two buffers of three floats each: one beside the file, one in the text ("1 2 3" as base64).
 class GltfFileTest : public testing::Test {
  protected:

@@ -17,8 +17,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
 json Valid() {
   return json::parse(R"({"schema": "pleat.motion/1", "fps": 25, "joints": ["head", "hips"],
     "frames": [{"root_translation": [0, 1, 2], "rotations": [[1, 0, 0, 0], [0, 2, 0, 0]]},

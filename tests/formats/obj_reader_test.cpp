@@ -13,9 +13,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
-absl::StatusOr<MeshFile> Decode(std::string_view text, const MeshLimits& limits = {}) {
+absl::StatusOr<MeshFile> DecodeText(std::string_view text, const MeshLimits& limits = {}) {
   return DecodeObj(text, "m.obj", limits);
 }
 
@@ -24,10 +22,10 @@ constexpr char kFour[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 TEST(ObjReaderTest, ReadsVerticesAndEveryFormOfFace) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode(absl::StrCat("# comment\n", kFour,
-                          "v -1.5e-2 +2 3e1 1.0 0.2 0.3\nvt 0 0\nvt 1 0.5 0\nvn 0 0 1\n"
-                          "f 1 2 3\nf 1/1 2/2 3/1 4/2\nf 1//1 3//1 4//1\n"
-                          "f 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -5 -4 -1\n")));
+      DecodeText(absl::StrCat("# comment\n", kFour,
+                              "v -1.5e-2 +2 3e1 1.0 0.2 0.3\nvt 0 0\nvt 1 0.5 0\nvn 0 0 1\n"
+                              "f 1 2 3\nf 1/1 2/2 3/1 4/2\nf 1//1 3//1 4//1\n"
+                              "f 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -5 -4 -1\n")));
   EXPECT_EQ(mesh.positions.cols(), 5);
   EXPECT_EQ(mesh.positions.col(4), Eigen::Vector3f(-1.5e-2f, 2, 30));
   ASSERT_EQ(mesh.topology.num_faces(), 5);
@@ -44,7 +42,7 @@ TEST(ObjReaderTest, ReadsVerticesAndEveryFormOfFace) {
 TEST(ObjReaderTest, KeepsDoubledAndLooseVertices) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode("v 0 0 0\nv 0 0 0\nv 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 4 5\nf 2 5 4\n"));
+      DecodeText("v 0 0 0\nv 0 0 0\nv 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 4 5\nf 2 5 4\n"));
   EXPECT_EQ(mesh.positions.cols(), 5);
   EXPECT_THAT(mesh.topology.face(1), ElementsAre(1, 4, 3));
 }
@@ -52,7 +50,7 @@ TEST(ObjReaderTest, KeepsDoubledAndLooseVertices) {
 TEST(ObjReaderTest, KeepsMaterials) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode(
+      DecodeText(
           absl::StrCat("mtllib my file.mtl\n", kFour,
                        "f 1 2 3\nusemtl red cloth\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl red cloth\n"
                        "f 1 2 3\n")));
@@ -63,14 +61,14 @@ TEST(ObjReaderTest, KeepsMaterials) {
 
 TEST(ObjReaderTest, LineEndsContinuationsAndForwardReferences) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh,
-                             Decode("f 1 2 \\\r\n 3\r\nv 0 0 0\r\n\r\nv 1 0 0\r\nv 0 1 0"));
+                             DecodeText("f 1 2 \\\r\n 3\r\nv 0 0 0\r\n\r\nv 1 0 0\r\nv 0 1 0"));
   EXPECT_THAT(mesh.topology.face(0), ElementsAre(0, 1, 2));
   EXPECT_EQ(mesh.positions(1, 2), 1);
 }
 
 // Whatever stands around the statements, the vertices and faces are these.
 void ExpectTwoTriangles(const std::string& text) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(text));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeText(text));
   ASSERT_EQ(mesh.positions.cols(), 4) << text;
   EXPECT_EQ(mesh.positions.col(0), Eigen::Vector3f(0, 0, 0)) << text;
   EXPECT_EQ(mesh.positions.col(3), Eigen::Vector3f(0, 1, 0)) << text;
@@ -118,52 +116,55 @@ std::string NoteOf(const MeshFile& mesh, std::string_view kind) {
 TEST(ObjReaderTest, SmallFacesAreLeftOutCountedAndSaid) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile two,
-      Decode(absl::StrCat(kFour, "usemtl a\nf 1 2 3\nf 1/1 2\nusemtl b\nf 1 3 4\nf 2 3\n")));
+      DecodeText(absl::StrCat(kFour, "usemtl a\nf 1 2 3\nf 1/1 2\nusemtl b\nf 1 3 4\nf 2 3\n")));
   ASSERT_EQ(two.topology.num_faces(), 2);
   EXPECT_THAT(two.appearance.face_materials, ElementsAre(0, 1));
   EXPECT_EQ(NoteOf(two, "faces_left_out"), "2 faces with 2 corners left out (the first in line 7)");
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mixed,
-                             Decode(absl::StrCat(kFour, "f\nf 1 2 3\nf 1\n")));
+                             DecodeText(absl::StrCat(kFour, "f\nf 1 2 3\nf 1\n")));
   EXPECT_EQ(NoteOf(mixed, "faces_left_out"),
             "2 faces with fewer than 3 corners left out (the first in line 5)");
   // What is left out may still not name vertices that cannot be.
-  EXPECT_THAT(Decode(absl::StrCat(kFour, "f 1 2 3\nf 0 1\n")), HasStatus(kInvalid, testing::_));
+  EXPECT_THAT(DecodeText(absl::StrCat(kFour, "f 1 2 3\nf 0 1\n")), HasStatus(kInvalid, testing::_));
 }
 
 TEST(ObjReaderTest, NormalsAndTextureCoordinatesNeverRefuseAFile) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode(
+      DecodeText(
           absl::StrCat(kFour, "vt 0,5 1\nvt 1 1\nf 1/1/0 2/2/0 3/3/-9\nf 1/0/ 3/-7/1 4/-1/8\n")));
   EXPECT_THAT(mesh.appearance.corner_texcoords, ElementsAre(0, 1, -1, -1, -1, 1));
   EXPECT_EQ(mesh.appearance.texcoords[0], Eigen::Vector2f::Zero());
   EXPECT_THAT(NoteOf(mesh, "texcoords_missing"), HasSubstr("missing for 3 corners, ignored"));
   EXPECT_THAT(NoteOf(mesh, "texcoords_unreadable"), HasSubstr("(line 5)"));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile none, Decode(absl::StrCat(kFour, "f 1/1 2/2 3/3\n")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile none,
+                             DecodeText(absl::StrCat(kFour, "f 1/1 2/2 3/3\n")));
   EXPECT_TRUE(none.appearance.corner_texcoords.empty());
 }
 
 TEST(ObjReaderTest, WhatIsDroppedIsSaidOnce) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode("o a\nv 0 0 0 1 0 .5\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nvn 0 0 1\ng b\ns 1\nl 1 2\n"
-             "f 1 2 3\ns off\n"));
+      DecodeText("o a\nv 0 0 0 1 0 .5\nv 1 0 0 1 1 1\nv 0 1 0 0 0 0\nvn 0 0 1\ng b\ns 1\nl 1 2\n"
+                 "f 1 2 3\ns off\n"));
   EXPECT_EQ(NoteOf(mesh, "not_kept"),
             "not kept: vertex colors, normals (computed where they are needed), 2 groups and "
             "objects, smoothing groups, 1 line or point");
   EXPECT_EQ(mesh.notes.size(), 1u);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile plain, Decode(absl::StrCat(kFour, "s off\nf 1 2 3\n")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile plain,
+                             DecodeText(absl::StrCat(kFour, "s off\nf 1 2 3\n")));
   EXPECT_TRUE(plain.notes.empty());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile curves,
-                             Decode(absl::StrCat(kFour, "f 1 2 3\ncstype bezier\ncurv 0 1 1 2\n")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const MeshFile curves,
+      DecodeText(absl::StrCat(kFour, "f 1 2 3\ncstype bezier\ncurv 0 1 1 2\n")));
   EXPECT_FALSE(NoteOf(curves, "surfaces_left_out").empty());
 }
 
 TEST(ObjReaderTest, NamesAreUtf8) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode(absl::StrCat("mtllib B\xe6r.mtl\n", kFour,
-                          "usemtl B\xe6r\nf 1 2 3\nusemtl B\xf8r\nf 1 3 4\n")));
+      DecodeText(absl::StrCat("mtllib B\xe6r.mtl\n", kFour,
+                              "usemtl B\xe6r\nf 1 2 3\nusemtl B\xf8r\nf 1 3 4\n")));
   EXPECT_EQ(mesh.appearance.material_library, "B\xc3\xa6r.mtl");
   EXPECT_THAT(mesh.appearance.material_names, ElementsAre("B\xc3\xa6r", "B\xc3\xb8r"));
   EXPECT_THAT(NoteOf(mesh, "names_not_utf8"), HasSubstr("3 names are not UTF-8"));
@@ -190,36 +191,36 @@ TEST(ObjReaderTest, FaultsComeWithFileAndLine) {
       {"v 0 0 0\\\n\nv x\n", "m.obj:3: "},
   };
   for (const auto& [text, message] : kCases) {
-    EXPECT_THAT(Decode(text), HasStatus(kInvalid, HasSubstr(message))) << text;
+    EXPECT_THAT(DecodeText(text), HasStatus(kInvalid, HasSubstr(message))) << text;
   }
 }
 
 TEST(ObjReaderTest, EmptyAndForeignFilesAreNamed) {
-  EXPECT_THAT(Decode(""), HasStatus(kInvalid, HasSubstr("m.obj: the file is empty")));
-  EXPECT_THAT(Decode("<html>not a mesh</html>\n"), HasStatus(kInvalid, HasSubstr("HTML")));
-  EXPECT_THAT(Decode("# nothing\n"), HasStatus(kInvalid, HasSubstr("the mesh is empty")));
-  EXPECT_THAT(Decode(kFour), HasStatus(kInvalid, HasSubstr("0 faces")));
+  EXPECT_THAT(DecodeText(""), HasStatus(kInvalid, HasSubstr("m.obj: the file is empty")));
+  EXPECT_THAT(DecodeText("<html>not a mesh</html>\n"), HasStatus(kInvalid, HasSubstr("HTML")));
+  EXPECT_THAT(DecodeText("# nothing\n"), HasStatus(kInvalid, HasSubstr("the mesh is empty")));
+  EXPECT_THAT(DecodeText(kFour), HasStatus(kInvalid, HasSubstr("0 faces")));
 }
 
 TEST(ObjReaderTest, NumbersTooSmallForFloatAreZero) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh,
-                             Decode("v 1e-60 -1e-400 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+                             DecodeText("v 1e-60 -1e-400 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
   EXPECT_EQ(mesh.positions.col(0), Eigen::Vector3f::Zero());
 }
 
 TEST(ObjReaderTest, NotANumberIsReadAndLeftToTheSequence) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh,
-                             Decode("v nan 0 0\nv 1 -inf 0\nv 0 1 -nan(ind)\nf 1 2 3\n"));
+                             DecodeText("v nan 0 0\nv 1 -inf 0\nv 0 1 -nan(ind)\nf 1 2 3\n"));
   EXPECT_TRUE(std::isnan(mesh.positions(0, 0)));
 }
 
 TEST(ObjReaderTest, LimitsAreKept) {
   const std::string text = absl::StrCat(kFour, "f 1 2 3\nf 1 3 4\n");
-  EXPECT_THAT(Decode(text, {.max_vertices = 3}),
+  EXPECT_THAT(DecodeText(text, {.max_vertices = 3}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit of 3")));
-  EXPECT_THAT(Decode(text, {.max_faces = 1}),
+  EXPECT_THAT(DecodeText(text, {.max_faces = 1}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("m.obj:6")));
-  EXPECT_THAT(Decode(text, {.max_vertices = 4, .max_faces = 2}), IsOk());
+  EXPECT_THAT(DecodeText(text, {.max_vertices = 4, .max_faces = 2}), IsOk());
 }
 
 TEST(ObjReaderTest, DamagedFilesFailCleanlyOrReadAValidMesh) {
@@ -227,7 +228,7 @@ TEST(ObjReaderTest, DamagedFilesFailCleanlyOrReadAValidMesh) {
       "mtllib a.mtl\n", kFour, "vt 0 1\nusemtl m\nf 1/1 2/1 -2/-1 4//9\nf 1/1/1 2/1 3/1\n");
   int num_valid = 0;
   const auto decode = [&](const std::string& damaged) {
-    const absl::StatusOr<MeshFile> mesh = Decode(damaged);
+    const absl::StatusOr<MeshFile> mesh = DecodeText(damaged);
     if (!mesh.ok()) return;
     ++num_valid;
     EXPECT_EQ(mesh->positions.cols(), mesh->topology.num_vertices());

@@ -58,7 +58,6 @@ TEST(Pc2Test, HeaderFaultsAndLimits) {
     std::memcpy(changed.data() + at, &value, 4);
     return DecodePointCache(changed, "a.pc2");
   };
-  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
   EXPECT_THAT(DecodePointCache("", "a.pc2"), HasStatus(kInvalid, HasSubstr("empty")));
   EXPECT_THAT(with(0, 0), HasStatus(kInvalid, HasSubstr("POINTCACHE2")));
   EXPECT_THAT(with(12, 2), HasStatus(kInvalid, HasSubstr("version 2")));

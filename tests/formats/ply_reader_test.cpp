@@ -17,9 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
-absl::StatusOr<MeshFile> Decode(std::string_view bytes, const MeshLimits& limits = {}) {
+absl::StatusOr<MeshFile> DecodeBytes(std::string_view bytes, const MeshLimits& limits = {}) {
   return DecodePly(bytes, "m.ply", limits);
 }
 
@@ -71,7 +69,7 @@ std::string BinaryPly(bool big_endian) {
 }
 
 TEST(PlyReaderTest, ReadsAsciiAmongOtherProperties) {
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(kAscii));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeBytes(kAscii));
   ASSERT_EQ(mesh.positions.cols(), 4);
   EXPECT_EQ(mesh.positions.col(1), Eigen::Vector3f(1, 0.1f, 0));
   EXPECT_EQ(mesh.positions.col(2), Eigen::Vector3f(1, 1, -20));
@@ -82,7 +80,7 @@ TEST(PlyReaderTest, ReadsAsciiAmongOtherProperties) {
 
 TEST(PlyReaderTest, ReadsBothByteOrders) {
   for (const bool big_endian : {false, true}) {
-    PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(BinaryPly(big_endian)));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeBytes(BinaryPly(big_endian)));
     ASSERT_EQ(mesh.positions.cols(), 3);
     EXPECT_EQ(mesh.positions.col(2), Eigen::Vector3f(1, -2.5f, -2)) << big_endian;
     EXPECT_THAT(mesh.topology.face(0), ElementsAre(2, 1, 0));
@@ -94,10 +92,10 @@ TEST(PlyReaderTest, ReadsBothByteOrders) {
 TEST(PlyReaderTest, ReadsTexcoordsOfCorners) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const MeshFile mesh,
-      Decode("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-             "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
-             "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
-             "3 0 1 2 6 0 0 1 0 0 1\n"));
+      DecodeBytes("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                  "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                  "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+                  "3 0 1 2 6 0 0 1 0 0 1\n"));
   EXPECT_THAT(mesh.appearance.corner_texcoords, ElementsAre(0, 1, 2));
   EXPECT_EQ(mesh.appearance.texcoords[1], Eigen::Vector2f(1, 0));
 }
@@ -116,7 +114,7 @@ std::string WithLineEnds(const char* end, std::string_view text = kSquare) {
 TEST(PlyReaderTest, LineEndsAndByteOrderMarksDoNotMatter) {
   for (const char* end : {"\n", "\r", "\r\n"}) {
     for (const char* mark : {"", "\xef\xbb\xbf"}) {
-      PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(mark + WithLineEnds(end)));
+      PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeBytes(mark + WithLineEnds(end)));
       EXPECT_EQ(mesh.positions.col(3), Eigen::Vector3f(0, 1, 0));
       EXPECT_THAT(mesh.topology.face(1), ElementsAre(0, 2, 3));
     }
@@ -130,9 +128,9 @@ TEST(PlyReaderTest, LineEndsAndByteOrderMarksDoNotMatter) {
   const float values[9] = {std::bit_cast<float>(0x3f80000au), 0, 0, 0, 1, 0, 0, 0, 1};
   binary.append(reinterpret_cast<const char*>(values), sizeof(values));
   binary.append("\3\0\1\2", 4);
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(binary));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeBytes(binary));
   EXPECT_EQ(mesh.positions(0, 0), values[0]);
-  EXPECT_THAT(Decode(WithLineEnds("\r").replace(WithLineEnds("\r").find("1 1 0"), 5, "1 1 x")),
+  EXPECT_THAT(DecodeBytes(WithLineEnds("\r").replace(WithLineEnds("\r").find("1 1 0"), 5, "1 1 x")),
               HasStatus(kInvalid, HasSubstr("line 12")));
 }
 
@@ -144,7 +142,7 @@ TEST(PlyReaderTest, SmallFacesAndWhatIsDroppedAreSaid) {
   for (const char* vertex : {"0 0 0\n1", "1 0 0\n1", "1 1 0\n0", "0 1 0\n3"}) {
     text.insert(text.find(vertex) + 5, " 9");
   }
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(text));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeBytes(text));
   EXPECT_EQ(mesh.topology.num_faces(), 2);
   ASSERT_EQ(mesh.notes.size(), 2u);
   EXPECT_EQ(mesh.notes[0].text, "2 faces with fewer than 3 corners left out");
@@ -155,18 +153,18 @@ TEST(PlyReaderTest, TriangleStripsBecomeTrianglesThatFaceOneWay) {
   std::string text = kSquare;
   text.replace(text.find("element face 2"), 14, "element tristrips 1");
   text.erase(text.find("3 0 1 2\n"));
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, Decode(text + "4 0 1 3 2\n"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile mesh, DecodeBytes(text + "4 0 1 3 2\n"));
   ASSERT_EQ(mesh.topology.num_faces(), 2);
   EXPECT_THAT(mesh.topology.face(0), ElementsAre(0, 1, 3));
   EXPECT_THAT(mesh.topology.face(1), ElementsAre(3, 1, 2));
   // -1 begins a new strip; repeated vertices make triangles without area, which are none.
-  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile two, Decode(text + "9 0 1 2 -1 0 2 2 3 1\n"));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshFile two, DecodeBytes(text + "9 0 1 2 -1 0 2 2 3 1\n"));
   ASSERT_EQ(two.topology.num_faces(), 2);
   EXPECT_THAT(two.topology.face(0), ElementsAre(0, 1, 2));
   EXPECT_THAT(two.topology.face(1), ElementsAre(2, 3, 1));
-  EXPECT_THAT(Decode(text + "4 0 1 3 9\n"), HasStatus(kInvalid, HasSubstr("vertex 9")));
-  EXPECT_THAT(Decode(text + "4 0 1 3 -2\n"), HasStatus(kInvalid, HasSubstr("vertex -2")));
-  EXPECT_THAT(Decode(text + "4 0 1 3 2\n", {.max_faces = 1}),
+  EXPECT_THAT(DecodeBytes(text + "4 0 1 3 9\n"), HasStatus(kInvalid, HasSubstr("vertex 9")));
+  EXPECT_THAT(DecodeBytes(text + "4 0 1 3 -2\n"), HasStatus(kInvalid, HasSubstr("vertex -2")));
+  EXPECT_THAT(DecodeBytes(text + "4 0 1 3 2\n", {.max_faces = 1}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit of 1")));
 }
 
@@ -176,32 +174,33 @@ TEST(PlyReaderTest, FaultsAreNamed) {
     text.replace(text.find(from), from.size(), to);
     return text;
   };
-  EXPECT_THAT(Decode(""), HasStatus(kInvalid, HasSubstr("m.ply: the file is empty")));
-  EXPECT_THAT(Decode("v 0 0 0\n"), HasStatus(kInvalid, HasSubstr("m.ply:1: a PLY file begins")));
-  EXPECT_THAT(Decode(replaced("ascii", "text")),
+  EXPECT_THAT(DecodeBytes(""), HasStatus(kInvalid, HasSubstr("m.ply: the file is empty")));
+  EXPECT_THAT(DecodeBytes("v 0 0 0\n"),
+              HasStatus(kInvalid, HasSubstr("m.ply:1: a PLY file begins")));
+  EXPECT_THAT(DecodeBytes(replaced("ascii", "text")),
               HasStatus(kInvalid, HasSubstr("m.ply:2: the format")));
-  EXPECT_THAT(Decode(replaced("double y", "real y")),
+  EXPECT_THAT(DecodeBytes(replaced("double y", "real y")),
               HasStatus(kInvalid, HasSubstr("m.ply:7: unknown property type")));
-  EXPECT_THAT(Decode(replaced("float z", "float w")),
+  EXPECT_THAT(DecodeBytes(replaced("float z", "float w")),
               HasStatus(kInvalid, HasSubstr("no scalar property z")));
-  EXPECT_THAT(Decode(replaced("vertex_index", "corners")),
+  EXPECT_THAT(DecodeBytes(replaced("vertex_index", "corners")),
               HasStatus(kInvalid, HasSubstr("no list vertex_indices or vertex_index")));
-  EXPECT_THAT(Decode(replaced("253 1 1", "253 1 one")),
+  EXPECT_THAT(DecodeBytes(replaced("253 1 1", "253 1 one")),
               HasStatus(kInvalid, HasSubstr("m.ply: line 18: cannot read vertex 2, y")));
-  EXPECT_THAT(Decode(replaced("4 0 1 2 3", "4 0 1 2 4")),
+  EXPECT_THAT(DecodeBytes(replaced("4 0 1 2 3", "4 0 1 2 4")),
               HasStatus(kInvalid, HasSubstr("face 1 names vertex 4")));
-  EXPECT_THAT(Decode(replaced("253 1 1 -2e1", "253 1 1 -2e1 7")),
+  EXPECT_THAT(DecodeBytes(replaced("253 1 1 -2e1", "253 1 1 -2e1 7")),
               HasStatus(kInvalid, HasSubstr("line 18: 5 values where the header declares 4")));
-  EXPECT_THAT(Decode(replaced("253 1 1 -2e1", "253 1 1")),
+  EXPECT_THAT(DecodeBytes(replaced("253 1 1 -2e1", "253 1 1")),
               HasStatus(kInvalid, HasSubstr("line 18: 3 values where the header declares 4")));
   EXPECT_THAT(
-      Decode(replaced("3 0 1 2 0.5", "3 0 1 2 0.5 1 0")),
+      DecodeBytes(replaced("3 0 1 2 0.5", "3 0 1 2 0.5 1 0")),
       HasStatus(kInvalid, HasSubstr("line 21: more values than the header declares for face 0")));
-  EXPECT_THAT(Decode(replaced("4 0 1 2 3", "4 0 1 -2 3")),
+  EXPECT_THAT(DecodeBytes(replaced("4 0 1 2 3", "4 0 1 -2 3")),
               HasStatus(kInvalid, HasSubstr("face 1")));
-  EXPECT_THAT(Decode(replaced("element vertex 4", "element vertex -4")),
+  EXPECT_THAT(DecodeBytes(replaced("element vertex 4", "element vertex -4")),
               HasStatus(kInvalid, HasSubstr("m.ply:4")));
-  EXPECT_THAT(Decode(std::string_view(kAscii).substr(0, 100)),
+  EXPECT_THAT(DecodeBytes(std::string_view(kAscii).substr(0, 100)),
               HasStatus(kInvalid, HasSubstr("end_header")));
 }
 
@@ -209,21 +208,21 @@ TEST(PlyReaderTest, CountsBeyondTheBytesOrTheLimitsAreRefusedBeforeAllocation) {
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 3000000\nproperty float x\n"
       "property float y\nproperty float z\nend_header\n0123";
-  EXPECT_THAT(Decode(header), HasStatus(kInvalid, HasSubstr("only 4 bytes follow")));
-  EXPECT_THAT(Decode(header, {.max_vertices = 1000}),
+  EXPECT_THAT(DecodeBytes(header), HasStatus(kInvalid, HasSubstr("only 4 bytes follow")));
+  EXPECT_THAT(DecodeBytes(header, {.max_vertices = 1000}),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit is 1000")));
   // A list that claims four billion entries.
   std::string list =
       "ply\nformat binary_little_endian 1.0\nelement extra 1\nproperty list uint double n\n"
       "end_header\n";
   list.append("\xff\xff\xff\xff", 4);
-  EXPECT_THAT(Decode(list), HasStatus(kInvalid, HasSubstr("length of list n")));
+  EXPECT_THAT(DecodeBytes(list), HasStatus(kInvalid, HasSubstr("length of list n")));
 }
 
 TEST(PlyReaderTest, DamagedFilesFailCleanlyOrReadAValidMesh) {
   for (const std::string& bytes : {std::string(kAscii), BinaryPly(false), BinaryPly(true)}) {
     const auto decode = [&](const std::string& damaged) {
-      const absl::StatusOr<MeshFile> mesh = Decode(damaged, {.max_vertices = 1000});
+      const absl::StatusOr<MeshFile> mesh = DecodeBytes(damaged, {.max_vertices = 1000});
       if (!mesh.ok()) return;
       EXPECT_EQ(mesh->positions.cols(), mesh->topology.num_vertices());
     };

@@ -19,8 +19,6 @@ using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
 std::string Edited(const SkinnedFigure& figure, const std::function<void(json&)>& edit) {
   FigureGltf gltf = MakeFigureGltf(figure);
   edit(gltf.root);

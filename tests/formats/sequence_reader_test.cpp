@@ -20,8 +20,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
 class SequenceReaderTest : public testing::Test {
  protected:
   // A box whose frames are scaled by 1 + frame.

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Eigen::MatrixXd SmoothOutputs(const Eigen::MatrixXd& x) {
+Eigen::MatrixXd WaveOutputs(const Eigen::MatrixXd& x) {
   Eigen::MatrixXd y(x.rows(), 2);
   y.col(0) = x.col(0).array().sin();
   y.col(1) = x.col(0).array().cos() * .5;
@@ -32,7 +32,7 @@ TEST(GpRegressionTrainTest, InputsAreCenteredWithUnitMeanSquaredNorm) {
 
 // Units do not matter: meters or millimeters in, degrees or radians out give the same function.
 TEST(GpRegressionTrainTest, ScaledInputsAndOutputsGiveTheScaledFunction) {
-  const Eigen::MatrixXd x = RandomMatrix(60, 2, 1), y = SmoothOutputs(x);
+  const Eigen::MatrixXd x = RandomMatrix(60, 2, 1), y = WaveOutputs(x);
   const Eigen::MatrixXd queries = .5 * RandomMatrix(10, 2, 3);
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp, GpRegression::Train(x, y));
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression scaled, GpRegression::Train(1000 * x, 7 * y));
@@ -51,7 +51,7 @@ TEST(GpRegressionTrainTest, GroupsThatSayNothingAreTurnedDown) {
   GpRegressionOptions options;
   options.input_groups = {{0, 1}, {2, 3}};  // only the first decides the outputs
   PLEAT_ASSERT_OK_AND_ASSIGN(const GpRegression gp,
-                             GpRegression::Train(x, SmoothOutputs(x), options));
+                             GpRegression::Train(x, WaveOutputs(x), options));
   const Eigen::VectorXd& scales = gp.parameters().input_scales;
   EXPECT_EQ(scales[0], scales[1]);
   EXPECT_EQ(scales[2], scales[3]);
@@ -74,7 +74,7 @@ TEST(GpRegressionTrainTest, GroupsMustBeDisjointColumns) {
 }
 
 TEST(GpRegressionTrainTest, ManyRowsAreKeptThroughAFewInducingOnes) {
-  const Eigen::MatrixXd x = RandomMatrix(200, 2, 1), y = SmoothOutputs(x);
+  const Eigen::MatrixXd x = RandomMatrix(200, 2, 1), y = WaveOutputs(x);
   GpRegressionOptions options;
   options.max_rows = 60;
   options.max_hyperparameter_rows = 80;
@@ -86,7 +86,7 @@ TEST(GpRegressionTrainTest, ManyRowsAreKeptThroughAFewInducingOnes) {
   Eigen::MatrixXd means;
   const Eigen::MatrixXd queries = .7 * RandomMatrix(50, 2, 3);
   means = PredictRows(gp, queries).means;
-  EXPECT_LT((means - SmoothOutputs(queries)).cwiseAbs().maxCoeff(), .05);
+  EXPECT_LT((means - WaveOutputs(queries)).cwiseAbs().maxCoeff(), .05);
 }
 
 TEST(GpRegressionTrainTest, DataThatDoNotAgreeAreToldWithTheirSizes) {
@@ -117,7 +117,7 @@ TEST(GpRegressionTrainTest, ConstantOutputsAndOneRowAreLearned) {
 TEST(GpRegressionTrainTest, CancellationIsHeard) {
   const Eigen::MatrixXd x = RandomMatrix(60, 2, 1);
   EXPECT_THAT(
-      GpRegression::Train(x, SmoothOutputs(x), {}, nullptr, Progress(nullptr, [] { return true; })),
+      GpRegression::Train(x, WaveOutputs(x), {}, nullptr, Progress(nullptr, [] { return true; })),
       HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 

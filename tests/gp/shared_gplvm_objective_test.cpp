@@ -11,7 +11,7 @@
 namespace pleat {
 namespace {
 
-constexpr int kNumRows = 12, kLatents = 2;
+constexpr int kNumSamples = 12, kLatents = 2;
 
 SharedGplvmOptions Options() {
   SharedGplvmOptions options = SharedGplvmOptions::Paper();
@@ -60,9 +60,9 @@ class SharedGplvmFormulaTest : public testing::Test {
     return model;
   }
 
-  const Eigen::MatrixXd poses_ = RandomMatrix(kNumRows, 4, 1);
-  const Eigen::MatrixXd details_ = RandomMatrix(kNumRows, 9, 2);
-  const Eigen::MatrixXd latents_ = RandomMatrix(kNumRows, kLatents, 3);
+  const Eigen::MatrixXd poses_ = RandomMatrix(kNumSamples, 4, 1);
+  const Eigen::MatrixXd details_ = RandomMatrix(kNumSamples, 9, 2);
+  const Eigen::MatrixXd latents_ = RandomMatrix(kNumSamples, kLatents, 3);
   const KernelLogs pose_{-.3, .2, -1, -1.5, 0};
   const KernelLogs detail_{.1, -.4, -1.2, -1.1, 0};
   const KernelLogs dynamics_{-.5, .3, 0, -1.3, -.8};
@@ -86,9 +86,9 @@ TEST_F(SharedGplvmFormulaTest, IsTheFormulaTermByTerm) {
 TEST_F(SharedGplvmFormulaTest, DynamicsAreOneMoreViewPlusThePriorOfFirstFrames) {
   SharedGplvmOptions options = Options();
   const SharedGplvm model = Model(options);
-  Eigen::MatrixXd inputs(kNumRows - 2, kLatents), outputs(kNumRows - 2, kLatents);
+  Eigen::MatrixXd inputs(kNumSamples - 2, kLatents), outputs(kNumSamples - 2, kLatents);
   int row = 0;
-  for (int t = 0; t < kNumRows; ++t) {
+  for (int t = 0; t < kNumSamples; ++t) {
     if (t == 0 || t == 5) continue;  // the clips begin here
     inputs.row(row) = latents_.row(t - 1);
     outputs.row(row++) = latents_.row(t);
@@ -120,9 +120,9 @@ TEST_F(SharedGplvmFormulaTest, TurningTheLatentSpaceChangesNothing) {
 
 // With X = K_b A the value is that of the free points K_b A.
 TEST_F(SharedGplvmFormulaTest, BackConstraintsAreAChangeOfUnknowns) {
-  const Eigen::MatrixXd r = RandomMatrix(kNumRows, kNumRows, 9);
+  const Eigen::MatrixXd r = RandomMatrix(kNumSamples, kNumSamples, 9);
   const Eigen::MatrixXd back_kernel =
-      (r + r.transpose()) / kNumRows + Eigen::MatrixXd::Identity(kNumRows, kNumRows);
+      (r + r.transpose()) / kNumSamples + Eigen::MatrixXd::Identity(kNumSamples, kNumSamples);
   SharedGplvmObjective constrained(MakeGramData(poses_).value(), MakeGramData(details_).value(),
                                    {0, 5}, back_kernel, 0, Options());
   SharedGplvmObjective free(MakeGramData(poses_).value(), MakeGramData(details_).value(), {0, 5},

@@ -10,112 +10,14 @@
 #include <set>
 #include <thread>
 
+#include "jobs/scripted_work.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
 namespace {
 
-using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using ::testing::HasSubstr;
-
-// A store that remembers the newest save of every job.
-class Journal {
- public:
-  SaveJob save() {
-    return [this](const JobInfo& info, int attempts) {
-      std::lock_guard lock(mutex_);
-      if (fail_) return absl::ResourceExhaustedError("disk full");
-      saved_[info.id] = {info, attempts};
-      return absl::OkStatus();
-    };
-  }
-  StoredJob at(const std::string& id) {
-    std::lock_guard lock(mutex_);
-    return saved_.at(id);
-  }
-  void Fail(bool fail) {
-    std::lock_guard lock(mutex_);
-    fail_ = fail;
-  }
-  size_t size() {
-    std::lock_guard lock(mutex_);
-    return saved_.size();
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, StoredJob> saved_;
-  bool fail_ = false;
-};
-
-JobInfo WaitForEnd(JobManager& jobs, const std::string& id) {
-  const auto job = jobs.Find(id).value();
-  JobSnapshot snapshot = job->snapshot();
-  const auto deadline = steady_clock::now() + std::chrono::seconds(10);
-  while (!IsFinal(snapshot.info.state) && steady_clock::now() < deadline) {
-    snapshot = job->WaitForChange(snapshot.revision, .2);
-  }
-  return snapshot.info;
-}
-
-RunJob Succeeds() {
-  return [](const JobInfo& info, const Progress& progress) -> absl::StatusOr<JobOutcome> {
-    if (absl::Status status = progress.Report(.5); !status.ok()) return status;
-    return JobOutcome{"model of " + info.name, {"careful"}};
-  };
-}
-
-// How many jobs run now and have run at most, and a wait for them.
-class Running {
- public:
-  void Enter() {
-    std::lock_guard lock(mutex_);
-    ++now_;
-    ++entered_;
-    most_ = std::max(most_, now_);
-    changed_.notify_all();
-  }
-  void Leave() {
-    std::lock_guard lock(mutex_);
-    --now_;
-  }
-  // Until `count` jobs have begun; false when that takes so long that they never will.
-  bool WaitForEntered(int count) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, std::chrono::seconds(30), [&] { return entered_ >= count; });
-  }
-  // A moment in which nothing is decided, between two looks at a flag that cannot notify.
-  void Pause() {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, milliseconds(1));
-  }
-  int most() {
-    std::lock_guard lock(mutex_);
-    return most_;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int now_ = 0, entered_ = 0, most_ = 0;
-};
-
-// Runs until it is cancelled.
-RunJob NeverEnds(Running* running) {
-  return [running](const JobInfo&, const Progress& progress) -> absl::StatusOr<JobOutcome> {
-    running->Enter();
-    while (!progress.cancelled()) running->Pause();
-    running->Leave();
-    return absl::CancelledError("stopped");
-  };
-}
-
-JobInfo Named(const std::string& name) {
-  JobInfo info;
-  info.name = name;
-  return info;
-}
 
 TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
   Journal journal;
@@ -214,60 +116,12 @@ TEST(JobManagerTest, FailuresAndExceptionsEndOneJobOnly) {
   const std::string fails = jobs.Create(Named("fails"))->id;
   const std::string good = jobs.Create(Named("good"))->id;
   EXPECT_EQ(WaitForEnd(jobs, good).state, JobState::kSucceeded);
-  EXPECT_THAT(jobs.Get(throws)->error, HasStatus(absl::StatusCode::kInternal, HasSubstr("boom")));
+  EXPECT_THAT(jobs.Get(throws)->error,
+              HasStatus(absl::StatusCode::kInternal, testing::Not(HasSubstr("boom"))));
   EXPECT_THAT(jobs.Get(memory)->error,
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("memory")));
   EXPECT_THAT(jobs.Get(fails)->error,
               HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("rig")));
-}
-
-TEST(JobManagerTest, ShutdownQueuesWhatWasRunning) {
-  Journal journal;
-  Running running;
-  std::string id;
-  {
-    JobManager jobs({}, NeverEnds(&running), journal.save());
-    jobs.Start();
-    id = jobs.Create(Named("x"))->id;
-    ASSERT_TRUE(running.WaitForEntered(1));
-    const auto start = steady_clock::now();
-    jobs.Shutdown();
-    EXPECT_LT(steady_clock::now() - start, std::chrono::seconds(1));
-    EXPECT_THAT(jobs.Create(Named("y")),
-                HasStatus(absl::StatusCode::kUnavailable, HasSubstr("shutting down")));
-  }
-  EXPECT_EQ(journal.at(id).info.state, JobState::kQueued);
-  EXPECT_EQ(journal.at(id).attempts, 0);
-
-  JobManager jobs({}, Succeeds(), journal.save());
-  jobs.Restore({journal.at(id)});
-  jobs.Start();
-  EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kSucceeded);
-}
-
-TEST(JobManagerTest, ACrashedJobRunsAgainThreeTimes) {
-  Journal journal;
-  JobInfo crashed = Named("x");
-  crashed.id = "job-crashed";
-  crashed.state = JobState::kRunning;
-  crashed.fraction = .7;
-  JobInfo hopeless = crashed;
-  hopeless.id = "job-hopeless";
-  JobInfo done = crashed;
-  done.id = "job-done";
-  done.state = JobState::kSucceeded;
-  JobManager jobs({}, Succeeds(), journal.save());
-  jobs.Restore({{crashed, 2}, {hopeless, 3}, {done, 1}});
-  EXPECT_EQ(jobs.Get("job-crashed")->state, JobState::kQueued);
-  EXPECT_EQ(jobs.Get("job-crashed")->fraction, 0);
-  EXPECT_EQ(jobs.Get("job-done")->state, JobState::kSucceeded);
-  EXPECT_EQ(jobs.Get("job-hopeless")->state, JobState::kFailed);
-  EXPECT_THAT(jobs.Get("job-hopeless")->error,
-              HasStatus(absl::StatusCode::kAborted, HasSubstr("3 times")));
-  EXPECT_EQ(journal.at("job-hopeless").info.state, JobState::kFailed);
-  jobs.Start();
-  EXPECT_EQ(WaitForEnd(jobs, "job-crashed").state, JobState::kSucceeded);
-  EXPECT_EQ(jobs.Find("job-crashed").value()->snapshot().attempts, 3);
 }
 
 TEST(JobManagerTest, WhoAsksDoesNotWaitForAJobThatIsSaved) {

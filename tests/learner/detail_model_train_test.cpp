@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kNumFrames = 50, kNumFeatures = 8, kNumDetails = 18;
+constexpr int kFrames = 50, kFeatures = 8, kDetails = 18;
 
 DetailModelOptions Options(Learner learner = Learner::kRidge) {
   DetailModelOptions options;
@@ -35,7 +35,7 @@ class DetailModelTrainTest : public testing::Test {
     return detail.cast<double>();
   }
 
-  const SyntheticMotion motion_ = MakeSyntheticMotion(kNumFrames, kNumFeatures, kNumDetails, 3);
+  const SyntheticMotion motion_ = MakeSyntheticMotion(kFrames, kFeatures, kDetails, 3);
 };
 
 TEST_F(DetailModelTrainTest, TheSummaryMeasuresTheModelOnItsOwnFrames) {
@@ -45,10 +45,10 @@ TEST_F(DetailModelTrainTest, TheSummaryMeasuresTheModelOnItsOwnFrames) {
   DetailModelSummary summary;
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model, Train(options, &summary));
   double square = 0;
-  for (int t = 0; t < kNumFrames; ++t) {
+  for (int t = 0; t < kFrames; ++t) {
     square += (Predict(model, t) - motion_.details.row(t).transpose()).squaredNorm();
   }
-  const double rms = std::sqrt(square / (kNumFrames * kNumDetails));
+  const double rms = std::sqrt(square / (kFrames * kDetails));
   EXPECT_NEAR(summary.training_rms, rms, .2 * rms);  // float32 and the rounded basis
   EXPECT_EQ(summary.num_components, model.num_components());
 }
@@ -68,7 +68,7 @@ TEST_F(DetailModelTrainTest, EnergyAndCapDecideTheComponents) {
 }
 
 TEST_F(DetailModelTrainTest, TheOutputMapIsAppliedToEveryPrediction) {
-  const Eigen::MatrixXd map = RandomMatrix(7, kNumDetails, 5);
+  const Eigen::MatrixXd map = RandomMatrix(7, kDetails, 5);
   DetailModelOptions options = Options();
   options.rounding = 0;
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel plain, Train(options));
@@ -95,8 +95,7 @@ TEST_F(DetailModelTrainTest, ATrainedGpIsTakenAsItIs) {
 }
 
 TEST_F(DetailModelTrainTest, DetailsThatNeverChangeAreLearnedAsTheyAre) {
-  const Eigen::MatrixXd constant =
-      Eigen::VectorXd::Ones(kNumFrames) * RandomMatrix(1, kNumDetails, 7);
+  const Eigen::MatrixXd constant = Eigen::VectorXd::Ones(kFrames) * RandomMatrix(1, kDetails, 7);
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
                              TrainDetailModel(motion_.features, constant, {0}, Options()));
   EXPECT_EQ(model.num_components(), 1);
@@ -106,13 +105,13 @@ TEST_F(DetailModelTrainTest, DetailsThatNeverChangeAreLearnedAsTheyAre) {
 TEST_F(DetailModelTrainTest, RegionsThatShareTheBodyAddUpToTheWhole) {
   // Two regions with the same features and shares that sum to one.
   DetailModelOptions options = Options(Learner::kRegional);
-  std::vector<int> all(kNumFeatures);
-  for (int i = 0; i < kNumFeatures; ++i) all[i] = i;
-  const Eigen::VectorXd weights = (RandomMatrix(kNumDetails, 1, 8).array().sin() * .5 + .5).col(0);
+  std::vector<int> all(kFeatures);
+  for (int i = 0; i < kFeatures; ++i) all[i] = i;
+  const Eigen::VectorXd weights = (RandomMatrix(kDetails, 1, 8).array().sin() * .5 + .5).col(0);
   options.regions = {{weights, {all}}, {1 - weights.array(), {all}}};
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model, Train(options));
   double square = 0;
-  for (int t = 0; t < kNumFrames; ++t) {
+  for (int t = 0; t < kFrames; ++t) {
     square += (Predict(model, t) - motion_.details.row(t).transpose()).squaredNorm();
   }
   const double spread =

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "pleat/local/local_sequences.h"
 #include "pleat/local/stored_files.h"
@@ -20,11 +21,18 @@ class DataFolder {
     sequences_.reset();
     files_.reset();  // gives the lock of the folder back
     files_ = std::make_unique<StoredFiles>(
-        Store::Open({.data_dir = folder_.path(), .reserve_bytes = 0}).value(), limits);
+        Store::Open({.data_dir = folder_.path(),
+                     .reserve_bytes = 0,
+                     .on_problem = [this](const std::string& text) { problems_.push_back(text); }})
+            .value(),
+        limits);
     sequences_ = std::make_unique<LocalSequences>(files_.get());
   }
   StoredFiles& files() { return *files_; }
   LocalSequences& sequences() { return *sequences_; }
+  const std::string& path() const { return folder_.path(); }
+  // What the operator was told.
+  const std::vector<std::string>& problems() const { return problems_; }
   // Where the content `id` lies.
   std::string PathOf(const std::string& id) const {
     return folder_.path() + "/blobs/" + id.substr(0, 2) + "/" + id;
@@ -41,6 +49,7 @@ class DataFolder {
 
  private:
   TemporaryFolder folder_;
+  std::vector<std::string> problems_;
   std::unique_ptr<StoredFiles> files_;
   std::unique_ptr<LocalSequences> sequences_;
 };

@@ -2,7 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
 #include "data_folder.h"
+#include "pleat/base/file.h"
 #include "pleat/formats/sequence_file.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
@@ -11,6 +17,7 @@ namespace pleat {
 namespace {
 
 using ::testing::_;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class LocalSequencesTest : public testing::Test {
@@ -103,6 +110,55 @@ TEST_F(LocalSequencesTest, ErrorsOfTheStoreArePassedOn) {
   EXPECT_EQ(sequences().List()->size(), 1u);
   folder_.Unblock(id);
   EXPECT_THAT(UploadBytes(id, bytes), IsOk());
+}
+
+// OK came back for content that was gone, and an upload of it was refused as known.
+TEST_F(LocalSequencesTest, UploadingDamagedOrMissingContentAgainRepairsIt) {
+  const std::function<void()> harms[] = {
+      [&] { std::filesystem::remove(folder_.PathOf(id_)); },
+      [&] {
+        ASSERT_THAT(WriteFile(folder_.PathOf(id_), std::string(bytes_.size(), '?')), IsOk());
+      }};
+  for (const bool in_pieces : {true, false}) {
+    for (const auto& harm : harms) {
+      ASSERT_THAT(UploadBytes(id_, bytes_), IsOk());
+      EXPECT_TRUE(sequences().QueryUpload(id_)->complete);
+      harm();
+      EXPECT_FALSE(sequences().QueryUpload(id_)->complete);
+      ASSERT_THAT(in_pieces ? UploadBytes(id_, bytes_) : sequences().Upload(tube_, {}).status(),
+                  IsOk());
+      EXPECT_TRUE(sequences().QueryUpload(id_)->complete);
+      EXPECT_THAT(sequences().Load(id_), IsOk());
+    }
+  }
+}
+
+TEST_F(LocalSequencesTest, ARowThatCannotBeReadHidesNoOther) {
+  ASSERT_THAT(UploadBytes(id_, bytes_), IsOk());
+  const std::string bad = std::string(64, 'b');
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kSequence, {bad, "\xff\xff"}), IsOk());
+  for (int round = 0; round < 2; ++round) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto infos, sequences().List());
+    ASSERT_EQ(infos.size(), 1u);
+    EXPECT_EQ(infos[0].id, id_);
+  }
+  EXPECT_THAT(folder_.problems(), ElementsAre(HasSubstr(bad)));  // said once
+  EXPECT_THAT(sequences().Get(bad), HasStatus(absl::StatusCode::kDataLoss, _));
+  EXPECT_THAT(sequences().Delete(bad), IsOk());
+}
+
+// Six uploads that passed the check together left a disk without a byte.
+TEST_F(LocalSequencesTest, UploadsReserveTheirRoom) {
+  folder_.Open({.max_upload_bytes = int64_t{1} << 60});
+  const uint64_t free_bytes = std::filesystem::space(folder_.path()).available;
+  std::vector<std::unique_ptr<SequenceUpload>> uploads;
+  for (const char digit : {'1', '2', '3', '4', '5', '6'}) {
+    auto upload = sequences().BeginUpload(std::string(64, digit), free_bytes * 2 / 5, 0);
+    if (upload.ok()) uploads.push_back(*std::move(upload));
+  }
+  EXPECT_EQ(uploads.size(), 2u);
+  uploads.pop_back();  // gives its room back
+  EXPECT_THAT(sequences().BeginUpload(std::string(64, '7'), free_bytes * 2 / 5, 0), IsOk());
 }
 
 }  // namespace

@@ -55,11 +55,21 @@ TEST_F(StoredFilesTest, ADownloadReportsAndCanBeCancelled) {
 }
 
 TEST_F(StoredFilesTest, AFileThatIsShorterThanItsRowSaysIsNoticed) {
-  std::filesystem::resize_file(folder_.PathOf(id_), 7);
-  EXPECT_THAT(files().Download(EntryKind::kModel, id_, 10, {}),
+  EXPECT_THAT(files().Download(EntryKind::kModel, id_, 11, {}),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("cut off")));
   std::filesystem::remove(folder_.PathOf(id_));
   EXPECT_FALSE(files().Download(EntryKind::kModel, id_, 10, {}).ok());
+}
+
+TEST_F(StoredFilesTest, NoByteOfADamagedFileIsGivenOut) {
+  std::filesystem::resize_file(folder_.PathOf(id_), 7);
+  EXPECT_THAT(files().ReadBytes(EntryKind::kModel, id_, 0, 4),
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr(id_)));
+  EXPECT_FALSE(std::filesystem::exists(folder_.PathOf(id_)));  // it is in quarantine
+  EXPECT_EQ(folder_.problems().size(), 1u);
+  EXPECT_THAT(files().Add(EntryKind::kModel, {id_, "a record"}, content_), IsOk());
+  EXPECT_TRUE(files().IsIntact(id_));
+  EXPECT_EQ(files().Read(id_).value(), content_);
 }
 
 TEST_F(StoredFilesTest, UploadsAreCheckedBeforeTheFirstByte) {

@@ -10,8 +10,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
-
 TEST(TopologyTest, KeepsPolygonsAndFansThem) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Topology topology,
                              Topology::Create(6, {0, 1, 2, 3, 5, 4, 3, 2, 1}, {4, 5}));

@@ -19,8 +19,8 @@ SimplexQpVector RandomVector(int n, double scale, Random* random) {
   return vector;
 }
 
-double Objective(const SimplexQpMatrix& hessian, const SimplexQpVector& linear,
-                 const SimplexQpVector& x) {
+double ObjectiveAt(const SimplexQpMatrix& hessian, const SimplexQpVector& linear,
+                   const SimplexQpVector& x) {
   return 0.5 * x.dot(hessian * x) - linear.dot(x);
 }
 
@@ -78,11 +78,11 @@ TEST(SimplexQp, NearlySingularMatricesStayFeasible) {
     hessian.diagonal().array() += 1e-9;
     SimplexQpVector x = SimplexQpVector::Unit(9, 0);
     const SimplexQpVector linear = RandomVector(9, 1, &random);
-    const double before = Objective(hessian, linear, x);
+    const double before = ObjectiveAt(hessian, linear, x);
     SolveSimplexQp(hessian, linear, &x);
     EXPECT_GE(x.minCoeff(), 0);
     EXPECT_NEAR(x.sum(), 1, 1e-12);
-    EXPECT_LE(Objective(hessian, linear, x), before + 1e-6);
+    EXPECT_LE(ObjectiveAt(hessian, linear, x), before + 1e-6);
   }
 }
 
@@ -129,7 +129,7 @@ TEST(SimplexQp, SparseSolutionIsOptimalAmongItsSupport) {
     SolveSparseSimplexQp(hessian, linear, 4, &sparse);
     ExpectFeasible(sparse);
     EXPECT_LE((sparse.array() > 0).count(), 4);
-    EXPECT_GE(Objective(hessian, linear, sparse), Objective(hessian, linear, full) - 1e-12);
+    EXPECT_GE(ObjectiveAt(hessian, linear, sparse), ObjectiveAt(hessian, linear, full) - 1e-12);
     if ((full.array() > 0).count() <= 4) {
       EXPECT_EQ(sparse, full);
     }

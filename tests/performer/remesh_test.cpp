@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d kLow(-1.6, -1.6, -1.6), kHigh(1.6, 1.6, 1.6);
+const Vector3d kBoxLow(-1.6, -1.6, -1.6), kBoxHigh(1.6, 1.6, 1.6);
 
 std::vector<double> EdgeLengths(const TriangleSoup& soup) {
   std::vector<double> lengths;
@@ -34,7 +34,7 @@ struct Case {
 
 TEST(RemeshTest, EdgesComeNearTheWantedLengthAndTheSurfaceStays) {
   for (const auto& [distance, characteristic] : {Case{Sphere, 2}, Case{Torus, 0}}) {
-    const TriangleSoup soup = ExtractIsosurface(distance, kLow, kHigh, .12, {}).value();
+    const TriangleSoup soup = ExtractIsosurface(distance, kBoxLow, kBoxHigh, .12, {}).value();
     for (const double wanted : {.08, .2}) {
       PLEAT_ASSERT_OK_AND_ASSIGN(
           const TriangleSoup remeshed,
@@ -57,7 +57,7 @@ TEST(RemeshTest, EdgesComeNearTheWantedLengthAndTheSurfaceStays) {
 }
 
 TEST(RemeshTest, FinerWhereFinerIsWanted) {
-  const TriangleSoup soup = ExtractIsosurface(Sphere, kLow, kHigh, .12, {}).value();
+  const TriangleSoup soup = ExtractIsosurface(Sphere, kBoxLow, kBoxHigh, .12, {}).value();
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const TriangleSoup remeshed,
       RemeshIsotropic(soup,
@@ -71,7 +71,7 @@ TEST(RemeshTest, FinerWhereFinerIsWanted) {
 }
 
 TEST(RemeshTest, TheResultIsTheSameEveryTimeAndCancellationIsHeard) {
-  const TriangleSoup soup = ExtractIsosurface(Sphere, kLow, kHigh, .2, {}).value();
+  const TriangleSoup soup = ExtractIsosurface(Sphere, kBoxLow, kBoxHigh, .2, {}).value();
   const RemeshOptions options{.distance = Sphere,
                               .edge_length = [](const Vector3d&) { return .15; }};
   const TriangleSoup a = RemeshIsotropic(soup, options, {}).value();

@@ -10,6 +10,7 @@
 
 #include "pleat/base/random.h"
 #include "pleat/rigging/auto_rig.h"
+#include "rigging/test_bodies.h"
 #include "support/capsule_figure.h"
 #include "support/status_matchers.h"
 
@@ -17,8 +18,6 @@ namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr double kHeight = 1.7;
 
 const CapsuleFigure& Figure() {
   static const CapsuleFigure& figure = *new CapsuleFigure(MakeCapsuleFigure());
@@ -31,10 +30,6 @@ TriangleMesh WithTriangles(const TriangleMesh& mesh, const std::vector<int>& kep
 
 TriangleMesh Turned(const TriangleMesh& mesh, const Eigen::Matrix3d& turn) {
   return {turn * mesh.positions, mesh.triangles};
-}
-
-Eigen::Matrix3d TurnAbout(const Eigen::Vector3d& axis, double degrees) {
-  return Eigen::AngleAxisd(degrees * EIGEN_PI / 180, axis.normalized()).toRotationMatrix();
 }
 
 // Faces taken out one by one, far from each other.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rigging/test_bodies.h"
 #include "support/capsule_figure.h"
 
 namespace pleat {
@@ -9,10 +10,6 @@ namespace {
 
 MainBody BodyOf(const BodyVolume& volume) {
   return FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
-}
-
-BodyVolume VolumeOf(const TriangleMesh& mesh) {
-  return ComputeBodyVolume(MakeTopology(mesh), mesh.positions, {.resolution = 64}).value();
 }
 
 // A search ends at the tip of the foot, and refinement leaves the ankle too low.

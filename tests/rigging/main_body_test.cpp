@@ -4,14 +4,11 @@
 
 #include <Eigen/Geometry>
 
+#include "rigging/test_bodies.h"
 #include "support/capsule_figure.h"
 
 namespace pleat {
 namespace {
-
-BodyVolume VolumeOf(const TriangleMesh& mesh) {
-  return ComputeBodyVolume(MakeTopology(mesh), mesh.positions, {.resolution = 64}).value();
-}
 
 TEST(MainBodyTest, WhatFloatsBesideTheCharacterIsLeftOut) {
   const TriangleMesh figure = MakeCapsuleFigure({.cell_m = .03}).mesh;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pleat/rigging/auto_rig.h"
+#include "rigging/test_bodies.h"
 #include "support/capsule_figure.h"
 #include "support/status_matchers.h"
 
@@ -17,10 +18,8 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-constexpr double kHeight = 1.7;
-
 // Mean distance of the joints of arms and legs, as a share of the height.
-double LimbError(const Eigen::Matrix3Xd& joints, const Eigen::Matrix3Xd& truth) {
+double RelativeLimbError(const Eigen::Matrix3Xd& joints, const Eigen::Matrix3Xd& truth) {
   return (joints - truth).rightCols(kNumHumanJoints - kLeftUpperLeg).colwise().norm().mean() /
          kHeight;
 }
@@ -46,10 +45,6 @@ TriangleMesh AsSoup(const TriangleMesh& mesh) {
   return soup;
 }
 
-Eigen::Matrix3d TurnAbout(const Eigen::Vector3d& axis, double degrees) {
-  return Eigen::AngleAxisd(degrees * EIGEN_PI / 180, axis.normalized()).toRotationMatrix();
-}
-
 struct Unclean {
   std::string name;
   CapsuleFigureOptions figure;
@@ -68,7 +63,7 @@ TEST_P(UncleanBodyTest, HasTheSkeletonOfTheFigure) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Rig rig, AutoRig(MakeStillSequence(mesh), {}, &summary));
   const Eigen::Matrix3Xd truth = MakeCapsuleFigure(unclean.figure).joints;
   const Eigen::Matrix3Xd joints = rig.skeleton.RestPositions();
-  EXPECT_LT(LimbError(joints, truth), unclean.most_error) << (joints - truth) / kHeight;
+  EXPECT_LT(RelativeLimbError(joints, truth), unclean.most_error) << (joints - truth) / kHeight;
   EXPECT_LT(summary.residual, unclean.most_residual);
   EXPECT_EQ(rig.weights.num_vertices(), mesh.positions.cols());
 }
@@ -166,7 +161,7 @@ TEST(UncleanBodies, PlacedJointsStayAndHelp) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const Rig rig, AutoRig(MakeStillSequence(figure.mesh), options));
   EXPECT_LT((rig.skeleton.rest_position(kLeftHand) - hand).norm(), 1e-9);
   EXPECT_LT((rig.skeleton.RestPositions() - figure.joints).col(kRightLowerLeg).norm(), 1e-9);
-  EXPECT_LT(LimbError(rig.skeleton.RestPositions(), figure.joints), .035);
+  EXPECT_LT(RelativeLimbError(rig.skeleton.RestPositions(), figure.joints), .035);
 
   const TriangleMesh beast = MakeCapsuleQuadruped(.05);
   options.placed_joints = {{kHead, {0, 1.6, 1.2}}};

@@ -155,7 +155,6 @@ TEST_P(ContractTest, ABadRigIsRefusedBeforeAJobExists) {
     EXPECT_THAT(service_.jobs().CreateTraining({.sequence_ids = {id}, .rig = rig}),
                 HasStatus(code, HasSubstr(word)));
   };
-  constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
   expect_refused("{", kInvalid, "not JSON");
   expect_refused(std::string("\0\xff\x80", 3), kInvalid, "not JSON");
   expect_refused("[]", kInvalid, "not a JSON object");

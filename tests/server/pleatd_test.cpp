@@ -1,16 +1,24 @@
 // The program itself: start, serve, end by a signal, start again on the same folder.
 #include <fcntl.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "listening_socket.h"
 #include "pleat/remote/remote_character_service.h"
+#include "pleat/v1/sequence_service.grpc.pb.h"
+#include "server/grpc/sockets.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -64,6 +72,15 @@ class Daemon {
     return "";
   }
   void Signal(int number) { kill(child_, number); }
+  // The most memory that it has had, in bytes.
+  uint64_t PeakBytes() const {
+    std::ifstream status(absl::StrCat("/proc/", child_, "/status"));
+    for (std::string word; status >> word;) {
+      uint64_t kilobytes = 0;
+      if (word == "VmHWM:" && status >> kilobytes) return kilobytes << 10;
+    }
+    return 0;
+  }
   // Waits for the end; exit code, or -signal.
   int Wait() {
     while (ReadMore()) {
@@ -175,6 +192,117 @@ TEST(PleatdTest, ExplainsItself) {
   Daemon tls(flags);
   EXPECT_EQ(tls.Wait(), 2);
   EXPECT_THAT(tls.output(), HasSubstr("/no/such/file"));
+}
+
+// 14 MiB of gzip became 10.9 GB in version 0.1.0, before any limit was looked at.
+TEST(PleatdTest, ACompressedMessageIsRefusedBeforeItGrows) {
+  TemporaryFolder folder;
+  Daemon daemon(Flags(folder));
+  const std::string address = daemon.WaitForAddress();
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxSendMessageSize(-1);
+  const auto stub = v1::SequenceService::NewStub(
+      grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments));
+  v1::GetSequenceRequest request;
+  request.set_id("small");
+  v1::GetSequenceResponse response;
+  const auto code_of_call = [&](grpc_compression_algorithm algorithm) {
+    grpc::ClientContext context;
+    context.set_compression_algorithm(algorithm);
+    return stub->GetSequence(&context, request, &response).error_code();
+  };
+  EXPECT_EQ(code_of_call(GRPC_COMPRESS_NONE), grpc::StatusCode::INVALID_ARGUMENT);
+  const uint64_t before = daemon.PeakBytes();
+  ASSERT_GT(before, 0u);
+  request.set_id(std::string(200 << 20, 'x'));  // 200 kB of gzip
+  for (const grpc_compression_algorithm algorithm : {GRPC_COMPRESS_GZIP, GRPC_COMPRESS_DEFLATE}) {
+    EXPECT_EQ(code_of_call(algorithm), grpc::StatusCode::UNIMPLEMENTED);
+  }
+  EXPECT_LT(daemon.PeakBytes(), before + (64 << 20));
+  request.set_id("small");
+  EXPECT_EQ(code_of_call(GRPC_COMPRESS_NONE), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+// After a flood the server answers as before; 0.1.0 was deaf until it was restarted.
+TEST(PleatdTest, AFloodOfConnectionsEndsWhenItEnds) {
+  TemporaryFolder folder;
+  std::vector<std::string> flags = Flags(folder);
+  flags.insert(flags.end(), {"--max-connections-per-peer", "50"});
+  Daemon daemon(flags);
+  const std::string address = daemon.WaitForAddress();
+  const int port = std::stoi(address.substr(address.rfind(':') + 1));
+  {
+    std::vector<TcpClient> flood;
+    for (int i = 0; i < 300; ++i) flood.emplace_back(port, "127.0.0.2");
+    EXPECT_TRUE(flood.back().WaitForEnd());
+    // Other peers are served meanwhile.
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
+    EXPECT_THAT(client->sequences().List(), IsOk());
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client, RemoteCharacterService::Connect(address));
+  EXPECT_THAT(client->sequences().List(), IsOk());
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(), 0);
+  EXPECT_THAT(daemon.output(), HasSubstr("connections refused, the last from 127.0.0.2"));
+}
+
+TEST(PleatdTest, TellsTheOperatorWhatAStartFound) {
+  TemporaryFolder folder;
+  std::string id;
+  {
+    Daemon daemon(Flags(folder));
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                               RemoteCharacterService::Connect(daemon.WaitForAddress()));
+    id = client->sequences().Upload(MakeSwayingTube(4), {})->id;
+    daemon.Signal(SIGTERM);
+    EXPECT_EQ(daemon.Wait(), 0);
+  }
+  const std::string path = folder.File("blobs/" + id.substr(0, 2) + "/" + id);
+  std::filesystem::rename(path, folder.File("blobs/" + std::string(64, 'a')));
+  Daemon daemon(Flags(folder));
+  daemon.WaitForAddress();
+  EXPECT_THAT(daemon.output(), HasSubstr(absl::StrCat("the file of '", id, "' is gone")));
+  EXPECT_THAT(daemon.output(), HasSubstr("1 files that no entry names were moved"));
+}
+
+// The answer of an HTTP server to GET /metrics.
+std::string GetMetrics(int port) {
+  const TcpClient client(port);
+  const std::string request = "GET /metrics HTTP/1.0\r\n\r\n";
+  if (send(client.fd(), request.data(), request.size(), MSG_NOSIGNAL) < 0) return "";
+  std::string answer;
+  char buffer[4096];
+  for (ssize_t count; (count = recv(client.fd(), buffer, sizeof buffer, 0)) > 0;) {
+    answer.append(buffer, static_cast<size_t>(count));
+  }
+  return answer;
+}
+
+TEST(PleatdTest, AnswersPrometheus) {
+  TemporaryFolder folder;
+  // A port that is free now: the flag takes no 0, since Prometheus must know it.
+  const int port = ListeningSocket::Open("127.0.0.1:0")->port();
+  std::vector<std::string> flags = Flags(folder);
+  flags.insert(flags.end(), {"--metrics-listen", absl::StrCat("127.0.0.1:", port)});
+  Daemon daemon(flags);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                             RemoteCharacterService::Connect(daemon.WaitForAddress()));
+  EXPECT_THAT(client->sequences().Get(std::string(64, 'a')), testing::Not(IsOk()));
+  const std::string metrics = GetMetrics(port);
+  for (const char* line :
+       {"pleat_jobs{state=\"queued\"} 0", "pleat_memory_bytes{owner=\"models\"} 0",
+        "pleat_quarantined_files 0", "pleat_connections 1", "pleat_refused_connections 0",
+        "pleat_rpcs_total{method=\"/pleat.v1.SequenceService/GetSequence\",status=\"NOT_FOUND\"} "
+        "1"}) {
+    EXPECT_THAT(metrics, HasSubstr(line));
+  }
+}
+
+TEST(PleatdTest, IsNotOpenToOtherMachinesByMistake) {
+  TemporaryFolder folder;
+  Daemon daemon({"--data-dir", folder.path(), "--listen", "0.0.0.0:0"});
+  EXPECT_EQ(daemon.Wait(), 2);
+  EXPECT_THAT(daemon.output(), HasSubstr("--allow-unencrypted"));
 }
 
 TEST(PleatdTest, LogsJson) {

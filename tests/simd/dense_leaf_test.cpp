@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "pleat/simd/dense.h"
+#include "simd/triangle_parts.h"
+#include "support/not_a_number.h"
 #include "support/random_data.h"
 
 namespace pleat {
@@ -13,7 +15,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Positive definite; NaN above the diagonal, which nothing may read.
@@ -23,8 +24,6 @@ MatrixXd LowerOfPositiveDefinite(int n) {
   k.triangularView<Eigen::StrictlyUpper>().setConstant(kNan);
   return k;
 }
-
-MatrixXd Lower(const MatrixXd& m) { return m.triangularView<Eigen::Lower>(); }
 
 // Cholesky's algorithm and the inverse of its factor by columns, entry by entry.
 void FactorPlainly(const MatrixXd& k, MatrixXd* l, MatrixXd* w) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pleat/simd/dense.h"
+#include "support/not_a_number.h"
 #include "support/random_data.h"
 
 namespace pleat {
@@ -16,7 +17,6 @@ namespace {
 using Eigen::MatrixXd;
 using enum DenseShape;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kGuard = 77;
 
 // A matrix as it is meant, and as it lies in memory: NaN where its shape says what the entry is,

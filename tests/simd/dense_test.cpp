@@ -7,12 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "simd/triangle_parts.h"
 #include "support/random_data.h"
 
 namespace pleat {
 namespace {
-
-Eigen::MatrixXd Lower(const Eigen::MatrixXd& m) { return m.triangularView<Eigen::Lower>(); }
 
 Eigen::MatrixXd RandomPositiveDefinite(int n) {
   const Eigen::MatrixXd a = RandomMatrix(n, n + 3, 5);

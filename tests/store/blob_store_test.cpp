@@ -61,9 +61,46 @@ TEST(BlobStoreTest, NoticesWhenTheDiskGivesOtherBytes) {
 
 TEST(BlobStoreTest, RemovesUnfinishedWritesOfACrash) {
   TemporaryFolder folder;
-  ASSERT_THAT(WriteFile(folder.File("ab/abc.tmp-123456"), "half"), IsOk());
+  const std::string unfinished = folder.File("aa/" + std::string(64, 'a') + ".tmp-123456");
+  // Names that Stage never gives are somebody else's files.
+  const std::string others[] = {folder.File("ab/abc.tmp-123456"), folder.File("notes.tmp-123456"),
+                                folder.File("aa/" + std::string(64, 'a') + ".tmp-1234567")};
+  ASSERT_THAT(WriteFile(unfinished, "half"), IsOk());
+  for (const std::string& other : others) ASSERT_THAT(WriteFile(other, "mine"), IsOk());
   PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
-  EXPECT_FALSE(std::filesystem::exists(folder.File("ab/abc.tmp-123456")));
+  EXPECT_FALSE(std::filesystem::exists(unfinished));
+  for (const std::string& other : others) EXPECT_TRUE(std::filesystem::exists(other)) << other;
+}
+
+TEST(BlobStoreTest, DamageIsFoundAndStoringTheContentAgainMendsIt) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(BlobStore blobs, BlobStore::Open(folder.path(), 0));
+  const std::string content(3'000'000, 'x');  // several steps
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string id, blobs.Put(content));
+  EXPECT_THAT(blobs.Verify(id), IsOk());
+  for (const size_t offset : {size_t{0}, content.size() - 1}) {
+    std::fstream(blobs.PathOf(id), std::ios::in | std::ios::out | std::ios::binary)
+        .seekp(static_cast<std::streamoff>(offset))
+        .put('y');
+    EXPECT_THAT(blobs.Verify(id), HasStatus(absl::StatusCode::kDataLoss, HasSubstr(id)));
+    // No path of the server in any text.
+    EXPECT_THAT(blobs.Get(id).status().message(), testing::Not(HasSubstr(folder.path())));
+    EXPECT_EQ(blobs.Put(content).value(), id);
+    EXPECT_THAT(blobs.Verify(id), IsOk());
+  }
+  ASSERT_THAT(blobs.Delete(id), IsOk());
+  EXPECT_THAT(blobs.Verify(id), HasStatus(absl::StatusCode::kNotFound, testing::_));
+}
+
+TEST(BlobStoreTest, OpenedReadOnlyItChangesNothing) {
+  TemporaryFolder folder;
+  const std::string unfinished = folder.File("aa/" + std::string(64, 'a') + ".tmp-123456");
+  ASSERT_THAT(WriteFile(unfinished, "half"), IsOk());
+  const BlobStore blobs = BlobStore::OpenReadOnly(folder.path());
+  EXPECT_TRUE(blobs.List()->empty());
+  EXPECT_TRUE(std::filesystem::exists(unfinished));
+  EXPECT_FALSE(BlobStore::OpenReadOnly(folder.File("missing")).List().ok());
+  EXPECT_FALSE(std::filesystem::exists(folder.File("missing")));
 }
 
 TEST(BlobStoreTest, KeepsTheReserve) {
@@ -138,7 +175,7 @@ TEST(BlobStoreTest, RangesAreExactUpToTheLargestNumbers) {
   for (const uint64_t offset : {uint64_t{11}, uint64_t{1} << 63, most}) {
     EXPECT_EQ(blobs.GetRange(id, offset, most).status().code(), absl::StatusCode::kOutOfRange);
   }
-  EXPECT_EQ(blobs.CheckSpace(most).code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(blobs.ReserveSpace(most).status().code(), absl::StatusCode::kResourceExhausted);
 }
 
 TEST(BlobStoreTest, FilesOfOthersAreNeitherListedNorRemoved) {

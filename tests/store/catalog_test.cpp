@@ -228,5 +228,68 @@ TEST(CatalogTest, DamageAnywhereIsNeverBelieved) {
   }
 }
 
+TEST(CatalogTest, ADeletedEntryLeavesItsFileToBeRemoved) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
+  for (const EntryKind kind : {EntryKind::kModel, EntryKind::kSequence, EntryKind::kJob}) {
+    ASSERT_THAT(catalog->Put(kind, {std::string(EntryKindName(kind)), "", 0}), IsOk());
+    ASSERT_THAT(catalog->Delete(kind, EntryKindName(kind)), IsOk());
+  }
+  EXPECT_THAT(catalog->PendingRemovals().value(), testing::ElementsAre("model", "sequence"));
+  ASSERT_THAT(catalog->Put(EntryKind::kRig, {"model", "", 0}), IsOk());  // whatever its kind
+  ASSERT_THAT(catalog->ForgetRemoval("sequence"), IsOk());
+  EXPECT_TRUE(catalog->PendingRemovals()->empty());
+  EXPECT_THAT(catalog->FileIds().value(), testing::ElementsAre("model"));
+  EXPECT_TRUE(catalog->NamesFile("model").value());
+  EXPECT_FALSE(catalog->NamesFile("sequence").value());
+}
+
+TEST(CatalogTest, ForgettingARemovalWaitsForNoSync) {
+  TemporaryFolder folder;
+  SyncGate gate;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db"), gate.hook()));
+  ASSERT_THAT(catalog->Put(EntryKind::kModel, {"a", "", 0}), IsOk());
+  ASSERT_THAT(catalog->Delete(EntryKind::kModel, "a"), IsOk());
+  gate.TakePaths();
+  ASSERT_THAT(catalog->ForgetRemoval("a"), IsOk());
+  EXPECT_TRUE(gate.TakePaths().empty());
+  ASSERT_THAT(catalog->Put(EntryKind::kModel, {"b", "", 0}), IsOk());
+  EXPECT_FALSE(gate.TakePaths().empty());
+}
+
+TEST(CatalogTest, KnowsItsStore) {
+  TemporaryFolder folder;
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
+    EXPECT_EQ(catalog->StoreId().value(), "");
+    ASSERT_THAT(catalog->SetStoreId("first"), IsOk());
+    ASSERT_THAT(catalog->SetStoreId("second"), IsOk());
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
+  EXPECT_EQ(catalog->StoreId().value(), "second");
+}
+
+TEST(CatalogTest, ReadOnlyItIsReadBesideAWriterAndChangesNothing) {
+  TemporaryFolder folder;
+  EXPECT_FALSE(Catalog::OpenReadOnly(folder.File("c.db")).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder.File("c.db")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto writer, Catalog::Open(folder.File("c.db")));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto reader, Catalog::OpenReadOnly(folder.File("c.db")));
+  ASSERT_THAT(writer->Put(EntryKind::kModel, {"a", "r", 0}), IsOk());
+  EXPECT_EQ(reader->Get(EntryKind::kModel, "a")->record, "r");
+  EXPECT_THAT(reader->Put(EntryKind::kModel, {"b", "", 0}),
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("readonly")));
+}
+
+TEST(CatalogTest, ACopyHoldsTheEntriesOfOneMoment) {
+  TemporaryFolder folder;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
+  ASSERT_THAT(catalog->Put(EntryKind::kModel, {"a", "r", 0}), IsOk());
+  ASSERT_THAT(catalog->CopyTo(folder.File("copy.db")), IsOk());
+  ASSERT_THAT(catalog->Put(EntryKind::kModel, {"b", "r", 0}), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto copy, Catalog::Open(folder.File("copy.db")));
+  EXPECT_THAT(copy->FileIds().value(), testing::ElementsAre("a"));
+}
+
 }  // namespace
 }  // namespace pleat

@@ -5,16 +5,13 @@
 #include <cmath>
 
 #include "pleat/base/random.h"
+#include "stream/draco_bytes.h"
 #include "support/test_meshes.h"
 
 namespace pleat {
 namespace {
 
 constexpr int64_t kMaxCoordinate = int64_t{1} << 26;
-
-QuantizationBox TorusBox(int bits = 12) {
-  return {.origin_m = {-1.6f, -.7f, -1.6f}, .range_m = 3.2f, .bits = bits};
-}
 
 Eigen::Matrix3Xi RandomIntegers(int count, int spread, uint64_t seed) {
   Random random(seed);

@@ -7,6 +7,7 @@
 
 #include "draco_bytes.h"
 #include "draco_encode.h"
+#include "stream/draco_bytes.h"
 #include "support/hostile_bytes.h"
 #include "support/status_matchers.h"
 #include "support/test_meshes.h"
@@ -17,10 +18,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr int kNumPoints = 80, kNumTriangles = 160;
-
-QuantizationBox TorusBox() {
-  return {.origin_m = {-1.6f, -.7f, -1.6f}, .range_m = 3.2f, .bits = 12};
-}
 
 const TestMesh& Torus() {
   static const TestMesh torus = MakeTorus(10, 8, 2);

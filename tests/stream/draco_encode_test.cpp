@@ -5,6 +5,7 @@
 #include "draco/compression/decode.h"
 #include "draco_bytes.h"
 #include "pleat/base/random.h"
+#include "stream/draco_bytes.h"
 #include "support/status_matchers.h"
 #include "support/test_meshes.h"
 
@@ -12,10 +13,6 @@ namespace pleat {
 namespace {
 
 constexpr int kBits = 14;
-
-QuantizationBox TorusBox() {
-  return {.origin_m = {-1.6f, -.7f, -1.6f}, .range_m = 3.2f, .bits = kBits};
-}
 
 // Draco's own decoder, unguarded: what any other reader makes of the bytes.
 std::unique_ptr<draco::PointCloud> DecodeWithDraco(const std::string& bytes) {
@@ -43,7 +40,7 @@ TEST(DracoEncodeTest, MeshesKeepPositionsNumbersAndTrianglesInBothMethods) {
   SetDracoPositions(torus.positions, {}, mesh.get());
   for (const MeshMethod method : {MeshMethod::kEdgebreaker, MeshMethod::kSequential}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                               DracoBytes(EncodeDracoMesh, *mesh, TorusBox(), method, 5));
+                               DracoBytes(EncodeDracoMesh, *mesh, TorusBox(kBits), method, 5));
     EXPECT_EQ(bytes.substr(0, 5), "DRACO");
     EXPECT_EQ(bytes[7], 1);  // a mesh
     EXPECT_EQ(bytes[8], method == MeshMethod::kEdgebreaker ? 1 : 0);
@@ -56,7 +53,7 @@ TEST(DracoEncodeTest, MeshesKeepPositionsNumbersAndTrianglesInBothMethods) {
       ASSERT_TRUE(vertex >= 0 && vertex < 80);
       ++seen[vertex];
       const Eigen::Vector3f error = ValueOf<3, float>(*decoded, 0, p) - torus.positions.col(vertex);
-      EXPECT_LE(error.cwiseAbs().maxCoeff(), .5 * TorusBox().step_m() + 1e-6);
+      EXPECT_LE(error.cwiseAbs().maxCoeff(), .5 * TorusBox(kBits).step_m() + 1e-6);
     }
     EXPECT_THAT(seen, testing::Each(1));
   }
@@ -70,14 +67,14 @@ TEST(DracoEncodeTest, CloudsKeepTheGivenOrder) {
   SetDracoPositions(torus.positions, order, cloud.get());
   for (const int speed : {0, 5, 10}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const std::string bytes,
-                               DracoBytes(EncodeDracoPointCloud, *cloud, TorusBox(), speed));
+                               DracoBytes(EncodeDracoPointCloud, *cloud, TorusBox(kBits), speed));
     EXPECT_EQ(bytes[8], 0) << "the kd-tree loses the order";
     const auto decoded = DecodeWithDraco(bytes);
     ASSERT_EQ(decoded->num_points(), 80u);
     for (int k = 0; k < 80; ++k) {
       const Eigen::Vector3f error =
           ValueOf<3, float>(*decoded, 0, k) - torus.positions.col(order[k]);
-      EXPECT_LE(error.cwiseAbs().maxCoeff(), .5 * TorusBox().step_m() + 1e-6) << k;
+      EXPECT_LE(error.cwiseAbs().maxCoeff(), .5 * TorusBox(kBits).step_m() + 1e-6) << k;
     }
   }
 }
@@ -139,7 +136,7 @@ TEST(DracoEncodeTest, TheSameInputGivesTheSameBytes) {
     SetDracoPositions(torus.positions, {}, mesh.get());
     PLEAT_ASSERT_OK_AND_ASSIGN(
         const std::string bytes,
-        DracoBytes(EncodeDracoMesh, *mesh, TorusBox(), MeshMethod::kEdgebreaker, 5));
+        DracoBytes(EncodeDracoMesh, *mesh, TorusBox(kBits), MeshMethod::kEdgebreaker, 5));
     if (round == 0) first = bytes;
     EXPECT_EQ(bytes, first);
   }

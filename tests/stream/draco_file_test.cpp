@@ -5,6 +5,7 @@
 #include "draco/compression/expert_encode.h"
 #include "draco_bytes.h"
 #include "draco_encode.h"
+#include "stream/draco_bytes.h"
 #include "support/hostile_bytes.h"
 #include "support/status_matchers.h"
 #include "support/test_meshes.h"
@@ -13,10 +14,6 @@ namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
-
-QuantizationBox TorusBox() {
-  return {.origin_m = {-1.6f, -.7f, -1.6f}, .range_m = 3.2f, .bits = 12};
-}
 
 std::string MeshBytes(const TestMesh& mesh, MeshMethod method) {
   const auto draco = MakeDracoMesh(mesh.topology.num_vertices(), mesh.topology.triangles());

@@ -11,6 +11,8 @@
 
 namespace pleat {
 
+inline constexpr auto kInvalid = absl::StatusCode::kInvalidArgument;
+
 inline absl::Status ToStatus(const absl::Status& status) { return status; }
 template <typename T>
 absl::Status ToStatus(const absl::StatusOr<T>& status_or) {

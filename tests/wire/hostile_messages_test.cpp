@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/hostile_bytes.h"
+#include "support/not_a_number.h"
 #include "support/status_matchers.h"
 #include "wire/full_samples.h"
 
@@ -22,7 +23,6 @@ namespace {
 using ::testing::HasSubstr;
 using Names = std::set<std::string>;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Every field of the message and of those inside is set, apart from those in `except`.

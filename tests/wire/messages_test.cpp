@@ -10,6 +10,7 @@
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
+#include "support/not_a_number.h"
 #include "support/option_choices.h"
 #include "support/status_matchers.h"
 #include "wire/message_samples.h"
@@ -19,8 +20,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Skeleton SmallSkeleton() {
   return Skeleton::Create({{"hips", -1, {0, 1, 0}}, {"chest", 0, {0, 1.4, .01}}}).value();

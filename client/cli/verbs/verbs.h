@@ -48,6 +48,7 @@ void AddSequencesVerb(CLI::App& app, Session& session);
 void AddJobsVerb(CLI::App& app, Session& session);
 void AddModelsVerb(CLI::App& app, Session& session);
 void AddCompressedVerb(CLI::App& app, Session& session);
+void AddStoreVerb(CLI::App& app, Session& session);
 void AddVersionVerb(CLI::App& app, Session& session);
 
 }  // namespace pleat

@@ -1,6 +1,7 @@
 #include "pleat/jobs/job_manager.h"
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <random>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "pleat/base/status.h"
+#include "pleat/base/thread_priority.h"
 
 namespace pleat {
 namespace {
@@ -25,29 +27,43 @@ JobManager::JobManager(JobManagerOptions options, RunJob run, SaveJob save)
 JobManager::~JobManager() { Shutdown(); }
 
 void JobManager::Restore(std::vector<StoredJob> jobs) {
+  const auto num_were_running = std::ranges::count(
+      jobs, JobState::kRunning, [](const StoredJob& stored) { return stored.info.state; });
   for (StoredJob& stored : jobs) {
-    const bool was_running = stored.info.state == JobState::kRunning;
     const std::string id = stored.info.id;
+    if (stored.info.state == JobState::kRunning) {
+      RestoreRunning({std::move(stored.info), stored.attempts, 0}, num_were_running == 1);
+      continue;
+    }
     auto job =
         std::make_shared<JobStateMachine>(std::move(stored.info), stored.attempts, options_.clock);
-    if (was_running && stored.attempts >= options_.max_attempts) {
-      job->Fail(absl::AbortedError(absl::StrCat(
-          "the server stopped ", stored.attempts,
-          " times while this job was running; it may need more memory than there is")));
-      Save(job.get());
-    } else if (was_running) {
-      // Requeue does not count the attempt, but this one took the server down.
-      JobSnapshot snapshot = job->snapshot();
-      snapshot.info.state = JobState::kQueued;
-      snapshot.info.fraction = 0;
-      job = std::make_shared<JobStateMachine>(snapshot.info, snapshot.attempts, options_.clock);
-      Save(job.get());
-    }
     std::lock_guard lock(mutex_);
     order_.push_back(id);
     if (job->snapshot().info.state == JobState::kQueued) queue_.push_back(job);
     jobs_.emplace(id, std::move(job));
   }
+}
+
+void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
+  const std::string id = snapshot.info.id;
+  // The attempt was counted when it began. Only of a job that ran alone is it known what it did.
+  if (!ran_alone && snapshot.attempts > 0) --snapshot.attempts;
+  snapshot.info.fraction = 0;
+  const bool is_hopeless = ran_alone && snapshot.attempts >= options_.max_attempts;
+  if (!is_hopeless) snapshot.info.state = JobState::kQueued;
+  auto job = std::make_shared<JobStateMachine>(snapshot.info, snapshot.attempts, options_.clock);
+  if (is_hopeless) {
+    job->Fail(absl::AbortedError(absl::StrCat(
+        "the server stopped ", snapshot.attempts,
+        " times while this job was running alone; it may need more memory than there is")));
+  }
+  Save(job.get());
+  std::lock_guard lock(mutex_);
+  order_.push_back(id);
+  jobs_.emplace(id, job);
+  if (is_hopeless) return;
+  suspects_.insert(id);
+  queue_.push_back(std::move(job));
 }
 
 void JobManager::Start() {
@@ -79,7 +95,7 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
     order_.push_back(draft.id);
     queue_.push_back(job);
   }
-  changed_.notify_one();
+  changed_.notify_all();  // one that may not take it would keep the word to itself
   return draft;
 }
 
@@ -102,16 +118,33 @@ std::vector<JobInfo> JobManager::List() const {
   return jobs;
 }
 
+size_t JobManager::CountInState(JobState state) const {
+  std::lock_guard lock(mutex_);
+  return static_cast<size_t>(std::ranges::count_if(
+      jobs_, [state](const auto& entry) { return entry.second->state() == state; }));
+}
+
 absl::Status JobManager::Cancel(const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
-  PLEAT_RETURN_IF_ERROR(job->RequestCancel());
   bool was_waiting = false;
   {
     std::lock_guard lock(mutex_);
     was_waiting = std::erase(queue_, job) > 0;
   }
-  if (was_waiting) Save(job.get());  // nobody else has it any more
-  return absl::OkStatus();
+  if (!was_waiting) return job->RequestCancel();  // its worker saves how it ends
+  const JobSnapshot snapshot = job->snapshot();
+  JobStateMachine draft(snapshot.info, snapshot.attempts, options_.clock);
+  absl::Status status = draft.RequestCancel();
+  if (status.ok()) status = save_(draft.snapshot().info, snapshot.attempts);
+  if (!status.ok()) {
+    {
+      std::lock_guard lock(mutex_);
+      queue_.push_front(job);
+    }
+    changed_.notify_all();
+    return status;
+  }
+  return job->RequestCancel();
 }
 
 void JobManager::Shutdown() {
@@ -120,6 +153,7 @@ void JobManager::Shutdown() {
     shutting_down_ = true;
   }
   changed_.notify_all();
+  stopped_.notify_all();
   for (std::thread& worker : workers_) worker.join();
   workers_.clear();
   // Those who watch a job that still waits learn that nothing more will come.
@@ -131,21 +165,37 @@ void JobManager::Shutdown() {
   for (const auto& job : waiting) job->Wake();
 }
 
+bool JobManager::MayStartNext() const {
+  if (queue_.empty() || runs_suspect_) return false;
+  return num_running_ == 0 || !suspects_.contains(queue_.front()->id());
+}
+
+std::shared_ptr<JobStateMachine> JobManager::TakeNext() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return shutting_down() || MayStartNext(); });
+  if (shutting_down()) return nullptr;
+  std::shared_ptr<JobStateMachine> job = std::move(queue_.front());
+  queue_.pop_front();
+  ++num_running_;
+  runs_suspect_ = suspects_.erase(job->id()) > 0;
+  return job;
+}
+
 void JobManager::Work() {
-  while (true) {
-    std::shared_ptr<JobStateMachine> job;
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return shutting_down() || !queue_.empty(); });
-      if (shutting_down()) return;
-      job = std::move(queue_.front());
-      queue_.pop_front();
-    }
+  if (options_.in_idle_time) RunInIdleTime();
+  while (const std::shared_ptr<JobStateMachine> job = TakeNext()) {
     if (job->Start()) {
       Save(job.get());
       RunOne(job.get());
+    } else {
+      Save(job.get());  // cancelled in this moment
     }
-    Save(job.get());
+    {
+      std::lock_guard lock(mutex_);
+      --num_running_;
+      if (num_running_ == 0) runs_suspect_ = false;
+    }
+    changed_.notify_all();
   }
 }
 
@@ -158,17 +208,45 @@ void JobManager::RunOne(JobStateMachine* job) {
   } catch (const std::bad_alloc&) {
     outcome = absl::ResourceExhaustedError(
         "the server has not enough memory for this job; use fewer frames or a lower resolution");
-  } catch (const std::exception& error) {
-    outcome = absl::InternalError(absl::StrCat("the job ended with an exception: ", error.what()));
+  } catch (const std::exception&) {
+    // Its text is for programmers and may name anything.
+    outcome = absl::InternalError("the job ended with an exception: a fault of Pleat");
   }
   if (outcome.ok()) {
-    job->Succeed(outcome->result_id, outcome->warnings);
+    End(job,
+        [&](JobStateMachine* it) { return it->Succeed(outcome->result_id, outcome->warnings); });
   } else if (outcome.status().code() != absl::StatusCode::kCancelled) {
-    job->Fail(outcome.status());
+    End(job, [&](JobStateMachine* it) { return it->Fail(outcome.status()); });
   } else if (job->cancel_requested()) {
-    job->Cancelled();
+    End(job, [](JobStateMachine* it) { return it->Cancelled(); });
   } else {
     job->Requeue();  // the server shuts down; the next process goes on
+    Save(job);
+  }
+}
+
+void JobManager::End(JobStateMachine* job, const EndJob& end) {
+  const JobSnapshot snapshot = job->snapshot();
+  JobStateMachine draft(snapshot.info, snapshot.attempts, options_.clock);
+  if (!end(&draft)) return;
+  if (SaveUntilDone(job, draft.snapshot())) {
+    end(job);
+  } else {
+    job->Requeue();  // the store still says that it runs, so the next process runs it again
+  }
+}
+
+bool JobManager::SaveUntilDone(JobStateMachine* job, const JobSnapshot& ended) {
+  for (bool is_first = true;; is_first = false) {
+    const absl::Status status = save_(ended.info, ended.attempts);
+    if (status.ok()) return true;
+    if (is_first) {
+      job->AddWarning(absl::StrCat("how the job ended cannot be saved yet: ",
+                                   absl::string_view(status.message())));
+    }
+    std::unique_lock lock(mutex_);
+    const std::chrono::duration<double> pause(options_.save_retry_seconds);
+    if (stopped_.wait_for(lock, pause, [this] { return shutting_down(); })) return false;
   }
 }
 

@@ -30,6 +30,11 @@ JobSnapshot JobStateMachine::snapshot() const {
   return state_;
 }
 
+JobState JobStateMachine::state() const {
+  std::lock_guard lock(mutex_);
+  return state_.info.state;
+}
+
 bool JobStateMachine::Start() {
   {
     std::lock_guard lock(mutex_);

@@ -30,4 +30,16 @@ ModelInfo MakeModelInfo(const CharacterModel& model, const std::string& id, uint
           .record = model.record()};
 }
 
+CompressedSequenceInfo MakeCompressedSequenceInfo(const SequenceDecoder& decoder,
+                                                  const std::string& id, uint64_t size_bytes) {
+  return {.id = id,
+          .name = decoder.name(),
+          .num_frames = decoder.num_frames(),
+          .num_vertices = decoder.num_vertices(),
+          .num_faces = decoder.topology().num_faces(),
+          .frame_rate = decoder.frame_rate(),
+          .size_bytes = size_bytes,
+          .record = std::nullopt};
+}
+
 }  // namespace pleat

@@ -12,4 +12,8 @@ SequenceInfo MakeSequenceInfo(const MeshSequence& sequence, const std::string& i
                               uint64_t size_bytes);
 ModelInfo MakeModelInfo(const CharacterModel& model, const std::string& id, uint64_t size_bytes);
 
+// Without a record: the file does not hold how it was made.
+CompressedSequenceInfo MakeCompressedSequenceInfo(const SequenceDecoder& decoder,
+                                                  const std::string& id, uint64_t size_bytes);
+
 }  // namespace pleat

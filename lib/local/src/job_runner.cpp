@@ -31,7 +31,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> JobRunner::TrainModel(
     const Progress& progress) const {
   const TrainResources resources{.num_threads = num_threads_};
   if (rig_id.empty()) return train_(clips, options, resources, nullptr, progress);
-  PLEAT_ASSIGN_OR_RETURN(const std::string text, files_->blobs().Get(rig_id));
+  PLEAT_ASSIGN_OR_RETURN(const std::string text, files_->Read(rig_id));
   PLEAT_ASSIGN_OR_RETURN(const RigFile file, DecodeUserRig(text));
   PLEAT_ASSIGN_OR_RETURN(const UserRig rig, ResolveRig(file, clips[0]));
   return TrainCharacterWithRig(clips, rig, options, resources, nullptr, progress);

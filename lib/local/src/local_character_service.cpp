@@ -8,12 +8,17 @@ namespace pleat {
 
 absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Open(
     LocalServiceOptions options) {
-  PLEAT_ASSIGN_OR_RETURN(
-      std::unique_ptr<Store> store,
-      Store::Open({.data_dir = options.data_dir, .reserve_bytes = options.reserve_bytes}));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<Store> store,
+                         Store::Open({.data_dir = options.data_dir,
+                                      .reserve_bytes = options.reserve_bytes,
+                                      .on_problem = options.on_problem}));
   std::unique_ptr<LocalCharacterService> service(
       new LocalCharacterService(options, std::move(store)));
   PLEAT_RETURN_IF_ERROR(service->jobs_.Start());
+  if (options.scrub_seconds > 0) {
+    service->scrubber_ =
+        std::make_unique<Scrubber>(&service->files_.store(), options.scrub_seconds);
+  }
   return service;
 }
 
@@ -29,7 +34,17 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                         .max_batch = options.max_batch}),
       jobs_(&files_, &sequences_,
             JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
-            options.num_workers) {}
+            options.num_workers, options.jobs_in_idle_time) {}
+
+double LocalCharacterService::FreeDiskBytes() const {
+  const absl::StatusOr<uint64_t> bytes = files_.store().blobs().FreeBytes();
+  return bytes.ok() ? static_cast<double>(*bytes) : -1;
+}
+
+size_t LocalCharacterService::NumQuarantinedFiles() const {
+  const auto files = files_.store().quarantine().List();
+  return files.ok() ? files->size() : 0;
+}
 
 LocalCharacterService::~LocalCharacterService() { Shutdown(); }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "infos.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
 #include "pleat/service/compression.h"
@@ -10,18 +11,6 @@
 
 namespace pleat {
 namespace {
-
-CompressedSequenceInfo MakeInfo(const SequenceDecoder& decoder, const std::string& id,
-                                uint64_t size_bytes) {
-  return {.id = id,
-          .name = decoder.name(),
-          .num_frames = decoder.num_frames(),
-          .num_vertices = decoder.num_vertices(),
-          .num_faces = decoder.topology().num_faces(),
-          .frame_rate = decoder.frame_rate(),
-          .size_bytes = size_bytes,
-          .record = std::nullopt};
-}
 
 // A session that holds the reservation of its memory as long as it lives.
 class ReservedSession final : public DecodeSession {
@@ -73,7 +62,7 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
   // bytes that came are checked all the same.
   absl::StatusOr<CompressedSequenceInfo> known = Get(upload->id());
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, upload->ReadComplete());
-  if (known.ok()) {
+  if (known.ok() && files_->IsIntact(upload->id())) {
     upload->Discard();
     return known;
   }
@@ -85,7 +74,9 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
     upload->Discard();  // these bytes will never be a compressed sequence
     return decoder.status();
   }
-  CompressedSequenceInfo info = MakeInfo(*decoder, upload->id(), size_bytes);
+  CompressedSequenceInfo info =
+      known.ok() ? *std::move(known)
+                 : MakeCompressedSequenceInfo(*decoder, upload->id(), size_bytes);
   PLEAT_RETURN_IF_ERROR(
       files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload));
   return info;
@@ -96,7 +87,7 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Get(const std::
 }
 
 absl::StatusOr<std::vector<CompressedSequenceInfo>> LocalCompressedSequences::List() {
-  return ListStored<CompressedSequenceInfo>(files_->catalog());
+  return ListStored<CompressedSequenceInfo>(files_);
 }
 
 absl::Status LocalCompressedSequences::Delete(const std::string& id) {
@@ -121,7 +112,7 @@ absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDec
   // The memory is reserved in two steps, because only the opened file says what its decoder will
   // take: first for the bytes of the file, then for everything.
   PLEAT_ASSIGN_OR_RETURN(Reservation memory, decode_memory_.Reserve(info.size_bytes, what));
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes, files_->blobs().Get(id));
+  PLEAT_ASSIGN_OR_RETURN(std::string bytes, files_->Read(id));
   PLEAT_ASSIGN_OR_RETURN(SequenceDecoder decoder, OpenDecoder(std::move(bytes)));
   memory = Reservation();
   PLEAT_ASSIGN_OR_RETURN(memory, decode_memory_.Reserve(decoder.memory_bytes(), what));

@@ -53,12 +53,12 @@ class LocalSubscription final : public JobSubscription {
 }  // namespace
 
 LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner,
-                     int num_workers)
+                     int num_workers, bool in_idle_time)
     : files_(files),
       sequences_(sequences),
       runner_(std::move(runner)),
       manager_(
-          JobManagerOptions{.num_workers = num_workers},
+          JobManagerOptions{.num_workers = num_workers, .in_idle_time = in_idle_time},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_.Run(job, progress);
           },
@@ -79,16 +79,27 @@ absl::Status LocalJobs::Restore() {
   // more, and those whose job was never created because the process ended in between.
   std::vector<StoredJob> jobs;
   std::set<std::string> needed_rigs;
+  bool all_rows_are_read = true;
   for (const CatalogEntry& entry : entries) {
-    PLEAT_ASSIGN_OR_RETURN(JobInfo info, DecodeJobRecord(entry.record));
-    if (!IsFinal(info.state)) needed_rigs.insert(info.rig_id);
-    jobs.push_back({std::move(info), entry.attempts});
+    absl::StatusOr<JobInfo> info = DecodeJobRecord(entry.record);
+    if (!info.ok()) {
+      files_->ReportBadRow(EntryKind::kJob, entry.id, info.status());
+      all_rows_are_read = false;
+      continue;
+    }
+    if (!IsFinal(info->state)) needed_rigs.insert(info->rig_id);
+    jobs.push_back({*std::move(info), entry.attempts});
   }
   PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> rigs,
                          files_->catalog().List(EntryKind::kRig));
   for (const CatalogEntry& rig : rigs) {
-    if (needed_rigs.contains(rig.id)) continue;
-    PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kRig, rig.id));
+    // A job whose row cannot be read may need any of them.
+    if (needed_rigs.contains(rig.id) || !all_rows_are_read) continue;
+    if (const absl::Status status = files_->Delete(EntryKind::kRig, rig.id); !status.ok()) {
+      files_->store().Report(
+          absl::StrCat("the rig '", rig.id,
+                       "' of an ended job cannot be removed: ", std::string(status.message())));
+    }
   }
   manager_.Restore(std::move(jobs));
   return absl::OkStatus();

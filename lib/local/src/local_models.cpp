@@ -12,9 +12,7 @@ absl::StatusOr<ModelInfo> LocalModels::Get(const std::string& id) {
   return GetStored<ModelInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() {
-  return ListStored<ModelInfo>(files_->catalog());
-}
+absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() { return ListStored<ModelInfo>(files_); }
 
 absl::Status LocalModels::Delete(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));
@@ -37,7 +35,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const
   return cache_.Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
     // Files of all kinds lie in one place; the row says that this one is a model.
     PLEAT_RETURN_IF_ERROR(files_->catalog().Get(EntryKind::kModel, key).status());
-    PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->blobs().Get(key));
+    PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->Read(key));
     PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
     const uint64_t charge = model->memory_bytes();
     return Loaded{std::move(model), charge};

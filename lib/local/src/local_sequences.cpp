@@ -58,7 +58,7 @@ absl::StatusOr<SequenceInfo> LocalSequences::Get(const std::string& id) {
 }
 
 absl::StatusOr<std::vector<SequenceInfo>> LocalSequences::List() {
-  return ListStored<SequenceInfo>(files_->catalog());
+  return ListStored<SequenceInfo>(files_);
 }
 
 absl::Status LocalSequences::Delete(const std::string& id) {
@@ -69,12 +69,14 @@ absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) 
   // The id is the hash of the bytes, and no bytes are a sequence and a compressed sequence at once,
   // so one question serves both kinds of upload.
   const absl::StatusOr<SequenceInfo> sequence = Get(id);
-  if (sequence.ok()) return UploadStatus{sequence->size_bytes, true};
+  if (sequence.ok() && files_->IsIntact(id)) return UploadStatus{sequence->size_bytes, true};
   const absl::StatusOr<CompressedSequenceInfo> compressed =
       GetStored<CompressedSequenceInfo>(files_->catalog(), id);
-  if (compressed.ok()) return UploadStatus{compressed->size_bytes, true};
+  if (compressed.ok() && files_->IsIntact(id)) return UploadStatus{compressed->size_bytes, true};
+  // An entry whose file is gone or damaged, or whose row cannot be read, is made whole by an
+  // upload.
   for (const absl::Status& status : {sequence.status(), compressed.status()}) {
-    if (status.code() != absl::StatusCode::kNotFound) return status;
+    if (!status.ok() && !absl::IsNotFound(status) && !absl::IsDataLoss(status)) return status;
   }
   return UploadStatus{files_->uploads().ReceivedBytes(id), false};
 }
@@ -104,7 +106,7 @@ absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload)
 
 absl::StatusOr<MeshSequence> LocalSequences::Load(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(Get(id).status());
-  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->blobs().Get(id));
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->Read(id));
   return DecodeSequence(bytes, FileLimits(files_->limits()));
 }
 

@@ -12,10 +12,20 @@ constexpr uint64_t kDownloadStepBytes = 8 << 20;
 
 }  // namespace
 
+void StoredFiles::ReportBadRow(EntryKind kind, const std::string& id, const absl::Status& why) {
+  {
+    std::lock_guard lock(mutex_);
+    if (!bad_rows_.insert(id).second) return;
+  }
+  store_->Report(absl::StrCat("the row of the ", EntryKindName(kind), " '", id,
+                              "' cannot be read and is left out: ", std::string(why.message())));
+}
+
 absl::StatusOr<std::string> StoredFiles::ReadBytes(EntryKind kind, const std::string& id,
                                                    uint64_t offset, uint64_t count) {
   PLEAT_RETURN_IF_ERROR(catalog().Get(kind, id).status());
-  return blobs().GetRange(id, offset, count);
+  if (offset == 0) PLEAT_RETURN_IF_ERROR(store_->Verify(id));
+  return store_->blobs().GetRange(id, offset, count);
 }
 
 absl::StatusOr<std::string> StoredFiles::Download(EntryKind kind, const std::string& id,
@@ -44,8 +54,9 @@ absl::StatusOr<std::unique_ptr<Upload>> StoredFiles::BeginUpload(const std::stri
     return absl::OutOfRangeError(absl::StrCat(
         "offset ", offset_bytes, " is behind the end of an upload of ", size_bytes, " bytes"));
   }
-  PLEAT_RETURN_IF_ERROR(blobs().CheckSpace(size_bytes - offset_bytes));
-  return uploads().Begin(id, size_bytes, offset_bytes);
+  PLEAT_ASSIGN_OR_RETURN(SpaceReservation room,
+                         store_->blobs().ReserveSpace(size_bytes - offset_bytes));
+  return uploads().Begin(id, size_bytes, offset_bytes, std::move(room));
 }
 
 }  // namespace pleat

@@ -7,7 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/base/status.h"
-#include "pleat/store/catalog.h"
+#include "pleat/local/stored_files.h"
 #include "pleat/store/records.h"
 
 namespace pleat {
@@ -37,14 +37,20 @@ absl::StatusOr<Info> GetStored(Catalog& catalog, const std::string& id) {
   return StoredKind<Info>::decode(entry.record);
 }
 
+// Leaves out rows that cannot be read, and tells the operator: one of them must not hide the
+// others.
 template <typename Info>
-absl::StatusOr<std::vector<Info>> ListStored(Catalog& catalog) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries,
-                         catalog.List(StoredKind<Info>::kind));
+absl::StatusOr<std::vector<Info>> ListStored(StoredFiles* files) {
+  constexpr EntryKind kKind = StoredKind<Info>::kind;
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries, files->catalog().List(kKind));
   std::vector<Info> infos;
   for (const CatalogEntry& entry : entries) {
-    PLEAT_ASSIGN_OR_RETURN(Info info, StoredKind<Info>::decode(entry.record));
-    infos.push_back(std::move(info));
+    absl::StatusOr<Info> info = StoredKind<Info>::decode(entry.record);
+    if (info.ok()) {
+      infos.push_back(*std::move(info));
+    } else {
+      files->ReportBadRow(kKind, entry.id, info.status());
+    }
   }
   return infos;
 }

@@ -26,9 +26,24 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kTemporarySuffix[] = ".tmp-XXXXXX";  // for mkostemp; Open removes what is left
+constexpr size_t kVerifyStepBytes = size_t{1} << 20;
+
+// Says whether a file has the name of one that Stage did not finish, and no other name.
+bool IsUnfinished(const std::string& name) {
+  constexpr size_t kSuffixLength = sizeof(kTemporarySuffix) - 1;
+  return name.size() == kContentIdLength + kSuffixLength &&
+         IsContentId(std::string_view(name).substr(0, kContentIdLength)) &&
+         name.compare(kContentIdLength, 5, ".tmp-") == 0;
+}
 
 absl::Status NoSuchBlob(const std::string& id) {
   return absl::NotFoundError(absl::StrCat("no stored file has the id '", id, "'"));
+}
+
+// Names the file by its id: no path of the server is for the eyes of a client.
+absl::Status CannotRead(const std::string& id) {
+  return absl::UnavailableError(
+      absl::StrCat("cannot read the stored file '", id, "': the disk gives an error"));
 }
 
 // From errno.
@@ -36,11 +51,17 @@ absl::Status CannotStore(const std::string& id) {
   return absl::ErrnoToStatus(errno, absl::StrCat("cannot store the file '", id, "'"));
 }
 
+absl::Status HasChanged(const std::string& id) {
+  return absl::DataLossError(absl::StrCat("the stored file '", id,
+                                          "' has changed on the disk; restore it from a backup, "
+                                          "upload it again, or delete the entry"));
+}
+
 absl::Status MakeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!error) return absl::OkStatus();
-  return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", path, "'"));
+  return absl::ErrnoToStatus(error.value(), "cannot create a folder of the store");
 }
 
 // False with errno set when the disk does not take all of them.
@@ -62,11 +83,18 @@ absl::StatusOr<BlobStore> BlobStore::Open(std::string folder, uint64_t reserve_b
   std::error_code error;
   // What a crash left of unfinished writes.
   std::vector<fs::path> unfinished;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, error)) {
-    if (entry.path().extension().string().starts_with(".tmp-")) unfinished.push_back(entry.path());
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (IsUnfinished(it->path().filename())) unfinished.push_back(it->path());
   }
   for (const fs::path& path : unfinished) fs::remove(path, error);
-  return BlobStore(std::move(folder), reserve_bytes, std::move(before_sync));
+  std::shared_ptr<DiskSpace> space = DiskSpace::Of(folder, reserve_bytes);
+  return BlobStore(std::move(folder), std::move(space), std::move(before_sync));
+}
+
+BlobStore BlobStore::OpenReadOnly(std::string folder) {
+  std::shared_ptr<DiskSpace> space = DiskSpace::Of(folder, 0);
+  return BlobStore(std::move(folder), std::move(space), {});
 }
 
 std::string BlobStore::FolderOf(const std::string& id) const {
@@ -79,8 +107,9 @@ std::string BlobStore::PathOf(const std::string& id) const {
 
 absl::StatusOr<StagedFile> BlobStore::Stage(std::string_view bytes) {
   std::string id = ToHex(ComputeSha256(bytes));
-  if (Contains(id)) return StagedFile::AlreadyStored(std::move(id));
-  PLEAT_RETURN_IF_ERROR(CheckSpace(bytes.size()));
+  // A file that is there but damaged is written anew; Publish puts the new one in its place.
+  if (Verify(id).ok()) return StagedFile::AlreadyStored(std::move(id));
+  PLEAT_ASSIGN_OR_RETURN(const SpaceReservation room, ReserveSpace(bytes.size()));
   PLEAT_RETURN_IF_ERROR(MakeFolder(FolderOf(id)));
   std::string path = PathOf(id) + kTemporarySuffix;
   const int fd = mkostemp(path.data(), O_CLOEXEC);
@@ -119,13 +148,23 @@ absl::StatusOr<std::string> BlobStore::Put(std::string_view bytes) {
 
 absl::StatusOr<std::string> BlobStore::Get(const std::string& id) const {
   if (!Contains(id)) return NoSuchBlob(id);
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes, ReadFile(PathOf(id)));
-  if (ToHex(ComputeSha256(bytes)) != id) {
-    return absl::DataLossError(absl::StrCat("the stored file '", PathOf(id),
-                                            "' has changed on the disk; restore it from a backup "
-                                            "or delete the entry and upload it again"));
-  }
+  absl::StatusOr<std::string> bytes = ReadFile(PathOf(id));
+  if (!bytes.ok()) return CannotRead(id);
+  if (ToHex(ComputeSha256(*bytes)) != id) return HasChanged(id);
   return bytes;
+}
+
+absl::Status BlobStore::Verify(const std::string& id) const {
+  if (!Contains(id)) return NoSuchBlob(id);
+  std::ifstream file(PathOf(id), std::ios::binary);
+  std::string step(kVerifyStepBytes, '\0');
+  Sha256 hash;
+  do {
+    file.read(step.data(), static_cast<std::streamsize>(step.size()));
+    hash.Update(std::string_view(step).substr(0, static_cast<size_t>(file.gcount())));
+  } while (file);
+  if (!file.eof()) return CannotRead(id);
+  return ToHex(hash.Finish()) == id ? absl::OkStatus() : HasChanged(id);
 }
 
 absl::StatusOr<std::string> BlobStore::GetRange(const std::string& id, uint64_t offset,
@@ -139,7 +178,7 @@ absl::StatusOr<std::string> BlobStore::GetRange(const std::string& id, uint64_t 
   std::ifstream file(PathOf(id), std::ios::binary);
   file.seekg(static_cast<std::streamoff>(offset));
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file) return absl::DataLossError(absl::StrCat("cannot read '", PathOf(id), "'"));
+  if (!file) return CannotRead(id);
   return bytes;
 }
 
@@ -172,21 +211,9 @@ absl::StatusOr<std::vector<std::string>> BlobStore::List() const {
     const std::string name = it->path().filename();
     if (IsContentId(name)) ids.push_back(name);
   }
-  if (error) return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot list '", folder_, "'"));
+  if (error) return absl::ErrnoToStatus(error.value(), "cannot list the files of the store");
   std::sort(ids.begin(), ids.end());
   return ids;
-}
-
-absl::Status BlobStore::CheckSpace(uint64_t bytes) const {
-  std::error_code error;
-  const fs::space_info space = fs::space(folder_, error);
-  if (error) return absl::ErrnoToStatus(error.value(), "cannot ask for the free disk space");
-  if (space.available < reserve_bytes_ || space.available - reserve_bytes_ < bytes) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "no room on the server's disk: ", space.available, " bytes free, ", bytes,
-        " needed beside a reserve of ", reserve_bytes_, "; delete sequences or models"));
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace pleat

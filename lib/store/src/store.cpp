@@ -1,46 +1,19 @@
 #include "pleat/store/store.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <filesystem>
-#include <set>
 #include <system_error>
+#include <unordered_set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "pleat/base/file.h"
+#include "folder_lock.h"
 #include "pleat/base/status.h"
+#include "store_identity.h"
 
 namespace pleat {
 namespace {
 
 constexpr int kUploadAgeHours = 7 * 24;  // an upload that nobody has touched since is forgotten
-
-// The lock ends with the process, however it ends.
-absl::StatusOr<int> LockFolder(const std::string& path, const std::string& data_dir) {
-  const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (fd < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot open '", path, "'"));
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
-    close(fd);
-    const absl::StatusOr<std::string> holder = ReadFile(path, 64);
-    return absl::FailedPreconditionError(
-        absl::StrCat("the data folder '", data_dir, "' is in use by another process",
-                     holder.ok() && !holder->empty() ? absl::StrCat(" (", *holder, ")") : "",
-                     "; stop it or choose another --data-dir"));
-  }
-  const std::string holder = absl::StrCat("process ", getpid());
-  if (ftruncate(fd, 0) != 0 ||
-      pwrite(fd, holder.data(), holder.size(), 0) != static_cast<ssize_t>(holder.size())) {
-    const absl::Status status =
-        absl::ErrnoToStatus(errno, absl::StrCat("cannot write '", path, "'"));
-    close(fd);
-    return status;
-  }
-  return fd;
-}
 
 }  // namespace
 
@@ -66,32 +39,44 @@ class Store::IdLock {
   const std::string id_;
 };
 
+Store::Store(const StoreOptions& options)
+    : on_problem_(options.on_problem),
+      quarantine_(options.data_dir + "/quarantine", options.before_sync) {}
+
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) {
-  if (options.data_dir.empty()) return absl::InvalidArgumentError("the data folder has no name");
+  const std::string& data_dir = options.data_dir;
+  if (data_dir.empty()) return absl::InvalidArgumentError("the data folder has no name");
   std::error_code error;
-  std::filesystem::create_directories(options.data_dir, error);
-  if (error) {
-    return absl::ErrnoToStatus(error.value(),
-                               absl::StrCat("cannot create '", options.data_dir, "'"));
+  if (std::filesystem::create_directories(data_dir, error)) {
+    std::filesystem::permissions(data_dir, std::filesystem::perms::owner_all, error);
   }
-  std::unique_ptr<Store> store(new Store);
-  PLEAT_ASSIGN_OR_RETURN(store->lock_fd_, LockFolder(options.data_dir + "/lock", options.data_dir));
+  if (error) {
+    return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", data_dir, "'"));
+  }
+  std::unique_ptr<Store> store(new Store(options));
+  PLEAT_ASSIGN_OR_RETURN(FolderLock lock, FolderLock::Take(data_dir));
+  store->lock_ = std::make_unique<FolderLock>(std::move(lock));
   PLEAT_ASSIGN_OR_RETURN(
       BlobStore blobs,
-      BlobStore::Open(options.data_dir + "/blobs", options.reserve_bytes, options.before_sync));
+      BlobStore::Open(data_dir + "/blobs", options.reserve_bytes, options.before_sync));
   store->blobs_ = std::make_unique<BlobStore>(std::move(blobs));
-  PLEAT_RETURN_IF_ERROR(store->blobs_->CheckSpace(0));
   PLEAT_ASSIGN_OR_RETURN(store->catalog_,
-                         Catalog::Open(options.data_dir + "/catalogue.db", options.before_sync));
-  PLEAT_ASSIGN_OR_RETURN(store->uploads_, UploadArea::Open(options.data_dir + "/uploads",
-                                                           kUploadAgeHours, options.before_sync));
-  PLEAT_RETURN_IF_ERROR(store->Clean());
+                         Catalog::Open(data_dir + "/catalogue.db", options.before_sync));
+  PLEAT_ASSIGN_OR_RETURN(store->uploads_, UploadArea::Open(data_dir + "/uploads", kUploadAgeHours,
+                                                           options.before_sync));
+  PLEAT_RETURN_IF_ERROR(store->Reconcile(data_dir));
+  if (const auto room = store->blobs_->ReserveSpace(0); !room.ok()) {
+    store->Report(absl::StrCat("nothing can be uploaded: ", std::string(room.status().message())));
+  }
   return store;
 }
 
 Store::~Store() {
   catalog_.reset();  // before the lock goes
-  if (lock_fd_ >= 0) close(lock_fd_);
+}
+
+void Store::Report(const std::string& problem) const {
+  if (on_problem_) on_problem_(problem);
 }
 
 absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {
@@ -123,22 +108,88 @@ absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, Upload* uploa
 absl::Status Store::Delete(EntryKind kind, const std::string& id) {
   const IdLock lock(this, id);
   PLEAT_RETURN_IF_ERROR(catalog_->Delete(kind, id));
-  return blobs_->Delete(id);
+  return RemoveUnnamed(id);
 }
 
-absl::Status Store::Clean() {
-  std::set<std::string> known;
-  for (const EntryKind kind :
-       {EntryKind::kSequence, EntryKind::kModel, EntryKind::kCompressedSequence, EntryKind::kRig}) {
-    PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries, catalog_->List(kind));
-    for (const CatalogEntry& entry : entries) known.insert(entry.id);
-  }
+absl::Status Store::RemoveUnnamed(const std::string& id) {
+  PLEAT_ASSIGN_OR_RETURN(const bool is_named, catalog_->NamesFile(id));
+  if (!is_named) PLEAT_RETURN_IF_ERROR(blobs_->Delete(id));
+  return catalog_->ForgetRemoval(id);
+}
+
+absl::StatusOr<std::string> Store::Read(const std::string& id) {
+  absl::StatusOr<std::string> bytes = blobs_->Get(id);
+  if (absl::IsDataLoss(bytes.status())) QuarantineIfDamaged(id).IgnoreError();
+  return bytes;
+}
+
+absl::Status Store::Verify(const std::string& id) {
+  absl::Status status = blobs_->Verify(id);
+  if (absl::IsDataLoss(status)) QuarantineIfDamaged(id).IgnoreError();
+  return status;
+}
+
+// Looks again under the lock: meanwhile a new upload may have put an intact file there.
+absl::Status Store::QuarantineIfDamaged(const std::string& id) {
+  const IdLock lock(this, id);
+  const absl::Status found = blobs_->Verify(id);
+  if (!absl::IsDataLoss(found)) return found;
+  const absl::Status moved = quarantine_.Take(blobs_->PathOf(id), "its content has changed");
+  Report(absl::StrCat("the file '", id, "' has changed on the disk",
+                      moved.ok() ? " and is in quarantine now; upload it again or restore it"
+                                 : absl::StrCat(" and could not be moved to the quarantine: ",
+                                                std::string(moved.message()))));
+  return moved;
+}
+
+absl::Status Store::Reconcile(const std::string& data_dir) {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<std::string> named, catalog_->FileIds());
   PLEAT_ASSIGN_OR_RETURN(const std::vector<std::string> files, blobs_->List());
-  for (const std::string& id : files) {
-    if (!known.contains(id)) PLEAT_RETURN_IF_ERROR(blobs_->Delete(id));
-    known.erase(id);
+  const std::unordered_set<std::string> there(files.begin(), files.end());
+  for (const std::string& id : named) {
+    if (!there.contains(id)) missing_files_.push_back(id);
   }
-  missing_files_.assign(known.begin(), known.end());
+  PLEAT_RETURN_IF_ERROR(SettleIdentity(data_dir, named.size(), files.size()));
+  for (const std::string& id : missing_files_) {
+    Report(absl::StrCat("the file of '", id, "' is gone; upload it again, restore or delete it"));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<std::string> removals, catalog_->PendingRemovals());
+  for (const std::string& id : removals) {
+    if (const absl::Status status = RemoveUnnamed(id); !status.ok()) {
+      Report(absl::StrCat("the file of the deleted entry '", id,
+                          "' cannot be removed: ", std::string(status.message())));
+    }
+  }
+  const std::unordered_set<std::string> removed(removals.begin(), removals.end());
+  const std::unordered_set<std::string> known(named.begin(), named.end());
+  size_t num_unknown = 0;
+  absl::Status moved;
+  for (const std::string& id : files) {
+    if (known.contains(id) || removed.contains(id)) continue;
+    ++num_unknown;
+    moved.Update(quarantine_.Take(blobs_->PathOf(id), "no entry names it"));
+  }
+  if (num_unknown > 0) {
+    Report(absl::StrCat(num_unknown, " files that no entry names ",
+                        moved.ok() ? "were moved to the quarantine" : "stay where they are",
+                        "; 'pleat store check' lists them",
+                        moved.ok() ? "" : absl::StrCat(" (", std::string(moved.message()), ")")));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Store::SettleIdentity(const std::string& data_dir, size_t num_named,
+                                   size_t num_files) {
+  StoreSides sides{.num_named = num_named,
+                   .num_files = num_files,
+                   .num_common = num_named - missing_files_.size()};
+  PLEAT_ASSIGN_OR_RETURN(sides.catalog_id, catalog_->StoreId());
+  PLEAT_ASSIGN_OR_RETURN(sides.blobs_id, ReadBlobsId(blobs_->folder()));
+  PLEAT_ASSIGN_OR_RETURN(std::string id, AgreeOnStoreId(sides, data_dir));
+  if (id.empty()) id = MakeStoreId();
+  // Files first: a crash in between leaves a side without an id, and the next start agrees again.
+  if (sides.blobs_id != id) PLEAT_RETURN_IF_ERROR(WriteBlobsId(blobs_->folder(), id));
+  if (sides.catalog_id != id) PLEAT_RETURN_IF_ERROR(catalog_->SetStoreId(id));
   return absl::OkStatus();
 }
 

@@ -21,11 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Says whether a file is one that Begin made.
+bool IsUpload(const fs::path& path) {
+  return path.extension() == ".part" && IsContentId(path.stem().string());
+}
+
 }  // namespace
 
 Upload::Upload(UploadArea* area, std::string id, std::string path, uint64_t size_bytes, int fd,
-               uint64_t received_bytes)
-    : area_(area),
+               uint64_t received_bytes, SpaceReservation room)
+    : room_(std::move(room)),
+      area_(area),
       id_(std::move(id)),
       path_(std::move(path)),
       size_bytes_(size_bytes),
@@ -45,8 +51,9 @@ absl::Status Upload::Append(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = write(fd_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot write '", path_, "'"));
+    if (written < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot write upload ", id_));
     received_bytes_ += static_cast<uint64_t>(written);
+    room_.Spend(static_cast<uint64_t>(written));
     bytes.remove_prefix(static_cast<size_t>(written));
   }
   return absl::OkStatus();
@@ -58,8 +65,11 @@ absl::StatusOr<std::string> Upload::ReadComplete() {
                                                       received_bytes_, " of ", size_bytes_,
                                                       " bytes; go on at that offset"));
   }
-  PLEAT_ASSIGN_OR_RETURN(std::string bytes, ReadFile(path_, size_bytes_));
-  if (ToHex(ComputeSha256(bytes)) != id_) {
+  absl::StatusOr<std::string> bytes = ReadFile(path_, size_bytes_);
+  if (!bytes.ok()) {
+    return absl::Status(bytes.status().code(), absl::StrCat("cannot read upload ", id_));
+  }
+  if (ToHex(ComputeSha256(*bytes)) != id_) {
     Discard();
     return absl::DataLossError(absl::StrCat("the uploaded bytes do not have the declared SHA-256 ",
                                             id_, "; upload them again from the start"));
@@ -88,7 +98,7 @@ absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder,
   const auto oldest = fs::file_time_type::clock::now() - std::chrono::hours(max_age_hours);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     std::error_code ignored;
-    if (entry.path().extension() == ".part" && entry.last_write_time(ignored) < oldest) {
+    if (IsUpload(entry.path()) && entry.last_write_time(ignored) < oldest) {
       fs::remove(entry.path(), ignored);
     }
   }
@@ -104,7 +114,8 @@ uint64_t UploadArea::ReceivedBytes(const std::string& id) const {
 
 absl::StatusOr<std::unique_ptr<Upload>> UploadArea::Begin(const std::string& id,
                                                           uint64_t size_bytes,
-                                                          uint64_t offset_bytes) {
+                                                          uint64_t offset_bytes,
+                                                          SpaceReservation room) {
   if (!IsContentId(id)) {
     return absl::InvalidArgumentError("an upload id must be 64 lower-case hexadecimal digits");
   }
@@ -118,12 +129,12 @@ absl::StatusOr<std::unique_ptr<Upload>> UploadArea::Begin(const std::string& id,
   const int fd = open(PathOf(id).c_str(), flags, 0644);
   if (fd < 0) {
     const absl::Status status =
-        absl::ErrnoToStatus(errno, absl::StrCat("cannot write '", PathOf(id), "'"));
+        absl::ErrnoToStatus(errno, absl::StrCat("cannot write upload ", id));
     Release(id);
     return status;
   }
   std::unique_ptr<Upload> upload(
-      new Upload(this, id, PathOf(id), size_bytes, fd, ReceivedBytes(id)));
+      new Upload(this, id, PathOf(id), size_bytes, fd, ReceivedBytes(id), std::move(room)));
   if (upload->received_bytes() != offset_bytes || offset_bytes > size_bytes) {
     return absl::OutOfRangeError(absl::StrCat("upload ", id, " of ", size_bytes, " bytes has ",
                                               upload->received_bytes(), ", so it cannot go on at ",

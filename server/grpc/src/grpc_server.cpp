@@ -1,5 +1,6 @@
 #include "pleat/grpc/grpc_server.h"
 
+#include <grpc/compression.h>
 #include <grpc/support/log.h>
 #include <grpcpp/channel.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
@@ -18,6 +19,8 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "call_listening.h"
+#include "connection_listener.h"
 #include "pleat/base/status.h"
 #include "services.h"
 
@@ -26,6 +29,8 @@ namespace {
 
 constexpr int kKeepaliveMs = 60'000;         // between two questions to an idle connection
 constexpr int kKeepaliveTimeoutMs = 20'000;  // until it must have answered
+constexpr int kHandshakeMs = 10'000;         // of TLS and HTTP/2 together
+constexpr int kMaxIdleMs = 10 * 60'000;      // a connection without calls is closed after this
 constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
 // How long a live session that drains may take to get rid of the frame that is being written.
 constexpr auto kSlowReaderTime = std::chrono::seconds(1);
@@ -48,6 +53,15 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
   tls.pem_key_cert_pairs.push_back({options.tls_key, options.tls_certificate});
   tls.pem_root_certs = options.tls_client_ca;
   return grpc::SslServerCredentials(tls);
+}
+
+// gRPC 1.51 inflates a compressed message before it looks at its size: 14 MiB become 11 GB. So
+// nothing is inflated at all, and calls that announce compressed messages end with UNIMPLEMENTED.
+void RefuseCompression(grpc::ServerBuilder* builder) {
+  builder->AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
+  for (const grpc_compression_algorithm algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
+    builder->SetCompressionAlgorithmSupportStatus(algorithm, false);
+  }
 }
 
 void LogForGrpc(gpr_log_func_args* args) {
@@ -85,25 +99,42 @@ class GrpcServerImpl final : public GrpcServer {
     PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<grpc::ServerCredentials> credentials,
                            MakeCredentials(options));
     grpc::ServerBuilder builder;
-    builder.AddListeningPort(options.listen, credentials, &port_);
+    PLEAT_ASSIGN_OR_RETURN(listener_,
+                           ConnectionListener::Open(options.listen, options.connections));
+    port_ = listener_->port();
+    acceptor_ = builder.experimental().AddExternalConnectionAcceptor(
+        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials);
     grpc::ResourceQuota quota("pleatd");
     builder.SetResourceQuota(quota.Resize(kMessageMemoryBytes));
     builder.SetMaxReceiveMessageSize(options.max_receive_bytes);
+    RefuseCompression(&builder);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
-    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);  // a second server fails
+    builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
+    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
+    if (options.call_listener != nullptr) {
+      builder.experimental().SetInterceptorCreators(MakeCallListening(options.call_listener));
+    }
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
-      return absl::UnavailableError(absl::StrCat("cannot listen on '", options.listen,
-                                                 "': the address is wrong or in use, or the "
-                                                 "certificate and key do not fit"));
+      return absl::UnavailableError("cannot start: the TLS certificate and key do not fit");
     }
+    listener_->Start(
+        [this](int fd) {
+          grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+          connection.listener_fd = -1;
+          connection.fd = fd;
+          acceptor_->HandleNewConnection(&connection);
+        },
+        [](const std::string& what) { spdlog::warn("{}", what); });
     return absl::OkStatus();
   }
 
   int port() const override { return port_; }
+  int num_connections() const override { return listener_->num_open(); }
+  uint64_t num_refused_connections() const override { return listener_->num_refused(); }
 
   std::shared_ptr<grpc::Channel> InProcessChannel() override {
     return server_->InProcessChannel(grpc::ChannelArguments());
@@ -116,6 +147,7 @@ class GrpcServerImpl final : public GrpcServer {
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
     context_.live_sessions.DrainAll();
     WaitForCalls(drain_seconds);
+    listener_->Stop();
     // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
     server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);
     server_->Wait();
@@ -145,8 +177,10 @@ class GrpcServerImpl final : public GrpcServer {
   Executor storage_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   std::mutex shutdown_mutex_;
-  std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
+  std::unique_ptr<ConnectionListener> listener_;
   int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
 };
 
 }  // namespace

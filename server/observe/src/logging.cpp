@@ -10,16 +10,30 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {
+
+// The message on one line, whatever is in it: an id from outside must not forge a line.
+class TextMessage final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&,
+              spdlog::memory_buf_t& out) override {
+    const std::string text = EscapeControls({message.payload.data(), message.payload.size()});
+    out.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<TextMessage>();
+  }
+};
 
 // The message with everything escaped that JSON does not allow in a string (RFC 8259, section 7).
 class JsonMessage final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,
               spdlog::memory_buf_t& out) override {
-    for (const char c : message.payload) {
+    for (const char c : ToValidUtf8({message.payload.data(), message.payload.size()})) {
       const auto byte = static_cast<unsigned char>(c);
       if (c == '"' || c == '\\') {
         out.push_back('\\');
@@ -59,7 +73,7 @@ absl::Status ConfigureLogging(const LoggingOptions& options) {
     formatter->add_flag<JsonMessage>('*').set_pattern(
         R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l","thread":%t,"message":"%*"})");
   } else {
-    formatter->set_pattern("%Y-%m-%d %H:%M:%S.%e %L %v");
+    formatter->add_flag<TextMessage>('*').set_pattern("%Y-%m-%d %H:%M:%S.%e %L %*");
   }
   logger->set_formatter(std::move(formatter));
   logger->set_level(level);

@@ -63,6 +63,16 @@ TEST_F(LoggingTest, AMessageWithAnythingInItStaysOneJsonString) {
   EXPECT_EQ(line.find('\n'), line.size() - 1) << "one line per message";
 }
 
+TEST_F(LoggingTest, AMessageWithALineBreakForgesNoLine) {
+  const std::string line = Captured(
+      {}, [] { spdlog::info("no model 'x'\n2026-11-30 00:00:00.000 I all is well\x1b[2J \xff'"); });
+  EXPECT_EQ(line.find('\n'), line.size() - 1);
+  EXPECT_THAT(line, HasSubstr("'x'\\x0a2026"));
+  EXPECT_THAT(line, HasSubstr("\\x1b[2J \\xff'"));
+  const std::string json = Captured({.json = true}, [] { spdlog::info("caf\xe9 \xc3\xa9"); });
+  EXPECT_THAT(json, HasSubstr("caf\xef\xbf\xbd \xc3\xa9"));
+}
+
 TEST_F(LoggingTest, WhatProtocolBuffersSayIsADebugLine) {
   const auto log = [] { GOOGLE_LOG(ERROR) << "bad field"; };
   EXPECT_EQ(Captured({.level = "info"}, log), "");

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -29,9 +30,13 @@ using RunJob = std::function<absl::StatusOr<JobOutcome>(const JobInfo&, const Pr
 using SaveJob = std::function<absl::Status(const JobInfo& info, int attempts)>;
 
 struct JobManagerOptions {
-  int num_workers = 1;    // jobs that run at the same time
-  int max_queued = 1000;  // jobs that wait; more are refused
-  int max_attempts = 3;   // a job that took the server down this often fails
+  int num_workers = 1;            // jobs that run at the same time
+  int max_queued = 1000;          // jobs that wait; more are refused
+  int max_attempts = 3;           // a job that took the server down this often fails
+  double save_retry_seconds = 1;  // between two tries to save how a job ended
+  // The threads of jobs run in the processor time that nothing else wants, so that live sessions in
+  // the same process keep their pace.
+  bool in_idle_time = false;
   MonotonicClock clock = SteadySeconds;
 };
 
@@ -40,7 +45,16 @@ struct StoredJob {
   int attempts = 0;
 };
 
-// Jobs start in the order of Create. Thread-safe.
+// Jobs start in the order of Create.
+//
+// Nobody sees that a job has ended before that is saved: until then it is running, and its worker
+// tries to save it again and again. So what was seen final is final after a restart too.
+//
+// When the process dies, the jobs that were running are suspects, and only one of them is to blame.
+// A suspect runs alone the next time: none other starts beside it. If the process dies again, the
+// attempt counts against the job that ran alone, and against no job that ran beside others.
+//
+// Thread-safe.
 class JobManager {
  public:
   JobManager(JobManagerOptions options, RunJob run, SaveJob save);
@@ -49,7 +63,7 @@ class JobManager {
   JobManager& operator=(const JobManager&) = delete;
 
   // Takes over the jobs of the process before, in their order: a job that was running is queued
-  // again, or failed when it has run max_attempts times. Call before Start.
+  // again, or failed when it has taken the process down max_attempts times. Call before Start.
   void Restore(std::vector<StoredJob> jobs);
   void Start();
 
@@ -58,6 +72,8 @@ class JobManager {
   absl::StatusOr<JobInfo> Create(JobInfo draft);
   absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
   std::vector<JobInfo> List() const;                         // oldest first
+  size_t CountInState(JobState state) const;
+  // kNotFound, kFailedPrecondition when the job has ended, or the error of saving it.
   absl::Status Cancel(const std::string& id);
   absl::StatusOr<std::shared_ptr<JobStateMachine>> Find(const std::string& id) const;
 
@@ -67,8 +83,16 @@ class JobManager {
   bool shutting_down() const { return shutting_down_.load(std::memory_order_relaxed); }
 
  private:
+  using EndJob = std::function<bool(JobStateMachine*)>;
+
+  void RestoreRunning(JobSnapshot snapshot, bool ran_alone);
   void Work();
+  std::shared_ptr<JobStateMachine> TakeNext();  // null at shutdown
+  bool MayStartNext() const;                    // call with mutex_ held
   void RunOne(JobStateMachine* job);
+  // Saves the state that `end` will bring the job to, and then brings it there.
+  void End(JobStateMachine* job, const EndJob& end);
+  bool SaveUntilDone(JobStateMachine* job, const JobSnapshot& ended);  // false at shutdown
   void Save(JobStateMachine* job);
 
   const JobManagerOptions options_;
@@ -79,11 +103,15 @@ class JobManager {
   // Taken before mutex_ and held while a new job is saved: one after the other, so the order in the
   // store is the order in the queue.
   std::mutex create_mutex_;
-  mutable std::mutex mutex_;  // never held while a job is saved
-  std::condition_variable changed_;
+  mutable std::mutex mutex_;         // never held while a job is saved
+  std::condition_variable changed_;  // a worker may have something to do
+  std::condition_variable stopped_;  // shutting_down_
   std::map<std::string, std::shared_ptr<JobStateMachine>> jobs_;  // guarded by mutex_
   std::vector<std::string> order_;                                // guarded by mutex_
   std::deque<std::shared_ptr<JobStateMachine>> queue_;            // guarded by mutex_
+  std::set<std::string> suspects_;  // ids of jobs that run alone; guarded by mutex_
+  int num_running_ = 0;             // guarded by mutex_
+  bool runs_suspect_ = false;       // guarded by mutex_
   std::vector<std::thread> workers_;
 };
 

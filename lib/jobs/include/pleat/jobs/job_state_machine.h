@@ -41,6 +41,8 @@ class JobStateMachine {
   JobStateMachine& operator=(const JobStateMachine&) = delete;
 
   JobSnapshot snapshot() const;
+  JobState state() const;
+  const std::string& id() const { return state_.info.id; }  // never changes
 
   // Each returns false, and does nothing, when the job is not in the state that it starts from.
   bool Start();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "pleat/local/local_models.h"
 #include "pleat/local/local_poses.h"
 #include "pleat/local/local_sequences.h"
+#include "pleat/local/scrubber.h"
 #include "pleat/service/character_service.h"
 
 namespace pleat {
@@ -21,13 +23,17 @@ struct LocalServiceOptions {
   uint64_t reserve_bytes = uint64_t{256} << 20;  // space that is kept free on the disk
   int num_workers = 1;                           // jobs that run at the same time
   int num_threads_per_job = 0;                   // 0 = one per core
+  bool jobs_in_idle_time = false;                // jobs take what live sessions leave
   int num_pose_threads = 0;                      // 0 = one per core
   int max_batch = 8;                             // live poses of a model evaluated together
   uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
   uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences together
   uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
+  double scrub_seconds = 0;  // in which every stored file is read once and verified; 0 = never
   ServiceLimits limits{};
   TrainFunction train = TrainCharacter;
+  // Receives sentences for the operator (StoreOptions::on_problem).
+  std::function<void(const std::string& problem)> on_problem{};
 };
 
 // Owns the data folder, the five services over it, and their threads. Thread-safe.
@@ -47,6 +53,10 @@ class LocalCharacterService final : public CharacterService {
   // The ids of entries whose file was gone when the data folder was opened.
   const std::vector<std::string>& missing_files() const { return files_.missing_files(); }
 
+  // For an operator. Free bytes of the disk: -1 when it does not answer.
+  double FreeDiskBytes() const;
+  size_t NumQuarantinedFiles() const;
+
   // Stops the workers and ends all subscriptions. Jobs that run are queued for the next process.
   void Shutdown() { jobs_.Shutdown(); }
 
@@ -61,6 +71,7 @@ class LocalCharacterService final : public CharacterService {
   LocalCompressedSequences compressed_sequences_;
   LocalPoses poses_;
   LocalJobs jobs_;
+  std::unique_ptr<Scrubber> scrubber_;  // null: never
 };
 
 }  // namespace pleat

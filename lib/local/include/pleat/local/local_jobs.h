@@ -17,8 +17,9 @@ namespace pleat {
 // Thread-safe. `files` and `sequences` must outlive it.
 class LocalJobs final : public JobService {
  public:
-  // num_workers: the number of jobs that run at the same time.
-  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, int num_workers);
+  // num_workers: the number of jobs that run at the same time. in_idle_time: see JobManagerOptions.
+  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, int num_workers,
+            bool in_idle_time = false);
 
   absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
   absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
@@ -28,6 +29,8 @@ class LocalJobs final : public JobService {
   absl::Status Cancel(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
       const std::string& id, std::function<void()> listener) override;
+
+  size_t CountInState(JobState state) const { return manager_.CountInState(state); }
 
   // Takes over the jobs of the process before and starts the workers. Call once.
   absl::Status Start();

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,8 +27,8 @@ class StoredFiles {
       : store_(std::move(store)), limits_(limits) {}
 
   Catalog& catalog() { return store_->catalog(); }
-  BlobStore& blobs() { return store_->blobs(); }
   UploadArea& uploads() { return store_->uploads(); }
+  Store& store() const { return *store_; }
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 
@@ -38,8 +40,16 @@ class StoredFiles {
     return store_->Add(kind, entry, upload);
   }
   absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
-  // Returns `count` bytes of the file of an entry from `offset` on, fewer at its end. kNotFound
-  // when there is no such entry.
+  // Returns the content of a stored file, verified (see Store).
+  absl::StatusOr<std::string> Read(const std::string& id) { return store_->Read(id); }
+  // Says whether the file of an entry is there and intact. It reads the whole file.
+  bool IsIntact(const std::string& id) { return store_->Verify(id).ok(); }
+  // Tells the operator about an entry whose row cannot be read, once for each.
+  void ReportBadRow(EntryKind kind, const std::string& id, const absl::Status& why);
+
+  // Returns `count` bytes of the file of an entry from `offset` on, fewer at its end. A read from
+  // the start verifies the whole file first. kNotFound when there is no such entry, kDataLoss when
+  // its file has changed.
   absl::StatusOr<std::string> ReadBytes(EntryKind kind, const std::string& id, uint64_t offset,
                                         uint64_t count);
   // Returns the whole file, which has `size_bytes`. kDataLoss when the file is shorter.
@@ -53,6 +63,8 @@ class StoredFiles {
  private:
   const std::unique_ptr<Store> store_;
   const ServiceLimits limits_;
+  std::mutex mutex_;
+  std::set<std::string> bad_rows_;  // that were reported; guarded by mutex_
 };
 
 // An upload into the store. `finish` checks the complete bytes and adds them to the catalog.

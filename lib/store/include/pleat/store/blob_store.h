@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -9,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/store/disk_space.h"
 #include "pleat/store/staged_file.h"
 #include "pleat/store/sync_hook.h"
 
@@ -27,8 +29,7 @@ namespace pleat {
 //    when the name is there. After 4 the file survives a power cut.
 //  - Two writers of the same content race harmlessly: each has a temporary file of its own, and the
 //    second rename replaces a file by an equal one.
-//  - Whether a file should exist is not decided here: the catalog's row says so (Store). A file
-//    without a row is garbage that the next start of the store removes.
+//  - Whether a file should exist is not decided here: the catalog's row says so (Store).
 //  - The names of files are content ids and nothing else (IsContentId), so an id from outside can
 //    never reach another path.
 //
@@ -40,8 +41,11 @@ class BlobStore {
   static absl::StatusOr<BlobStore> Open(std::string folder, uint64_t reserve_bytes,
                                         SyncHook before_sync = {});
 
-  // Writes and syncs `bytes` under a temporary name, unless the content is stored already. This is
-  // the slow half of storing a file: call it without holding a lock.
+  // Reads `folder`, which another process may use, and changes nothing in it.
+  static BlobStore OpenReadOnly(std::string folder);
+
+  // Writes and syncs `bytes` under a temporary name, unless the content is stored already and is
+  // intact. This is the slow half of storing a file: call it without holding a lock.
   absl::StatusOr<StagedFile> Stage(std::string_view bytes);
   // Gives the file its name, durably. kAborted when it was already stored but has been deleted
   // since; stage it again.
@@ -51,6 +55,8 @@ class BlobStore {
 
   // The content, verified: kNotFound, or kDataLoss when the disk gave other bytes.
   absl::StatusOr<std::string> Get(const std::string& id) const;
+  // Reads the whole file and compares its SHA-256, in little memory. OK, or the errors of Get.
+  absl::Status Verify(const std::string& id) const;
   // `count` bytes from `offset` (fewer at the end), not verified.
   absl::StatusOr<std::string> GetRange(const std::string& id, uint64_t offset,
                                        uint64_t count) const;
@@ -59,19 +65,26 @@ class BlobStore {
   absl::Status Delete(const std::string& id);             // OK when it is not there
   absl::StatusOr<std::vector<std::string>> List() const;  // all ids, sorted
 
-  // kResourceExhausted when `bytes` more would touch the reserve.
-  absl::Status CheckSpace(uint64_t bytes) const;
+  // Keeps room for `bytes` more. kResourceExhausted when that would touch the reserve.
+  absl::StatusOr<SpaceReservation> ReserveSpace(uint64_t bytes) const {
+    return space_->Reserve(bytes);
+  }
 
- private:
-  BlobStore(std::string folder, uint64_t reserve_bytes, SyncHook before_sync)
-      : folder_(std::move(folder)),
-        reserve_bytes_(reserve_bytes),
-        before_sync_(std::move(before_sync)) {}
-  std::string FolderOf(const std::string& id) const;
+  absl::StatusOr<uint64_t> FreeBytes() const { return space_->FreeBytes(); }
+
+  const std::string& folder() const { return folder_; }
+  // Where the file of `id`, which must be a content id, is or would be.
   std::string PathOf(const std::string& id) const;
 
+ private:
+  BlobStore(std::string folder, std::shared_ptr<DiskSpace> space, SyncHook before_sync)
+      : folder_(std::move(folder)),
+        space_(std::move(space)),
+        before_sync_(std::move(before_sync)) {}
+  std::string FolderOf(const std::string& id) const;
+
   std::string folder_;
-  uint64_t reserve_bytes_;
+  std::shared_ptr<DiskSpace> space_;
   SyncHook before_sync_;
 };
 

@@ -11,9 +11,14 @@
 
 namespace pleat {
 
+class Database;
 class SyncHookVfs;
 
 enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig };
+// Those that are a file and a row; jobs are rows alone.
+inline constexpr EntryKind kFileKinds[] = {EntryKind::kSequence, EntryKind::kModel,
+                                           EntryKind::kCompressedSequence, EntryKind::kRig};
+const char* EntryKindName(EntryKind kind);  // "compressed sequence"
 
 struct CatalogEntry {
   std::string id;
@@ -22,8 +27,9 @@ struct CatalogEntry {
 };
 
 // Invariants:
-//  - The file is a SQLite database in write-ahead-log mode with one table, `entries`; its version
-//    is PRAGMA user_version. `record` is opaque here: records.h says what it holds.
+//  - The file is a SQLite database in write-ahead-log mode; its version is PRAGMA user_version. The
+//    rows of the table `entries` are what exists; `record` is opaque here, records.h says what it
+//    holds. `properties` holds the id of the store, `removals` the files that are to be removed.
 //  - An entry is (kind, id). Its position, the order in which entries were added, never changes.
 //  - A call that changes something returns after its commit has been synced (synchronous=FULL):
 //    what was reported survives a power cut. A crash before that loses the whole change, never a
@@ -39,9 +45,13 @@ struct CatalogEntry {
 // other is taken. Thread-safe.
 class Catalog {
  public:
-  // kFailedPrecondition when a newer version wrote the file, kDataLoss when it is damaged.
+  // Makes the file when it is missing. kFailedPrecondition when a newer version wrote it or when it
+  // cannot be written, kDataLoss when it is damaged.
   static absl::StatusOr<std::unique_ptr<Catalog>> Open(const std::string& path,
                                                        SyncHook before_sync = {});
+  // Opens a file that must exist, also while another process uses it. Calls that change something
+  // fail.
+  static absl::StatusOr<std::unique_ptr<Catalog>> OpenReadOnly(const std::string& path);
   ~Catalog();
   Catalog(const Catalog&) = delete;
   Catalog& operator=(const Catalog&) = delete;
@@ -50,17 +60,37 @@ class Catalog {
   absl::Status Put(EntryKind kind, const CatalogEntry& entry);
   absl::StatusOr<CatalogEntry> Get(EntryKind kind, const std::string& id);  // or kNotFound
   absl::StatusOr<std::vector<CatalogEntry>> List(EntryKind kind);           // oldest first
-  absl::Status Delete(EntryKind kind, const std::string& id);               // or kNotFound
+  // kNotFound when there is none. In the same commit the file of the entry becomes a pending
+  // removal.
+  absl::Status Delete(EntryKind kind, const std::string& id);
+
+  // The content ids that the rows name, sorted.
+  absl::StatusOr<std::vector<std::string>> FileIds();
+  // Says whether any row names the file `id`.
+  absl::StatusOr<bool> NamesFile(const std::string& id);
+
+  // Files whose last row was deleted and which may still be on the disk. Adding an entry takes its
+  // id off the list.
+  absl::StatusOr<std::vector<std::string>> PendingRemovals();
+  absl::Status ForgetRemoval(const std::string& id);  // does not wait for the disk
+
+  // The id of the store that the rows belong to (StoreIdentity); empty when it was never set.
+  absl::StatusOr<std::string> StoreId();
+  absl::Status SetStoreId(const std::string& id);
+
+  // Writes what the catalog holds at this moment to a new database at `path`.
+  absl::Status CopyTo(const std::string& path);
 
  private:
-  class Connection;
-  class Statement;
   Catalog();
-  absl::Status Prepare(const std::string& path);
+  // Looks for damage and returns the version, 0 for an empty file.
+  absl::StatusOr<int> CheckFile(const std::string& path);
+  absl::StatusOr<std::vector<std::string>> Ids(const char* sql);
 
   std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections
-  std::unique_ptr<Connection> writer_;
-  std::unique_ptr<Connection> reader_;
+  std::unique_ptr<Database> writer_;
+  std::unique_ptr<Database> reader_;
+  bool has_properties_ = true;  // false: version 1, opened read-only
 };
 
 }  // namespace pleat

@@ -3,6 +3,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -14,15 +15,21 @@
 #include "absl/status/statusor.h"
 #include "pleat/store/blob_store.h"
 #include "pleat/store/catalog.h"
+#include "pleat/store/quarantine.h"
 #include "pleat/store/sync_hook.h"
 #include "pleat/store/upload_area.h"
 
 namespace pleat {
 
+class FolderLock;
+
 struct StoreOptions {
   std::string data_dir{};
   uint64_t reserve_bytes = uint64_t{256} << 20;  // kept free on the disk
-  SyncHook before_sync{};                        // for tests
+  // Receives one sentence for the operator about each thing that is not as it should be, such as a
+  // file that has changed. Called from any thread.
+  std::function<void(const std::string& problem)> on_problem{};
+  SyncHook before_sync{};  // for tests
 };
 
 // Invariants:
@@ -37,10 +44,16 @@ struct StoreOptions {
 //    and Delete:
 //        5. commit the removal of the row
 //        6. remove the file
-//    A crash after 1 leaves a temporary file or an upload that can go on; a crash after 2, 3 or 5
-//    leaves a file without a row. The next Open removes both kinds of leftovers, so a crash at any
-//    point means that the change happened or that it did not. Only a disk that loses synced data
-//    makes a row without a file; missing_files() names those.
+//    A crash after 1 leaves a temporary file or an upload that can go on; a crash after 5 leaves a
+//    file that the catalog lists as a pending removal. The next Open removes both. A crash after 2
+//    or 3 leaves a file that nobody knows. So a crash at any point means that the change happened
+//    or that it did not.
+//  - No file is erased but a temporary one and one that somebody asked to delete. A file that no
+//    row names, for whatever reason, goes to the quarantine, and so does one whose content has
+//    changed. Its entry stays, and the same content uploaded again makes it whole.
+//  - Catalog and files have the same store id; Open refuses a catalog that is empty or foreign to
+//    the files beside it (store_identity.h). Only a disk that loses synced data makes a row without
+//    a file; missing_files() names those.
 //
 // Locks: step 1 takes seconds for large files and holds nothing. Steps 2 to 4 of one id, and 5 and
 // 6, exclude each other (IdLock): else a Delete between 2 and 4 would take the file away under the
@@ -50,8 +63,9 @@ struct StoreOptions {
 // All parts are thread-safe.
 class Store {
  public:
-  // Makes the folder when it is missing and removes what a crash left behind.
-  // kFailedPrecondition when another process holds it.
+  // Makes the folder when it is missing, and ends what a crash interrupted. A full disk is no
+  // reason not to open. kFailedPrecondition when another process holds the folder, or when its
+  // catalog and its files do not belong together; kDataLoss when the catalog is damaged.
   static absl::StatusOr<std::unique_ptr<Store>> Open(const StoreOptions& options);
   ~Store();
   Store(const Store&) = delete;
@@ -62,22 +76,39 @@ class Store {
   absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes);
   // The same with the content of a complete upload (Upload::ReadComplete), which moves.
   absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload);
-  // Removes row and file; kNotFound when there is no such row.
+  // Removes row and file; kNotFound when there is no such row. The file stays while a row of
+  // another kind names it.
   absl::Status Delete(EntryKind kind, const std::string& id);
+
+  // Read returns the content of a file, and Verify reads it and says whether it is intact.
+  // kNotFound when it is not there, kDataLoss when it has changed: then it is in quarantine
+  // afterwards. kUnavailable when the disk gives an error.
+  absl::StatusOr<std::string> Read(const std::string& id);
+  absl::Status Verify(const std::string& id);
+
+  // Tells the operator (StoreOptions::on_problem).
+  void Report(const std::string& problem) const;
 
   BlobStore& blobs() { return *blobs_; }
   Catalog& catalog() { return *catalog_; }
   UploadArea& uploads() { return *uploads_; }
+  const Quarantine& quarantine() const { return quarantine_; }
 
-  // Ids of sequences, models and rigs whose file was gone when the store was opened.
+  // Ids of entries whose file was gone when the store was opened.
   const std::vector<std::string>& missing_files() const { return missing_files_; }
 
  private:
   class IdLock;
-  Store() = default;
-  absl::Status Clean();
+  explicit Store(const StoreOptions& options);
+  absl::Status Reconcile(const std::string& data_dir);
+  absl::Status SettleIdentity(const std::string& data_dir, size_t num_named, size_t num_files);
+  // Call with the IdLock held, or before anybody else can use the store.
+  absl::Status RemoveUnnamed(const std::string& id);
+  absl::Status QuarantineIfDamaged(const std::string& id);
 
-  int lock_fd_ = -1;
+  const std::function<void(const std::string& problem)> on_problem_;
+  Quarantine quarantine_;
+  std::unique_ptr<FolderLock> lock_;
   std::unique_ptr<BlobStore> blobs_;
   std::unique_ptr<Catalog> catalog_;
   std::unique_ptr<UploadArea> uploads_;

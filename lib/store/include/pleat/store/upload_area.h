@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/store/disk_space.h"
 #include "pleat/store/staged_file.h"
 #include "pleat/store/sync_hook.h"
 
@@ -43,8 +44,9 @@ class Upload {
  private:
   friend class UploadArea;
   Upload(UploadArea* area, std::string id, std::string path, uint64_t size_bytes, int fd,
-         uint64_t received_bytes);
+         uint64_t received_bytes, SpaceReservation room);
 
+  SpaceReservation room_;  // for the bytes that are still to come
   UploadArea* area_;
   std::string id_, path_;
   uint64_t size_bytes_ = 0, received_bytes_ = 0;
@@ -73,9 +75,9 @@ class UploadArea {
 
   // Goes on with the upload `id` of `size_bytes` in all at `offset_bytes`. kAborted when another
   // writer holds it, kOutOfRange (naming the right offset) when `offset_bytes` is not what has
-  // arrived; offset 0 starts again.
+  // arrived; offset 0 starts again. `room` is held for what is still to come.
   absl::StatusOr<std::unique_ptr<Upload>> Begin(const std::string& id, uint64_t size_bytes,
-                                                uint64_t offset_bytes);
+                                                uint64_t offset_bytes, SpaceReservation room = {});
 
  private:
   friend class Upload;

@@ -1,0 +1,47 @@
+// What Prometheus asks the server for.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace pleat {
+
+// Counters and histograms of calls, and gauges that are read when somebody asks. Thread-safe.
+class ServerMetrics {
+ public:
+  using Labels = std::map<std::string, std::string>;
+
+  ServerMetrics();
+  ~ServerMetrics();
+  ServerMetrics(const ServerMetrics&) = delete;
+  ServerMetrics& operator=(const ServerMetrics&) = delete;
+
+  // A call of the RPC `method`, "/pleat.v1.JobService/GetJob", begins or ends. Methods of other
+  // packages than pleat and grpc are counted together, so that no client can make up labels.
+  // status: the name of a code, "OK". seconds: from the first message to the status.
+  void CallStarted(const std::string& method);
+  void CallEnded(const std::string& method, const std::string& status, double seconds);
+
+  // A gauge whose value `read` returns, from any thread. One name may come with several labels; the
+  // help of the first counts.
+  void AddGauge(const std::string& name, const std::string& help, const Labels& labels,
+                std::function<double()> read);
+
+  // All metrics in the text format of Prometheus.
+  std::string Text() const;
+  // Answers GET /metrics at HOST:PORT until StopServing. kUnavailable when the address cannot be
+  // bound.
+  absl::Status Serve(const std::string& address);
+  // Call it before anything ends that the gauges read.
+  void StopServing();
+
+ private:
+  class Impl;
+  const std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pleat

@@ -1,0 +1,141 @@
+#include "pleat/metrics/server_metrics.h"
+
+#include <prometheus/collectable.h>
+#include <prometheus/counter.h>
+#include <prometheus/exposer.h>
+#include <prometheus/family.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
+#include <prometheus/registry.h>
+#include <prometheus/text_serializer.h>
+
+#include <exception>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+
+namespace pleat {
+namespace {
+
+// Seconds: from a query of 50 us to the upload of a long take.
+const prometheus::Histogram::BucketBoundaries kSeconds = {50e-6, 100e-6, 200e-6, 500e-6, 1e-3, 2e-3,
+                                                          5e-3,  10e-3,  20e-3,  50e-3,  .1,   .2,
+                                                          .5,    1,      2,      5,      10,   60};
+
+std::string MethodLabel(const std::string& method) {
+  return absl::StartsWith(method, "/pleat.") || absl::StartsWith(method, "/grpc.") ? method
+                                                                                   : "other";
+}
+
+// Gauges that ask for their values in the moment of a scrape.
+class ReadGauges final : public prometheus::Collectable {
+ public:
+  void Add(const std::string& name, const std::string& help, const ServerMetrics::Labels& labels,
+           std::function<double()> read) {
+    std::lock_guard lock(mutex_);
+    Family& family = families_[name];
+    if (family.help.empty()) family.help = help;
+    family.gauges.push_back({labels, std::move(read)});
+  }
+
+  std::vector<prometheus::MetricFamily> Collect() const override {
+    std::lock_guard lock(mutex_);
+    std::vector<prometheus::MetricFamily> result;
+    for (const auto& [name, family] : families_) {
+      prometheus::MetricFamily out;
+      out.name = name;
+      out.help = family.help;
+      out.type = prometheus::MetricType::Gauge;
+      for (const Gauge& gauge : family.gauges) {
+        prometheus::ClientMetric metric;
+        for (const auto& [label, value] : gauge.labels) metric.label.push_back({label, value});
+        metric.gauge.value = gauge.read();
+        out.metric.push_back(std::move(metric));
+      }
+      result.push_back(std::move(out));
+    }
+    return result;
+  }
+
+ private:
+  struct Gauge {
+    ServerMetrics::Labels labels;
+    std::function<double()> read;
+  };
+  struct Family {
+    std::string help;
+    std::vector<Gauge> gauges;
+  };
+  mutable std::mutex mutex_;
+  std::map<std::string, Family> families_;  // guarded by mutex_
+};
+
+}  // namespace
+
+class ServerMetrics::Impl {
+ public:
+  const std::shared_ptr<prometheus::Registry> registry = std::make_shared<prometheus::Registry>();
+  const std::shared_ptr<ReadGauges> gauges = std::make_shared<ReadGauges>();
+  prometheus::Family<prometheus::Counter>& calls =
+      prometheus::BuildCounter()
+          .Name("pleat_rpcs_total")
+          .Help("Calls that have ended, by method and status")
+          .Register(*registry);
+  prometheus::Family<prometheus::Gauge>& open_calls = prometheus::BuildGauge()
+                                                          .Name("pleat_rpcs_open")
+                                                          .Help("Calls under way, by method")
+                                                          .Register(*registry);
+  prometheus::Family<prometheus::Histogram>& seconds =
+      prometheus::BuildHistogram()
+          .Name("pleat_rpc_seconds")
+          .Help("How long calls took, streams from their begin to their end")
+          .Register(*registry);
+  std::unique_ptr<prometheus::Exposer> exposer;  // ends first: it reads the others
+};
+
+ServerMetrics::ServerMetrics() : impl_(std::make_unique<Impl>()) {}
+ServerMetrics::~ServerMetrics() = default;
+
+void ServerMetrics::CallStarted(const std::string& method) {
+  impl_->open_calls.Add({{"method", MethodLabel(method)}}).Increment();
+}
+
+void ServerMetrics::CallEnded(const std::string& method, const std::string& status,
+                              double seconds) {
+  const std::string label = MethodLabel(method);
+  impl_->open_calls.Add({{"method", label}}).Decrement();
+  impl_->calls.Add({{"method", label}, {"status", status}}).Increment();
+  impl_->seconds.Add({{"method", label}}, kSeconds).Observe(seconds);
+}
+
+void ServerMetrics::AddGauge(const std::string& name, const std::string& help, const Labels& labels,
+                             std::function<double()> read) {
+  impl_->gauges->Add(name, help, labels, std::move(read));
+}
+
+std::string ServerMetrics::Text() const {
+  std::vector<prometheus::MetricFamily> families = impl_->registry->Collect();
+  for (prometheus::MetricFamily& family : impl_->gauges->Collect()) {
+    families.push_back(std::move(family));
+  }
+  return prometheus::TextSerializer().Serialize(families);
+}
+
+absl::Status ServerMetrics::Serve(const std::string& address) {
+  try {
+    impl_->exposer = std::make_unique<prometheus::Exposer>(address, /*num_threads=*/1);
+  } catch (const std::exception&) {  // CivetWeb says no more than that it failed
+    return absl::UnavailableError(
+        absl::StrCat("cannot answer metrics at '", address, "': the address is wrong or in use"));
+  }
+  impl_->exposer->RegisterCollectable(impl_->registry);
+  impl_->exposer->RegisterCollectable(impl_->gauges);
+  return absl::OkStatus();
+}
+
+void ServerMetrics::StopServing() { impl_->exposer.reset(); }
+
+}  // namespace pleat

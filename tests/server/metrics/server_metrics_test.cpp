@@ -1,0 +1,84 @@
+#include "pleat/metrics/server_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/status_matchers.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const char kGetJob[] = "/pleat.v1.JobService/GetJob";
+
+TEST(ServerMetricsTest, CallsAreCountedByMethodAndStatus) {
+  ServerMetrics metrics;
+  metrics.CallStarted(kGetJob);
+  EXPECT_THAT(metrics.Text(),
+              HasSubstr(R"(pleat_rpcs_open{method="/pleat.v1.JobService/GetJob"} 1)"));
+  metrics.CallEnded(kGetJob, "OK", 3e-3);
+  for (int i = 0; i < 2; ++i) {
+    metrics.CallStarted(kGetJob);
+    metrics.CallEnded(kGetJob, "NOT_FOUND", 60e-6);
+  }
+  const std::string text = metrics.Text();
+  const std::string method = R"(method="/pleat.v1.JobService/GetJob")";
+  EXPECT_THAT(text, HasSubstr("pleat_rpcs_open{" + method + "} 0"));
+  EXPECT_THAT(text, HasSubstr("pleat_rpcs_total{" + method + R"(,status="OK"} 1)"));
+  EXPECT_THAT(text, HasSubstr("pleat_rpcs_total{" + method + R"(,status="NOT_FOUND"} 2)"));
+  EXPECT_THAT(text, HasSubstr("pleat_rpc_seconds_bucket{" + method + R"(,le="5e-05"} 0)"));
+  EXPECT_THAT(text, HasSubstr("pleat_rpc_seconds_bucket{" + method + R"(,le="0.0001"} 2)"));
+  EXPECT_THAT(text, HasSubstr("pleat_rpc_seconds_count{" + method + "} 3"));
+}
+
+TEST(ServerMetricsTest, NoClientMakesUpLabels) {
+  ServerMetrics metrics;
+  for (int i = 0; i < 100; ++i) {
+    const std::string method = "/evil/" + std::to_string(i);
+    metrics.CallStarted(method);
+    metrics.CallEnded(method, "UNIMPLEMENTED", 1);
+  }
+  EXPECT_THAT(metrics.Text(), Not(HasSubstr("evil")));
+  EXPECT_THAT(metrics.Text(), HasSubstr(R"({method="other",status="UNIMPLEMENTED"} 100)"));
+}
+
+TEST(ServerMetricsTest, GaugesAreReadWhenSomebodyAsks) {
+  ServerMetrics metrics;
+  double value = 1;
+  metrics.AddGauge("pleat_jobs", "Jobs by state", {{"state", "queued"}}, [&] { return value; });
+  metrics.AddGauge("pleat_jobs", "", {{"state", "running"}}, [] { return 7; });
+  EXPECT_THAT(metrics.Text(), HasSubstr(R"(pleat_jobs{state="queued"} 1)"));
+  value = 5;
+  EXPECT_THAT(metrics.Text(), HasSubstr(R"(pleat_jobs{state="queued"} 5)"));
+  EXPECT_THAT(metrics.Text(), HasSubstr(R"(pleat_jobs{state="running"} 7)"));
+  EXPECT_THAT(metrics.Text(), HasSubstr("# HELP pleat_jobs Jobs by state"));
+}
+
+TEST(ServerMetricsTest, ManyThreadsCountTogether) {
+  ServerMetrics metrics;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      for (int call = 0; call < 250; ++call) {
+        metrics.CallStarted(kGetJob);
+        metrics.CallEnded(kGetJob, "OK", 1e-3);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_THAT(metrics.Text(), HasSubstr(R"(status="OK"} 1000)"));
+}
+
+TEST(ServerMetricsTest, AnAddressThatIsWrongIsSaid) {
+  ServerMetrics metrics;
+  EXPECT_THAT(metrics.Serve("nonsense"),
+              HasStatus(absl::StatusCode::kUnavailable, HasSubstr("nonsense")));
+}
+
+}  // namespace
+}  // namespace pleat
