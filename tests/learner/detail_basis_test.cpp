@@ -14,12 +14,12 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int kNumDetails = 151;  // three blocks and a part of a fourth
+constexpr int kBasisDetails = 151;  // three blocks and a part of a fourth
 constexpr int kNumComponents = 7;
 
 struct Truth {
-  Eigen::VectorXf mean = RandomMatrix(kNumDetails, 1, 1).cast<float>();
-  Eigen::MatrixXd basis = RandomMatrix(kNumDetails, kNumComponents, 2);
+  Eigen::VectorXf mean = RandomMatrix(kBasisDetails, 1, 1).cast<float>();
+  Eigen::MatrixXd basis = RandomMatrix(kBasisDetails, kNumComponents, 2);
   Eigen::VectorXf coefficients = RandomMatrix(kNumComponents, 1, 3).cast<float>();
   Eigen::VectorXd detail = mean.cast<double>() + basis * coefficients.cast<double>();
 };
@@ -126,7 +126,7 @@ TEST(DetailBasisTest, QueriesTogetherGiveTheBitsOfEachAlone) {
   }
   basis.ExpandBlocks(pointers, 1, 2, targets);
   for (int q = 0; q < kNumQueries; ++q) {
-    Eigen::VectorXf alone(kNumDetails);
+    Eigen::VectorXf alone(kBasisDetails);
     basis.Expand(queries[q], alone);
     for (int block = 0; block < 2; ++block) {
       for (int lane = 0; lane < DetailBasis::kLanes; ++lane) {

@@ -5,7 +5,7 @@
 #include "pleat/base/sha256.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/sequence_file.h"
-#include "pleat/sequence_codec/sequence_encoder.h"
+#include "pleat/sequence_codec/compress_sequence.h"
 #include "pleat/store/records.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"

@@ -88,7 +88,9 @@ TEST_F(ScrubberTest, NamesAFileThatIsGoneAndNotOneThatWasDeleted) {
   std::filesystem::remove(PathOf(gone));
   int num_pauses = 0;
   EXPECT_TRUE(Pass([&](double) {
-    if (num_pauses++ == 0) EXPECT_THAT(store_->Delete(EntryKind::kModel, deleted), IsOk());
+    if (num_pauses++ == 0) {
+      EXPECT_THAT(store_->Delete(EntryKind::kModel, deleted), IsOk());
+    }
     return true;
   }));
   EXPECT_THAT(problems_, ElementsAre(HasSubstr(gone)));

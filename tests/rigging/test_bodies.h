@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "body_volume.h"
+#include "pleat/rigging/body_volume.h"
 #include "support/triangle_shapes.h"
 
 namespace pleat {

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "pleat/sequence_codec/sequence_decoder.h"
+#include "pleat/service/compressed_sequence_service.h"
 #include "pleat/service/model_service.h"
 #include "pleat/service/sequence_service.h"
 

@@ -6,7 +6,6 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/strip.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 
@@ -57,11 +56,11 @@ std::string MakeStoreId() {
 }
 
 absl::StatusOr<std::string> ReadBlobsId(const std::string& blobs_folder) {
-  absl::StatusOr<std::string> id = ReadFile(IdPath(blobs_folder), kMaxIdFileBytes);
-  if (absl::IsNotFound(id.status())) return std::string();
-  PLEAT_RETURN_IF_ERROR(id.status());
-  absl::StripTrailingAsciiWhitespace(&*id);
-  const bool is_id = id->size() == kStoreIdLength && std::ranges::all_of(*id, [](unsigned char c) {
+  const absl::StatusOr<std::string> text = ReadFile(IdPath(blobs_folder), kMaxIdFileBytes);
+  if (absl::IsNotFound(text.status())) return std::string();
+  PLEAT_RETURN_IF_ERROR(text.status());
+  const std::string id(absl::StripAsciiWhitespace(*text));
+  const bool is_id = id.size() == kStoreIdLength && std::ranges::all_of(id, [](unsigned char c) {
                        return absl::ascii_isxdigit(c);
                      });
   if (is_id) return id;

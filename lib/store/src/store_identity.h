@@ -13,11 +13,11 @@ namespace pleat {
 // new, restored from somewhere else, or lies beside an empty folder because a disk is not mounted
 // would make every file look unknown, or every entry look lost. So what does not agree is refused.
 struct StoreSides {
-  std::string catalog_id;  // empty: never written, as in a new store or in one of version 0.1.0
-  std::string blobs_id;    // the same
-  size_t num_named = 0;    // files that the rows name
-  size_t num_files = 0;    // files that are there
-  size_t num_common = 0;   // files that are there and named
+  std::string catalog_id{};  // empty: never written, as in a new store or in one of version 0.1.0
+  std::string blobs_id{};    // the same
+  size_t num_named = 0;      // files that the rows name
+  size_t num_files = 0;      // files that are there
+  size_t num_common = 0;     // files that are there and named
 };
 
 // Returns the id for both sides: that of either side, or "" when the store needs a new one.

@@ -15,8 +15,9 @@ namespace pleat {
 
 struct QuarantinedFile {
   std::string name;  // in the folder of the quarantine
-  std::string time;  // when it came there: "2026-11-30T17:45:00Z", empty when nobody wrote it down
-  std::string reason;  // "no entry names it"
+  std::string
+      time{};  // when it came there: "2026-11-30T17:45:00Z", empty when nobody wrote it down
+  std::string reason{};  // "no entry names it"
   uint64_t size_bytes = 0;
 };
 
