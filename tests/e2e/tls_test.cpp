@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "e2e/certificates.h"
 #include "e2e/pleat_program.h"
 #include "e2e/server_program.h"
+#include "support/certificates.h"
 #include "support/status_matchers.h"
 
 namespace pleat {

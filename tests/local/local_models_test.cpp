@@ -108,7 +108,7 @@ TEST_F(LocalModelsTest, ErrorsOfTheStoreArePassedOnAndForgotten) {
   EXPECT_THAT(models.Acquire(ids_[0]), IsOk());
   ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kModel, {ids_[2], "\xff\xff"}), IsOk());
   EXPECT_THAT(models.Get(ids_[2]), HasStatus(absl::StatusCode::kDataLoss, _));
-  EXPECT_THAT(models.List(), HasStatus(absl::StatusCode::kDataLoss, _));
+  EXPECT_EQ(models.List()->size(), 2u);  // without the one that cannot be read
   EXPECT_THAT(models.Get(ids_[0]), IsOk());
 }
 

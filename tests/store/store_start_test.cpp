@@ -195,10 +195,10 @@ TEST(StoreStartTest, AStoreOfTheFirstVersionGetsAnId) {
                              ReadFile(InSourceFolder("tests/golden/records/catalogue.db")));
   ASSERT_THAT(WriteFile(folder.File("catalogue.db"), golden), IsOk());
   { ASSERT_TRUE(Catalog::OpenReadOnly(folder.File("catalogue.db")).ok()); }
-  std::string id;
   {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("catalogue.db")));
-    for (const std::string& named : catalog->FileIds().value()) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto ids, catalog->FileIds());
+    for (const std::string& named : ids) {
       ASSERT_THAT(WriteFile(folder.File("blobs/" + named.substr(0, 2) + "/" + named), "x"), IsOk());
     }
   }

@@ -41,7 +41,8 @@ absl::StatusOr<SpaceReservation> DiskSpace::Reserve(uint64_t bytes) {
     std::lock_guard lock(mutex_);
     // Written as subtractions, since sums of numbers from outside may overflow.
     const uint64_t above = free_bytes - std::min(free_bytes, reserve_bytes_);
-    if (above >= promised_bytes_ && above - promised_bytes_ >= bytes) {
+    if (free_bytes >= reserve_bytes_ && above >= promised_bytes_ &&
+        above - promised_bytes_ >= bytes) {
       promised_bytes_ += bytes;
       return SpaceReservation(shared_from_this(), bytes);
     }

@@ -26,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kManifest[] = "manifest.tsv";  // lines of name, time, reason, between tabs
+constexpr char kTimeFormat[] = "%Y-%m-%dT%H:%M:%SZ";
 constexpr uint64_t kMaxManifestBytes = uint64_t{1} << 30;
 
 }  // namespace
@@ -34,10 +35,9 @@ absl::Status Quarantine::WriteDown(const std::string& name, const std::string& r
   const std::string path = absl::StrCat(folder_, "/", kManifest);
   const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (fd < 0) return absl::ErrnoToStatus(errno, "cannot open the manifest of the quarantine");
-  const std::string line =
-      absl::StrCat(EscapeControls(name), "\t",
-                   absl::FormatTime(absl::RFC3339_sec, absl::Now(), absl::UTCTimeZone()), "\t",
-                   EscapeControls(reason), "\n");
+  const std::string line = absl::StrCat(
+      EscapeControls(name), "\t", absl::FormatTime(kTimeFormat, absl::Now(), absl::UTCTimeZone()),
+      "\t", EscapeControls(reason), "\n");
   absl::Status status;
   // One call for the whole line: a crash leaves all of it or a line that has no end.
   if (write(fd, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {

@@ -60,6 +60,8 @@ class StoreCopier {
       PLEAT_RETURN_IF_ERROR(snapshot->SetStoreId(store_id_));
       PLEAT_ASSIGN_OR_RETURN(ids, snapshot->FileIds());
       PLEAT_RETURN_IF_ERROR(CopyFiles(ids, &to_blobs, snapshot.get(), progress));
+      PLEAT_ASSIGN_OR_RETURN(ids,
+                             snapshot->FileIds());  // without those that were deleted meanwhile
     }
     PLEAT_RETURN_IF_ERROR(Publish(snapshot_path));
     PLEAT_RETURN_IF_ERROR(RemoveOld(ids, &to_blobs));

@@ -86,6 +86,7 @@ void ConnectionListener::Stop() {
   const uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = write(wake_, &one, sizeof one);
   thread_.join();
+  socket_.Close();
 }
 
 ConnectionListener::~ConnectionListener() {
@@ -140,8 +141,8 @@ void ConnectionListener::AcceptAll() {
     const char* refusal = Refusal(peer);
     if (refusal == nullptr && !Watch(fd, peer)) refusal = "no file descriptors are left";
     if (refusal != nullptr) {
-      close(fd);
       NoteRefusal(peer, refusal);
+      close(fd);
       continue;
     }
     // A frame is one message; waiting for more to send would cost milliseconds.
@@ -189,9 +190,9 @@ void ConnectionListener::Forget(int watcher) {
 void ConnectionListener::CloseOneWithTheReserve() {
   if (reserve_ >= 0) close(reserve_);
   const int fd = accept(socket_.fd(), nullptr, nullptr);
+  NoteRefusal("somebody", "no file descriptors are left");
   if (fd >= 0) close(fd);
   reserve_ = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  NoteRefusal("somebody", "no file descriptors are left");
 }
 
 void ConnectionListener::NoteRefusal(const std::string& peer, const char* why) {

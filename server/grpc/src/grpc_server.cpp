@@ -20,6 +20,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "call_listening.h"
+#include "certificate_check.h"
 #include "connection_listener.h"
 #include "pleat/base/status.h"
 #include "services.h"
@@ -47,6 +48,8 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
     }
     return grpc::InsecureServerCredentials();
   }
+  PLEAT_RETURN_IF_ERROR(
+      CheckCertificates(options.tls_certificate, options.tls_key, options.tls_client_ca));
   grpc::SslServerCredentialsOptions tls(
       options.tls_client_ca.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
                                     : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
@@ -119,7 +122,7 @@ class GrpcServerImpl final : public GrpcServer {
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
-      return absl::UnavailableError("cannot start: the TLS certificate and key do not fit");
+      return absl::UnavailableError("gRPC does not start; its reason is in the log");
     }
     listener_->Start(
         [this](int fd) {

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <memory>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 
@@ -69,6 +70,11 @@ absl::StatusOr<ListeningSocket> ListeningSocket::Open(const std::string& address
     return absl::InvalidArgumentError(
         absl::StrCat("'", address, "' is no address to listen on: write HOST:PORT or unix:PATH"));
   }
+  int port = 0;
+  if (!absl::SimpleAtoi(address.substr(colon + 1), &port) || port < 0 || port > 65535) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "'", address, "' is no address to listen on: the port is a number from 0 to 65535"));
+  }
   std::string host = address.substr(0, colon);
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
   addrinfo hints{};
@@ -86,9 +92,9 @@ absl::StatusOr<ListeningSocket> ListeningSocket::Open(const std::string& address
   return CannotListen(address, std::strerror(errno));
 }
 
-ListeningSocket::~ListeningSocket() {
+void ListeningSocket::Close() {
   if (fd_ < 0) return;
-  close(fd_);
+  close(std::exchange(fd_, -1));
   if (!unix_path_.empty()) unlink(unix_path_.c_str());
 }
 

@@ -13,7 +13,8 @@ class ListeningSocket {
   // address: HOST:PORT, [IPV6]:PORT or unix:PATH. kInvalidArgument when it is none of them,
   // kUnavailable when it cannot be bound. Nobody else can listen at the same address and port.
   static absl::StatusOr<ListeningSocket> Open(const std::string& address);
-  ~ListeningSocket();
+  ~ListeningSocket() { Close(); }
+  void Close();  // gives the address back
   ListeningSocket(ListeningSocket&& other) noexcept
       : fd_(std::exchange(other.fd_, -1)),
         port_(other.port_),

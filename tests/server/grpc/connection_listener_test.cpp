@@ -57,12 +57,18 @@ class ConnectionListenerTest : public testing::Test {
     listener_->Start(owner_.hand_over(), [this](const std::string& what) {
       std::lock_guard lock(mutex_);
       reports_.push_back(what);
+      reported_.notify_all();
     });
   }
   TcpClient Connect(const std::string& from = "127.0.0.1") {
     TcpClient client(listener_->port(), from);
     EXPECT_TRUE(client.ok());
     return client;
+  }
+  std::string FirstReport() {
+    std::unique_lock lock(mutex_);
+    reported_.wait(lock, [this] { return !reports_.empty(); });
+    return reports_[0];
   }
   // Waits for the listener's own thread.
   void WaitForOpen(int count) {
@@ -71,6 +77,7 @@ class ConnectionListenerTest : public testing::Test {
 
   Owner owner_;
   std::mutex mutex_;
+  std::condition_variable reported_;
   std::vector<std::string> reports_;  // guarded by mutex_
   std::unique_ptr<ConnectionListener> listener_;
 };
@@ -100,9 +107,7 @@ TEST_F(ConnectionListenerTest, WhatIsBeyondTheLimitIsClosedUntilThereIsRoom) {
   WaitForOpen(1);
   const TcpClient third = Connect();
   owner_.WaitFor(3);
-  std::lock_guard lock(mutex_);
-  ASSERT_FALSE(reports_.empty());
-  EXPECT_THAT(reports_[0], HasSubstr("127.0.0.1: the server has its most connections"));
+  EXPECT_THAT(FirstReport(), HasSubstr("127.0.0.1: the server has its most connections"));
 }
 
 TEST_F(ConnectionListenerTest, OnePeerLeavesRoomForOthers) {

@@ -63,7 +63,7 @@ TEST_F(GrpcServerTest, CertificatesThatDoNotFitAreRefused) {
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("certificate")));
   }
   EXPECT_THAT(GrpcServer::Start(&service, {.tls_certificate = "no PEM", .tls_key = "no PEM"}),
-              HasStatus(absl::StatusCode::kUnavailable, HasSubstr("do not fit")));
+              HasStatus(absl::StatusCode::kUnavailable, HasSubstr("no PEM certificate")));
 }
 
 TEST_F(GrpcServerTest, AnIdleServerShutsDownAtOnceAndOnlyOnce) {

@@ -45,12 +45,14 @@ TEST(ListeningSocketTest, AUnixSocketGoesWithItsOwner) {
 }
 
 TEST(ListeningSocketTest, WhatIsNoAddressIsSaid) {
-  for (const std::string& wrong : {std::string(), std::string("localhost"), std::string("1.2.3.4:"),
-                                   std::string("unix:"), "unix:" + std::string(200, 'x')}) {
+  for (const std::string& wrong :
+       {std::string(), std::string("localhost"), std::string("1.2.3.4:"), std::string("unix:"),
+        std::string("127.0.0.1:http!"), std::string("127.0.0.1:99999"),
+        "unix:" + std::string(200, 'x')}) {
     EXPECT_THAT(ListeningSocket::Open(wrong).status(),
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(wrong)));
   }
-  for (const char* wrong : {"127.0.0.1:http!", "no such host:1", "127.0.0.1:99999"}) {
+  for (const char* wrong : {"no such host:1", "256.0.0.1:1"}) {
     EXPECT_THAT(ListeningSocket::Open(wrong).status(),
                 HasStatus(absl::StatusCode::kUnavailable, HasSubstr(wrong)));
   }

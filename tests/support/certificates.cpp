@@ -1,4 +1,4 @@
-#include "e2e/certificates.h"
+#include "support/certificates.h"
 
 #include <openssl/bio.h>
 #include <openssl/pem.h>
