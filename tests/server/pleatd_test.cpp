@@ -263,7 +263,7 @@ TEST(PleatdTest, TellsTheOperatorWhatAStartFound) {
   Daemon daemon(Flags(folder));
   daemon.WaitForAddress();
   EXPECT_THAT(daemon.output(), HasSubstr(absl::StrCat("the file of '", id, "' is gone")));
-  EXPECT_THAT(daemon.output(), HasSubstr("1 files that no entry names were moved"));
+  EXPECT_THAT(daemon.output(), HasSubstr("files that no entry names: 1 moved to the quarantine"));
 }
 
 // The answer of an HTTP server to GET /metrics.

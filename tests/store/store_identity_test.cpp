@@ -60,7 +60,7 @@ TEST(StoreIdentityTest, ASideWithoutIdIsKnownByItsFiles) {
 
 TEST(StoreIdentityTest, ACatalogThatKnowsNoneOfTheFilesIsRefused) {
   for (const char* id : {"", kTwo}) {
-    EXPECT_THAT(Agree({.blobs_id = id, .num_files = 8}), Refuses("8 files lie beside it"));
+    EXPECT_THAT(Agree({.blobs_id = id, .num_files = 8}), Refuses("the files beside it are 8"));
     EXPECT_THAT(Agree({.blobs_id = id, .num_named = 5, .num_files = 8}),
                 Refuses("none of them is among the 8"));
   }

@@ -77,7 +77,7 @@ TEST(StoreStartTest, MovesFilesWithoutRowToQuarantineAndReportsRowsWithoutFile) 
   EXPECT_EQ(store->quarantine().List()->at(0).reason, "no entry names it");
   EXPECT_THAT(store->missing_files(), ElementsAre(lost));
   EXPECT_THAT(store.problems(),
-              ElementsAre(HasSubstr(lost), HasSubstr("1 files that no entry names")));
+              ElementsAre(HasSubstr(lost), HasSubstr("files that no entry names: 1 moved")));
 }
 
 // What erased 3 to 8 files of 0.1.0 without a word.
@@ -137,7 +137,7 @@ TEST(StoreStartTest, FilesThatAreNotMountedAreNotedAsLost) {
   MakeStoreOfThree(folder.path());
   std::filesystem::rename(folder.File("blobs"), folder.File("elsewhere"));
   EXPECT_THAT(Store::Open({.data_dir = folder.path()}),
-              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("not mounted")));
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("is a disk not mounted?")));
   std::filesystem::remove_all(folder.File("blobs"));
   std::filesystem::rename(folder.File("elsewhere"), folder.File("blobs"));
   ReportingStore store(folder.path());

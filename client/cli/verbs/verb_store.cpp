@@ -113,7 +113,7 @@ absl::Status RunCopy(const StoreVerbOptions& options, const Session& session,
                               {"problems", ProblemsJson(copy.problems)}});
   } else {
     *session.out << absl::StrFormat(
-        "%d files copied (%s), %d were there already, %d removed\n", copy.num_copied,
+        "files copied: %d (%s), already there: %d, removed: %d\n", copy.num_copied,
         FormatBytes(static_cast<double>(copy.bytes_copied)), copy.num_kept, copy.num_removed);
     PrintProblems(copy.problems, *session.out);
   }

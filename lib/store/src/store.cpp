@@ -170,8 +170,8 @@ absl::Status Store::Reconcile(const std::string& data_dir) {
     moved.Update(quarantine_.Take(blobs_->PathOf(id), "no entry names it"));
   }
   if (num_unknown > 0) {
-    Report(absl::StrCat(num_unknown, " files that no entry names ",
-                        moved.ok() ? "were moved to the quarantine" : "stay where they are",
+    Report(absl::StrCat("files that no entry names: ", num_unknown,
+                        moved.ok() ? " moved to the quarantine" : " left where they are",
                         "; 'pleat store check' lists them",
                         moved.ok() ? "" : absl::StrCat(" (", std::string(moved.message()), ")")));
   }

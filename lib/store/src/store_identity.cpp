@@ -37,12 +37,12 @@ absl::StatusOr<std::string> AgreeOnStoreId(const StoreSides& sides, const std::s
   const bool is_empty = sides.num_named == 0 && sides.num_files == 0;
   if (is_empty || sides.num_common > 0) return known;
   if (sides.num_named == 0) {
-    return refuse(absl::StrCat("the catalog is empty and ", sides.num_files,
-                               " files lie beside it; was catalogue.db removed?"));
+    return refuse(absl::StrCat("the catalog is empty, and the files beside it are ",
+                               sides.num_files, " (was catalogue.db removed?)"));
   }
   if (sides.num_files == 0) {
     return refuse(absl::StrCat("the catalog names ", sides.num_named,
-                               " files and none of them is there; is a disk not mounted?"));
+                               " files, and none of them is there (is a disk not mounted?)"));
   }
   return refuse(absl::StrCat("the catalog names ", sides.num_named,
                              " files and none of them is "

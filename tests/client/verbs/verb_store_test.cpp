@@ -69,7 +69,7 @@ TEST_F(StoreVerbTest, ABackupIsMadeRenewedAndRestored) {
   EXPECT_EQ(RunJson({"backup", data_, backup_})["copied_files"], 1);
   const Outcome again = Run({"backup", data_, backup_, "-q"});
   EXPECT_EQ(again.code, ExitCode::kOk);
-  EXPECT_THAT(again.out, HasSubstr("0 files copied (0 B), 1 were there already"));
+  EXPECT_THAT(again.out, HasSubstr("files copied: 0 (0 B), already there: 1"));
   EXPECT_EQ(Run({"restore", backup_, data_, "-q"}).code, ExitCode::kRefused);  // not empty
   std::filesystem::remove_all(data_);
   EXPECT_EQ(Run({"restore", backup_, data_, "-q"}).code, ExitCode::kOk);
