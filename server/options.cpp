@@ -69,6 +69,10 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
                   "Uploads, downloads, watches, clips and live sessions together")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+  app->add_option("--request-bytes", grpc->request_bytes,
+                  "Memory for the poses of clips, all calls together")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
   app->add_option("--max-connections", grpc->connections.max_connections, "Of all clients together")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();

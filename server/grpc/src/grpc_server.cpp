@@ -77,7 +77,8 @@ void LogForGrpc(gpr_log_func_args* args) {
 class GrpcServerImpl final : public GrpcServer {
  public:
   GrpcServerImpl(CharacterService* service, const GrpcServerOptions& options)
-      : storage_executor_(options.num_storage_threads) {
+      : request_memory_(options.request_bytes, "--request-bytes"),
+        storage_executor_(options.num_storage_threads) {
     if (options.pose_executor == nullptr) own_pose_executor_.emplace(0);
     context_.sequences = &service->sequences();
     context_.jobs = &service->jobs();
@@ -86,6 +87,7 @@ class GrpcServerImpl final : public GrpcServer {
     context_.compressed_sequences = &service->compressed_sequences();
     context_.pose_executor = own_pose_executor_ ? &*own_pose_executor_ : options.pose_executor;
     context_.storage_executor = &storage_executor_;
+    context_.request_memory = &request_memory_;
     context_.max_open_streams = options.max_open_streams;
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
@@ -174,6 +176,7 @@ class GrpcServerImpl final : public GrpcServer {
     context_.open_calls.WaitUntilNone(deadline);
   }
 
+  MemoryBudget request_memory_;  // outlives the calls
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
   std::optional<Executor> own_pose_executor_;

@@ -11,19 +11,26 @@
 namespace pleat {
 namespace {
 
+// What a pose takes once it is no message any more: a rotation per joint and the root.
+constexpr uint64_t kBytesPerPose = sizeof(Pose) + kNumHumanJoints * sizeof(Eigen::Quaterniond);
+
 struct Clip {
   PoseService* poses;
   v1::EvaluateClipRequest request;
+  absl::StatusOr<Reservation> memory;  // not OK: why there is none for the request
   std::unique_ptr<ClipSession> session = nullptr;
 
   absl::StatusOr<bool> Next(v1::EvaluateClipResponse* response) {
     if (session == nullptr) {
+      PLEAT_RETURN_IF_ERROR(memory.status());
       PLEAT_ASSIGN_OR_RETURN(SessionRequest opening,
                              FromProto(request.character(), request.options()));
       PLEAT_ASSIGN_OR_RETURN(PoseTrack track, FromProto(request.track()));
       PLEAT_ASSIGN_OR_RETURN(
           session, poses->OpenClip(opening.model_id, std::move(track), std::move(opening.options)));
-      request.Clear();
+      const auto num_poses = static_cast<uint64_t>(request.track().poses_size());
+      request = v1::EvaluateClipRequest();  // Clear would keep the memory
+      memory->ShrinkTo(num_poses * kBytesPerPose);
       *response->mutable_header() = ToProto(session->header());
       return true;
     }
@@ -39,7 +46,16 @@ struct Clip {
 
 grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
     HandlerContext* context, const v1::EvaluateClipRequest& request) {
-  const auto clip = std::make_shared<Clip>(Clip{context->poses, request});
+  // gRPC keeps its message until the call ends; taken out of it, it can go earlier.
+  v1::EvaluateClipRequest taken;
+  taken.Swap(const_cast<v1::EvaluateClipRequest*>(&request));
+  absl::StatusOr<Reservation> memory = Reservation();
+  if (context->request_memory != nullptr) {
+    memory = context->request_memory->Reserve(taken.SpaceUsedLong(), "this clip");
+    if (!memory.ok()) taken = v1::EvaluateClipRequest();
+  }
+  const auto clip =
+      std::make_shared<Clip>(Clip{context->poses, std::move(taken), std::move(memory)});
   return StartReactor<PullStream<v1::EvaluateClipResponse>>(
       context, context->pose_executor, "EvaluateClip",
       [clip](v1::EvaluateClipResponse* response) { return clip->Next(response); });

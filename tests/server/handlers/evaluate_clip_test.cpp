@@ -63,6 +63,39 @@ TEST_F(EvaluateClipTest, WhatIsWrongNeverReachesTheService) {
   EXPECT_TRUE(responses.empty());
 }
 
+// Clips that nobody read took 41 MB each, as many as there are streams.
+TEST(EvaluateClipMemoryTest, ClipsWaitForNobodyAndShareABudget) {
+  MockService service;
+  const auto server = GrpcServer::Start(&service, {.request_bytes = 100'000}).value();
+  const auto stub = v1::PoseService::NewStub(server->InProcessChannel());
+  v1::EvaluateClipRequest request;
+  request.mutable_character()->set_model_id(kId);
+  request.mutable_track()->set_fps(25);
+  for (int t = 0; t < 60; ++t) {
+    v1::Pose* pose = request.mutable_track()->add_poses();
+    for (int j = 0; j < 18; ++j) pose->add_rotations()->set_w(1);
+  }
+  StreamHeader header;
+  const auto evaluate = [&] {
+    grpc::ClientContext call;
+    const auto reader = stub->EvaluateClip(&call, request);
+    v1::EvaluateClipResponse response;
+    while (reader->Read(&response)) {
+    }
+    return reader->Finish();
+  };
+  EXPECT_CALL(service.mock_poses, OpenClip).Times(3).WillRepeatedly([&] {
+    auto clip = std::make_unique<testing::NiceMock<MockClipSession>>();
+    ON_CALL(*clip, header).WillByDefault(testing::ReturnRef(header));
+    ON_CALL(*clip, done).WillByDefault(Return(true));
+    return clip;
+  });
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(evaluate().ok());  // each gives its bytes back
+  for (int t = 0; t < 60; ++t) *request.mutable_track()->add_poses() = request.track().poses(t);
+  EXPECT_THAT(evaluate(), HasGrpcStatus(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                        testing::HasSubstr("--request-bytes")));
+}
+
 TEST_F(EvaluateClipTest, PassesOnWhyAFrameCannotBeShown) {
   auto clip = std::make_unique<testing::NiceMock<MockClipSession>>();
   ON_CALL(*clip, header).WillByDefault(testing::ReturnRef(header_));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pleat/local/memory_budget.h"
+#include "pleat/base/memory_budget.h"
 #include "pleat/local/stored_files.h"
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "pleat/service/compressed_sequence_service.h"

@@ -40,6 +40,9 @@ struct GrpcServerOptions {
   // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
   // 1 GiB.
   int max_receive_bytes = 16 << 20;
+  // For the poses of clips, all calls together. A parsed pose takes three times what it takes on
+  // the wire.
+  uint64_t request_bytes = uint64_t{512} << 20;
   ConnectionLimits connections{};
   int max_streams_per_connection = 128;
   int max_open_streams = 256;  // uploads, watches, clips, live sessions, downloads

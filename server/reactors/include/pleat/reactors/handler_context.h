@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "pleat/base/executor.h"
+#include "pleat/base/memory_budget.h"
 #include "pleat/reactors/live_registry.h"
 #include "pleat/reactors/open_calls.h"
 #include "pleat/service/compressed_sequence_service.h"
@@ -24,6 +25,8 @@ struct HandlerContext {
 
   Executor* pose_executor = nullptr;     // for milliseconds of computation
   Executor* storage_executor = nullptr;  // for the disk, the catalog and the checks of uploads
+  MemoryBudget* request_memory =
+      nullptr;  // for large requests while they are worked on; null: none
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;
   std::atomic<bool> draining = false;  // the server shuts down: new calls are refused

@@ -1,4 +1,4 @@
-#include "pleat/local/memory_budget.h"
+#include "pleat/base/memory_budget.h"
 
 #include <gtest/gtest.h>
 
@@ -70,6 +70,18 @@ TEST(MemoryBudgetTest, ManyThreadsNeverTakeMoreThanThereIs) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(budget.used_bytes(), 0u);
+}
+
+TEST(MemoryBudgetTest, AReservationCanShrinkAndNeverGrows) {
+  MemoryBudget budget(100, "--bytes");
+  PLEAT_ASSERT_OK_AND_ASSIGN(Reservation reservation, budget.Reserve(60, "one"));
+  reservation.ShrinkTo(20);
+  EXPECT_EQ(budget.used_bytes(), 20u);
+  reservation.ShrinkTo(50);
+  EXPECT_EQ(reservation.bytes(), 20u);
+  reservation = Reservation();
+  EXPECT_EQ(budget.used_bytes(), 0u);
+  reservation.ShrinkTo(0);  // of nothing
 }
 
 }  // namespace

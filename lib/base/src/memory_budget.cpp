@@ -1,4 +1,4 @@
-#include "pleat/local/memory_budget.h"
+#include "pleat/base/memory_budget.h"
 
 #include "absl/strings/str_cat.h"
 
@@ -8,6 +8,13 @@ Reservation::~Reservation() {
   if (budget_ == nullptr) return;
   std::lock_guard lock(budget_->mutex_);
   budget_->used_bytes_ -= bytes_;
+}
+
+void Reservation::ShrinkTo(uint64_t bytes) {
+  if (budget_ == nullptr || bytes >= bytes_) return;
+  std::lock_guard lock(budget_->mutex_);
+  budget_->used_bytes_ -= bytes_ - bytes;
+  bytes_ = bytes;
 }
 
 absl::StatusOr<Reservation> MemoryBudget::Reserve(uint64_t bytes, const std::string& what) {

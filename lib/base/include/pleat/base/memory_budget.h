@@ -27,6 +27,10 @@ class Reservation {
   }
   ~Reservation();
 
+  uint64_t bytes() const { return budget_ == nullptr ? 0 : bytes_; }
+  // Gives back what is above `bytes`.
+  void ShrinkTo(uint64_t bytes);
+
  private:
   MemoryBudget* budget_ = nullptr;
   uint64_t bytes_ = 0;
