@@ -4,6 +4,7 @@
 #include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/pull_stream.h"
+#include "pleat/skeleton/human_template.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
 #include "session_messages.h"

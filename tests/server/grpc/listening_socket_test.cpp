@@ -52,10 +52,8 @@ TEST(ListeningSocketTest, WhatIsNoAddressIsSaid) {
     EXPECT_THAT(ListeningSocket::Open(wrong).status(),
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(wrong)));
   }
-  for (const char* wrong : {"no such host:1", "256.0.0.1:1"}) {
-    EXPECT_THAT(ListeningSocket::Open(wrong).status(),
-                HasStatus(absl::StatusCode::kUnavailable, HasSubstr(wrong)));
-  }
+  EXPECT_THAT(ListeningSocket::Open("no such host:1").status(),
+              HasStatus(absl::StatusCode::kUnavailable, HasSubstr("no such host:1")));
 }
 
 }  // namespace
