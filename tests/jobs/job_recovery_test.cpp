@@ -143,6 +143,32 @@ TEST(JobRecoveryTest, AnEndThatCannotBeSavedDoesNotHoldUpAShutdown) {
   EXPECT_EQ(journal.at(id).info.state, JobState::kRunning);  // the next process runs it again
 }
 
+// A lost answer made two jobs.
+TEST(JobRecoveryTest, ARepeatedRequestMakesNoSecondJob) {
+  Journal journal;
+  JobInfo draft = Named("x");
+  draft.sequence_ids = {"s"};
+  draft.request_id = "once";
+  std::string id;
+  {
+    JobManager jobs({}, Succeeds(), journal.save());
+    id = jobs.Create(draft)->id;
+    EXPECT_EQ(jobs.Create(draft)->id, id);
+    JobInfo other = draft;
+    other.sequence_ids = {"t"};
+    EXPECT_THAT(jobs.Create(other), HasStatus(absl::StatusCode::kAlreadyExists, HasSubstr(id)));
+    other.request_id = "another";
+    EXPECT_NE(jobs.Create(other)->id, id);
+    EXPECT_EQ(jobs.List().size(), 2u);
+  }
+  JobManager jobs({.max_queued = 1}, Succeeds(), journal.save());
+  jobs.Restore({journal.at(id)});
+  EXPECT_EQ(jobs.Create(draft)->id, id);  // also after a restart, and with a full queue
+  jobs.Start();
+  EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kSucceeded);
+  EXPECT_EQ(jobs.Create(draft)->state, JobState::kSucceeded);
+}
+
 TEST(JobRecoveryTest, ACancellationThatIsNotSavedIsRefused) {
   Journal journal;
   JobManager jobs({}, Succeeds(), journal.save());

@@ -90,7 +90,7 @@ TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays
   const MeshSequence large = MakeSwayingTube(120, "large", 60, 40);
   const CompressOptions options{.max_error_mm = .2};
   const std::string sequence_id = service_->sequences().Upload(large, {})->id;
-  const std::string job = service_->jobs().CreateCompression(sequence_id, options)->id;
+  const std::string job = service_->jobs().CreateCompression({sequence_id, options})->id;
   {
     // Listeners are called where the job reports: this one stops it in its encoding until the
     // service shuts down.

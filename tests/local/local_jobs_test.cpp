@@ -95,7 +95,7 @@ class LocalJobsTest : public testing::Test {
 
 TEST_F(LocalJobsTest, JobsAreListedInTheirOrderUnderTheNameOfTheirResult) {
   const std::string first = Create(a_), second = Create(b_, "mine");
-  const std::string third = jobs_->CreateCompression(a_, {})->id;
+  const std::string third = jobs_->CreateCompression({a_, {}})->id;
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<JobInfo> list, jobs_->List());
   ASSERT_EQ(list.size(), 3u);
   EXPECT_EQ(list[0].id, first);
@@ -136,7 +136,8 @@ TEST_F(LocalJobsTest, UnknownIdsAreNotFound) {
     EXPECT_THAT(jobs_->Get(id), HasStatus(absl::StatusCode::kNotFound, _)) << id;
     EXPECT_THAT(jobs_->Cancel(id), HasStatus(absl::StatusCode::kNotFound, _)) << id;
     EXPECT_THAT(jobs_->Subscribe(id, [] {}), HasStatus(absl::StatusCode::kNotFound, _)) << id;
-    EXPECT_THAT(jobs_->CreateCompression(id, {}), HasStatus(absl::StatusCode::kNotFound, _)) << id;
+    EXPECT_THAT(jobs_->CreateCompression({id, {}}), HasStatus(absl::StatusCode::kNotFound, _))
+        << id;
     EXPECT_THAT(jobs_->CreateTraining({.sequence_ids = {a_, id}}),
                 HasStatus(absl::StatusCode::kNotFound, _))
         << id;
@@ -159,7 +160,7 @@ TEST_F(LocalJobsTest, WhatCannotSucceedIsRefusedBeforeThereIsAJob) {
   const Rig other = MakeFakeModel(MakeSwayingTube(5, "x", 13), {})->rig();
   refused({.sequence_ids = {a_}, .rig = EncodeRig({other.skeleton, other.weights, 0, {}})},
           "weights of 104 vertices; 'a' has 96");
-  EXPECT_THAT(jobs_->CreateCompression(a_, {.max_error_mm = -1}),
+  EXPECT_THAT(jobs_->CreateCompression({a_, {.max_error_mm = -1}}),
               HasStatus(absl::StatusCode::kInvalidArgument, _));
   EXPECT_TRUE(jobs_->List()->empty());
   EXPECT_TRUE(folder_.files().catalog().List(EntryKind::kRig)->empty());
@@ -220,7 +221,7 @@ TEST_F(LocalJobsTest, AShutdownEndsSubscriptionsAndTakesNoMoreJobs) {
   jobs_->Shutdown();
   EXPECT_GT(counter.count(), 0);
   EXPECT_THAT(subscription->status(), HasStatus(absl::StatusCode::kUnavailable, _));
-  EXPECT_THAT(jobs_->CreateCompression(a_, {}), HasStatus(absl::StatusCode::kUnavailable, _));
+  EXPECT_THAT(jobs_->CreateCompression({a_, {}}), HasStatus(absl::StatusCode::kUnavailable, _));
   jobs_->Shutdown();  // once more does no harm
 }
 

@@ -23,7 +23,7 @@ class CompressionContractTest : public testing::TestWithParam<Reach> {
   // The id of the compressed sequence.
   std::string Compress(const MeshSequence& sequence, const CompressOptions& options) {
     const std::string id = service_.sequences().Upload(sequence, {})->id;
-    const JobInfo job = WatchToEnd(service_.jobs().CreateCompression(id, options)->id);
+    const JobInfo job = WatchToEnd(service_.jobs().CreateCompression({id, options})->id);
     EXPECT_EQ(job.state, JobState::kSucceeded) << job.error;
     return job.result_id;
   }
@@ -96,7 +96,7 @@ TEST_P(CompressionContractTest, JobsOfBothKindsShareOneQueue) {
   running_.trainer().Hold();
   const std::string training =
       service_.jobs().CreateTraining({.sequence_ids = {id}, .model_name = "m"})->id;
-  const std::string compression = service_.jobs().CreateCompression(id, {})->id;
+  const std::string compression = service_.jobs().CreateCompression({id, {}})->id;
   running_.trainer().Release();
   EXPECT_EQ(WatchToEnd(compression).state, JobState::kSucceeded);
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto jobs, service_.jobs().List());
@@ -193,15 +193,15 @@ TEST_P(CompressionContractTest, HostileFilesAreRefusedAndForgotten) {
 
 TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
   const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
-  EXPECT_THAT(service_.jobs().CreateCompression(unknown_, {}),
+  EXPECT_THAT(service_.jobs().CreateCompression({unknown_, {}}),
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("sequence")));
-  EXPECT_THAT(service_.jobs().CreateCompression(id, {.max_error_mm = 0}),
+  EXPECT_THAT(service_.jobs().CreateCompression({id, {.max_error_mm = 0}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("max_error_mm")));
   EXPECT_THAT(service_.jobs().CreateCompression(
-                  id, {.goal = CompressionGoal::kKg, .kg_percent = 0.0 / 0.0}),
+                  {id, {.goal = CompressionGoal::kKg, .kg_percent = 0.0 / 0.0}}),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("kg_percent")));
   EXPECT_THAT(
-      service_.jobs().CreateCompression(id, {.goal = CompressionGoal::kGrid, .grid_bits = 99}),
+      service_.jobs().CreateCompression({id, {.goal = CompressionGoal::kGrid, .grid_bits = 99}}),
       HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("grid_bits")));
   EXPECT_THAT(service_.compressed_sequences().Get(unknown_),
               HasStatus(absl::StatusCode::kNotFound, testing::_));
@@ -214,7 +214,8 @@ TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("which has 5")));
   }
   // A promise that float32 cannot keep fails the job with its reason.
-  const JobInfo job = WatchToEnd(service_.jobs().CreateCompression(id, {.max_error_mm = .001})->id);
+  const JobInfo job =
+      WatchToEnd(service_.jobs().CreateCompression({id, {.max_error_mm = .001}})->id);
   EXPECT_EQ(job.state, JobState::kFailed);
   EXPECT_THAT(job.error, HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("float32")));
 }
@@ -222,7 +223,7 @@ TEST_P(CompressionContractTest, BadRequestsAreRefusedAlike) {
 TEST_P(CompressionContractTest, CancellationActsWithinASecond) {
   const std::string id =
       service_.sequences().Upload(MakeSwayingTube(200, "large", 100, 60), {})->id;
-  const std::string job = service_.jobs().CreateCompression(id, {.max_error_mm = .1})->id;
+  const std::string job = service_.jobs().CreateCompression({id, {.max_error_mm = .1}})->id;
   ASSERT_THAT(
       WatchJob(service_.jobs(), job, [](const JobInfo& info) { return info.stage != "encode"; }),
       IsOk());

@@ -56,8 +56,8 @@ class MockJobService : public JobService {
   ~MockJobService() override;
   MOCK_METHOD(absl::StatusOr<JobInfo>, CreateTraining, (const TrainingRequest& request),
               (override));
-  MOCK_METHOD(absl::StatusOr<JobInfo>, CreateCompression,
-              (const std::string& sequence_id, const CompressOptions& options), (override));
+  MOCK_METHOD(absl::StatusOr<JobInfo>, CreateCompression, (const CompressionRequest& request),
+              (override));
   MOCK_METHOD(absl::StatusOr<JobInfo>, Get, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::vector<JobInfo>>, List, (), (override));
   MOCK_METHOD(absl::Status, Cancel, (const std::string& id), (override));

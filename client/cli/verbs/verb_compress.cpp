@@ -72,8 +72,8 @@ absl::StatusOr<Compressed> CompressOnService(const MeshSequence& sequence,
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
   PLEAT_ASSIGN_OR_RETURN(const SequenceInfo uploaded,
                          UploadWithProgress(service->sequences(), sequence, session));
-  PLEAT_ASSIGN_OR_RETURN(const JobInfo job,
-                         service->jobs().CreateCompression(uploaded.id, options));
+  PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->jobs().CreateCompression(
+                                                {.sequence_id = uploaded.id, .options = options}));
   PLEAT_ASSIGN_OR_RETURN(const JobInfo done,
                          WatchJobToEnd(service->jobs(), job.id, session, true, nullptr));
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);

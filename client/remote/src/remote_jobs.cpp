@@ -1,6 +1,11 @@
+#include <chrono>
 #include <memory>
+#include <random>
+#include <string>
+#include <thread>
 #include <utility>
 
+#include "absl/strings/str_format.h"
 #include "job_subscription.h"
 #include "pages.h"
 #include "pleat/base/status.h"
@@ -10,6 +15,13 @@
 
 namespace pleat {
 namespace {
+
+constexpr auto kRetryPause = std::chrono::milliseconds(200);
+
+std::string MakeRequestId() {
+  std::random_device device;
+  return absl::StrFormat("%08x%08x%08x%08x", device(), device(), device(), device());
+}
 
 class RemoteJobs final : public JobService {
  public:
@@ -22,17 +34,18 @@ class RemoteJobs final : public JobService {
     *message.mutable_options() = ToProto(request.options);
     message.set_model_name(request.model_name);
     message.set_rig(request.rig);
-    PLEAT_RETURN_IF_ERROR(Call(&v1::JobService::Stub::CreateTrainingJob, message, &response));
+    message.set_request_id(request.request_id.empty() ? MakeRequestId() : request.request_id);
+    PLEAT_RETURN_IF_ERROR(Create(&v1::JobService::Stub::CreateTrainingJob, message, &response));
     return FromProto(response.job());
   }
 
-  absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
-                                            const CompressOptions& options) override {
-    v1::CreateCompressionJobRequest request;
+  absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) override {
+    v1::CreateCompressionJobRequest message;
     v1::CreateCompressionJobResponse response;
-    request.set_sequence_id(sequence_id);
-    *request.mutable_options() = ToProto(options);
-    PLEAT_RETURN_IF_ERROR(Call(&v1::JobService::Stub::CreateCompressionJob, request, &response));
+    message.set_sequence_id(request.sequence_id);
+    *message.mutable_options() = ToProto(request.options);
+    message.set_request_id(request.request_id.empty() ? MakeRequestId() : request.request_id);
+    PLEAT_RETURN_IF_ERROR(Create(&v1::JobService::Stub::CreateCompressionJob, message, &response));
     return FromProto(response.job());
   }
 
@@ -70,6 +83,18 @@ class RemoteJobs final : public JobService {
                                                                  const Request&, Response*),
                     const Request& request, Response* response) const {
     return state_->Call(state_->jobs.get(), method, request, response);
+  }
+
+  // A call that was lost on the way, or whose answer was, is made again: it has a request id.
+  template <typename Request, typename Response>
+  absl::Status Create(grpc::Status (v1::JobService::Stub::*method)(grpc::ClientContext*,
+                                                                   const Request&, Response*),
+                      const Request& request, Response* response) const {
+    for (int attempt = 1;; ++attempt) {
+      const absl::Status status = Call(method, request, response);
+      if (!IsTransient(status) || attempt >= state_->options.max_attempts) return status;
+      std::this_thread::sleep_for(kRetryPause);
+    }
   }
 
   RemoteState* const state_;

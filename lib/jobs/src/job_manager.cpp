@@ -39,6 +39,7 @@ void JobManager::Restore(std::vector<StoredJob> jobs) {
         std::make_shared<JobStateMachine>(std::move(stored.info), stored.attempts, options_.clock);
     std::lock_guard lock(mutex_);
     order_.push_back(id);
+    NoteRequest(job->snapshot().info);
     if (job->snapshot().info.state == JobState::kQueued) queue_.push_back(job);
     jobs_.emplace(id, std::move(job));
   }
@@ -60,16 +61,35 @@ void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
   Save(job.get());
   std::lock_guard lock(mutex_);
   order_.push_back(id);
+  NoteRequest(snapshot.info);
   jobs_.emplace(id, job);
   if (is_hopeless) return;
   suspects_.insert(id);
   queue_.push_back(std::move(job));
 }
 
+void JobManager::NoteRequest(const JobInfo& info) {
+  if (!info.request_id.empty()) ids_by_request_.emplace(info.request_id, info.id);
+}
+
 void JobManager::Start() {
   for (int i = 0; i < std::max(1, options_.num_workers); ++i) {
     workers_.emplace_back([this] { Work(); });
   }
+}
+
+absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
+    const JobInfo& draft) const {
+  const auto id = ids_by_request_.find(draft.request_id);
+  if (id == ids_by_request_.end()) return nullptr;
+  const std::shared_ptr<JobStateMachine>& job = jobs_.at(id->second);
+  const JobInfo info = job->snapshot().info;
+  if (info.sequence_ids != draft.sequence_ids || info.options.index() != draft.options.index()) {
+    return absl::AlreadyExistsError(absl::StrCat("the request_id of this call made job '", info.id,
+                                                 "', which works on something else; choose request "
+                                                 "ids at random"));
+  }
+  return job;
 }
 
 absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
@@ -80,6 +100,8 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   {
     std::lock_guard lock(mutex_);
     if (shutting_down()) return absl::UnavailableError("the server is shutting down");
+    PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> known, FindRequest(draft));
+    if (known != nullptr) return known->snapshot().info;
     if (static_cast<int>(queue_.size()) >= options_.max_queued) {
       return absl::ResourceExhaustedError(absl::StrCat(queue_.size(),
                                                        " jobs are waiting, the limit is ",
@@ -92,6 +114,7 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   {
     std::lock_guard lock(mutex_);
     jobs_.emplace(draft.id, job);
+    NoteRequest(draft);
     order_.push_back(draft.id);
     queue_.push_back(job);
   }

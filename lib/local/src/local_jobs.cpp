@@ -120,6 +120,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
   }
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
+  draft.request_id = request.request_id;
   draft.name = request.model_name.empty() ? clips[0].name : request.model_name;
   if (!request.rig.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const RigFile rig, runner_.DecodeUserRig(request.rig));
@@ -131,13 +132,13 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
   return manager_.Create(std::move(draft));
 }
 
-absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const std::string& sequence_id,
-                                                     const CompressOptions& options) {
-  PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
-  PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(sequence_id));
+absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& request) {
+  PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(request.options));
+  PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(request.sequence_id));
   JobInfo draft;
-  draft.sequence_ids = {sequence_id};
-  draft.options = options;
+  draft.sequence_ids = {request.sequence_id};
+  draft.options = request.options;
+  draft.request_id = request.request_id;
   draft.name = std::move(info.name);
   return manager_.Create(std::move(draft));
 }

@@ -232,6 +232,7 @@ store::v1::Job ToRecord(const JobInfo& info) {
   }
   message.set_result_id(info.result_id);
   message.set_rig_id(info.rig_id);
+  message.set_request_id(info.request_id);
   return message;
 }
 
@@ -255,6 +256,7 @@ absl::StatusOr<JobInfo> FromRecord(const store::v1::Job& message) {
   if (message.has_error()) info.error = ErrorFromRecord(message.error());
   info.result_id = message.result_id();
   info.rig_id = message.rig_id();
+  info.request_id = message.request_id();
   return info;
 }
 

@@ -9,6 +9,8 @@
 namespace pleat {
 namespace {
 
+constexpr size_t kMaxRequestIdBytes = 64;
+
 v1::Vector3 ToProto(const Eigen::Vector3d& vector) {
   v1::Vector3 message;
   message.set_x(vector.x());
@@ -52,6 +54,12 @@ absl::Status CheckName(const std::string& name, absl::string_view what) {
   if (name.size() <= kMaxWireNameBytes) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat(what, " has ", name.size(), " bytes, the limit is ", kMaxWireNameBytes));
+}
+
+absl::Status CheckRequestId(const std::string& id) {
+  if (id.size() <= kMaxRequestIdBytes) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("request_id has ", id.size(), " bytes, the limit is ", kMaxRequestIdBytes));
 }
 
 v1::FrameRate ToProto(const FrameRate& frame_rate) {

@@ -2,6 +2,7 @@
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
 #include "pleat/wire/service_messages.h"
+#include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
 
@@ -9,9 +10,12 @@ absl::Status CreateCompressionJob(HandlerContext& context,
                                   const v1::CreateCompressionJobRequest& request,
                                   v1::CreateCompressionJobResponse* response) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(request.sequence_id(), "sequence_id"));
+  PLEAT_RETURN_IF_ERROR(CheckRequestId(request.request_id()));
   PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, FromProto(request.options()));
   PLEAT_ASSIGN_OR_RETURN(const JobInfo info,
-                         context.jobs->CreateCompression(request.sequence_id(), options));
+                         context.jobs->CreateCompression({.sequence_id = request.sequence_id(),
+                                                          .options = options,
+                                                          .request_id = request.request_id()}));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();
 }

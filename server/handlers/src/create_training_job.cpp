@@ -13,6 +13,7 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
     PLEAT_RETURN_IF_ERROR(CheckContentId(id, "sequence_ids"));
   }
   PLEAT_RETURN_IF_ERROR(CheckName(request.model_name(), "model_name"));
+  PLEAT_RETURN_IF_ERROR(CheckRequestId(request.request_id()));
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions options, FromProto(request.options()));
   PLEAT_ASSIGN_OR_RETURN(
       const JobInfo info,
@@ -20,7 +21,8 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
           {.sequence_ids = {request.sequence_ids().begin(), request.sequence_ids().end()},
            .options = options,
            .model_name = request.model_name(),
-           .rig = request.rig()}));
+           .rig = request.rig(),
+           .request_id = request.request_id()}));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();
 }

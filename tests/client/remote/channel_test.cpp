@@ -52,7 +52,7 @@ TEST_F(ChannelTest, AJobIsCreatedAtMostOnceAndCancelledAtMostOnce) {
   EXPECT_CALL(server_.jobs, CancelJob).WillOnce(Return(Unavailable()));
   const auto unavailable = HasStatus(absl::StatusCode::kUnavailable, "the server restarts");
   EXPECT_THAT(client->jobs().CreateTraining({}), unavailable);
-  EXPECT_THAT(client->jobs().CreateCompression("s", {}), unavailable);
+  EXPECT_THAT(client->jobs().CreateCompression({"s", {}}), unavailable);
   EXPECT_THAT(client->jobs().Cancel("j"), unavailable);
 }
 

@@ -12,6 +12,7 @@ v1::CreateTrainingJobRequest GoodRequest() {
   request.mutable_options()->set_seed(7);
   request.set_model_name("mine");
   request.set_rig("{}");
+  request.set_request_id("again");
   return request;
 }
 
@@ -30,6 +31,7 @@ TEST(CreateTrainingJob, HandsOverAllThatWasAsked) {
   EXPECT_EQ(asked.options.seed, 7u);
   EXPECT_EQ(asked.model_name, "mine");
   EXPECT_EQ(asked.rig, "{}");
+  EXPECT_EQ(asked.request_id, "again");
 }
 
 TEST(CreateTrainingJob, WhatIsWrongNeverReachesTheService) {

@@ -67,8 +67,9 @@ class JobManager {
   void Restore(std::vector<StoredJob> jobs);
   void Start();
 
-  // Gives the job an id and queues it. kResourceExhausted when too many wait, kUnavailable after
-  // Shutdown, or the error of saving it.
+  // Gives the job an id and queues it. A draft with the request_id of an earlier job makes none:
+  // the earlier one is returned, or kAlreadyExists when it works on something else.
+  // kResourceExhausted when too many wait, kUnavailable after Shutdown, or the error of saving it.
   absl::StatusOr<JobInfo> Create(JobInfo draft);
   absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
   std::vector<JobInfo> List() const;                         // oldest first
@@ -106,7 +107,12 @@ class JobManager {
   mutable std::mutex mutex_;         // never held while a job is saved
   std::condition_variable changed_;  // a worker may have something to do
   std::condition_variable stopped_;  // shutting_down_
+  // Returns the job of `draft.request_id`, null when there is none. Call with mutex_ held.
+  absl::StatusOr<std::shared_ptr<JobStateMachine>> FindRequest(const JobInfo& draft) const;
+  void NoteRequest(const JobInfo& info);  // call with mutex_ held
+
   std::map<std::string, std::shared_ptr<JobStateMachine>> jobs_;  // guarded by mutex_
+  std::map<std::string, std::string> ids_by_request_;             // of jobs; guarded by mutex_
   std::vector<std::string> order_;                                // guarded by mutex_
   std::deque<std::shared_ptr<JobStateMachine>> queue_;            // guarded by mutex_
   std::set<std::string> suspects_;  // ids of jobs that run alone; guarded by mutex_

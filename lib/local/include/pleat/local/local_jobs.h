@@ -22,8 +22,7 @@ class LocalJobs final : public JobService {
             bool in_idle_time = false);
 
   absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
-  absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
-                                            const CompressOptions& options) override;
+  absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) override;
   absl::StatusOr<JobInfo> Get(const std::string& id) override;
   absl::StatusOr<std::vector<JobInfo>> List() override;
   absl::Status Cancel(const std::string& id) override;

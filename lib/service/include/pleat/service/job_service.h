@@ -31,6 +31,15 @@ struct TrainingRequest {
   std::string model_name{};  // empty: the first sequence's
   // The user's own rig as the text of a rig file (docs/formats/rig.md); empty: found automatically.
   std::string rig{};
+  // Chosen by the caller at random; a call with the id of an earlier one makes no second job and
+  // returns the first as it is now. Empty: every call makes a job.
+  std::string request_id{};
+};
+
+struct CompressionRequest {
+  std::string sequence_id{};
+  CompressOptions options{};
+  std::string request_id{};  // as above
 };
 
 struct JobInfo {
@@ -40,6 +49,7 @@ struct JobInfo {
   JobOptions options;
   std::string name;                 // of the result
   std::string rig_id;               // hex SHA-256 of TrainingRequest::rig, or empty
+  std::string request_id;           // of the call that made it; services do not show it
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1
   std::optional<double> objective;  // of the running optimizer
@@ -71,9 +81,9 @@ class JobService {
  public:
   virtual ~JobService() = default;
 
+  // kAlreadyExists when the request_id belongs to a job of other sequences or of the other kind.
   virtual absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) = 0;
-  virtual absl::StatusOr<JobInfo> CreateCompression(const std::string& sequence_id,
-                                                    const CompressOptions& options) = 0;
+  virtual absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) = 0;
   virtual absl::StatusOr<JobInfo> Get(const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<JobInfo>> List() = 0;  // oldest first
   // kFailedPrecondition when the job is final. A running job stops within a second.

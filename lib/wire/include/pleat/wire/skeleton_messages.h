@@ -21,6 +21,8 @@ inline constexpr int kMaxWireNameBytes = 256;
 
 // OK when `name` has at most kMaxWireNameBytes bytes. kInvalidArgument calls it `what`.
 absl::Status CheckName(const std::string& name, absl::string_view what);
+// kInvalidArgument when the id of a request is longer than 64 bytes.
+absl::Status CheckRequestId(const std::string& id);
 
 v1::FrameRate ToProto(const FrameRate& frame_rate);
 absl::StatusOr<FrameRate> FromProto(const v1::FrameRate& message);
