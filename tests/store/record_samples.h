@@ -55,7 +55,6 @@ inline JobInfo SampleTrainingJob() {
   job.options = SampleTrainOptions();
   job.name = "walk";
   job.rig_id = std::string(64, 'c');
-  job.request_id = "0123456789abcdef";
   job.stage = "learn";
   job.fraction = .25;
   job.objective = -3.5;

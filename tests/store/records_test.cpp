@@ -53,6 +53,7 @@ void ExpectSame(const JobInfo& a, const JobInfo& b) {
   EXPECT_TRUE(a.options == b.options);
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.rig_id, b.rig_id);
+  EXPECT_EQ(a.request_id, b.request_id);
   EXPECT_EQ(a.stage, b.stage);
   EXPECT_EQ(a.fraction, b.fraction);
   EXPECT_EQ(a.objective, b.objective);
@@ -140,6 +141,13 @@ TEST(RecordsTest, RowsOfTheFirstVersionAreRead) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto compressed,
                              DecodeCompressedSequenceRecord(Golden("compressed_sequence")));
   ExpectSame(compressed, SampleCompressedSequence());
+}
+
+TEST(RecordsTest, WhatCameLaterIsKept) {
+  JobInfo job = SampleTrainingJob();
+  job.request_id = "0123456789abcdef";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo read, DecodeJobRecord(EncodeRecord(job)));
+  ExpectSame(read, job);
 }
 
 TEST(RecordsTest, EqualContentGivesTheBytesOfTheFirstVersion) {
