@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "absl/synchronization/notification.h"
 #include "client/remote/scripted_server.h"
@@ -45,13 +46,27 @@ TEST_F(ChannelTest, CallsThatChangeNothingAreRepeatedWhenTheServerWasNotReached)
               HasStatus(absl::StatusCode::kPermissionDenied, "not today"));
 }
 
-TEST_F(ChannelTest, AJobIsCreatedAtMostOnceAndCancelledAtMostOnce) {
-  const auto client = server_.Connect();
-  EXPECT_CALL(server_.jobs, CreateTrainingJob).WillOnce(Return(Unavailable()));
-  EXPECT_CALL(server_.jobs, CreateCompressionJob).WillOnce(Return(Unavailable()));
+// A creation may be repeated because it has an id; a cancellation has none.
+TEST_F(ChannelTest, ALostCreationIsRepeatedWithTheSameIdAndNothingElseIs) {
+  const auto client = server_.Open({.max_attempts = 2});
+  std::vector<std::string> ids;
+  EXPECT_CALL(server_.jobs, CreateTrainingJob)
+      .Times(2)
+      .WillRepeatedly([&](grpc::ServerContext*, const v1::CreateTrainingJobRequest* request,
+                          v1::CreateTrainingJobResponse* response) {
+        ids.push_back(request->request_id());
+        if (ids.size() == 1) return Unavailable();
+        JobInfo info;
+        info.id = "job-1";
+        *response->mutable_job() = ToProto(info);
+        return grpc::Status::OK;
+      });
+  EXPECT_CALL(server_.jobs, CreateCompressionJob).Times(2).WillRepeatedly(Return(Unavailable()));
   EXPECT_CALL(server_.jobs, CancelJob).WillOnce(Return(Unavailable()));
   const auto unavailable = HasStatus(absl::StatusCode::kUnavailable, "the server restarts");
-  EXPECT_THAT(client->jobs().CreateTraining({}), unavailable);
+  EXPECT_EQ(client->jobs().CreateTraining({})->id, "job-1");
+  EXPECT_EQ(ids[0].size(), 32u);
+  EXPECT_EQ(ids[0], ids[1]);
   EXPECT_THAT(client->jobs().CreateCompression({"s", {}}), unavailable);
   EXPECT_THAT(client->jobs().Cancel("j"), unavailable);
 }
