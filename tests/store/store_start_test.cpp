@@ -136,8 +136,9 @@ TEST(StoreStartTest, FilesThatAreNotMountedAreNotedAsLost) {
   TemporaryFolder folder;
   MakeStoreOfThree(folder.path());
   std::filesystem::rename(folder.File("blobs"), folder.File("elsewhere"));
-  EXPECT_THAT(Store::Open({.data_dir = folder.path()}),
-              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("is a disk not mounted?")));
+  EXPECT_THAT(
+      Store::Open({.data_dir = folder.path()}),
+      HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("is a disk not mounted?")));
   std::filesystem::remove_all(folder.File("blobs"));
   std::filesystem::rename(folder.File("elsewhere"), folder.File("blobs"));
   ReportingStore store(folder.path());
