@@ -48,7 +48,6 @@ int Run(const ServerOptions& options) {
   std::signal(SIGPIPE, SIG_IGN);
 
   LocalServiceOptions service_options = options.service;
-  service_options.jobs_in_idle_time = true;
   service_options.on_problem = [](const std::string& problem) { spdlog::error("{}", problem); };
   absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
       LocalCharacterService::Open(service_options);

@@ -109,6 +109,12 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   AddNetworkFlags(&app, &line.options.grpc, &tls);
   double scrub_hours = kScrubHours;
   AddServiceFlags(&app, &line.options.service, &scrub_hours);
+  std::string job_priority = "idle";
+  app.add_option("--job-priority", job_priority,
+                 "idle: jobs take the processor time that live sessions and other programs leave; "
+                 "normal: they take their share")
+      ->check(CLI::IsMember({"idle", "normal"}))
+      ->capture_default_str();
   app.add_option("--drain-seconds", line.options.drain_seconds,
                  "How long running calls may go on after SIGTERM")
       ->check(CLI::Range(0, 3600))
@@ -134,6 +140,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
     return line;
   }
   line.options.service.scrub_seconds = 3600 * scrub_hours;
+  line.options.service.jobs_in_idle_time = job_priority == "idle";
   Exposure& exposure = line.options.exposure;
   exposure.listen = line.options.grpc.listen;
   exposure.encrypted = !tls.certificate.empty();

@@ -36,8 +36,9 @@ class ServerProgram {
  private:
   static std::vector<std::string> Command(const std::string& data_folder,
                                           const std::vector<std::string>& flags) {
-    std::vector<std::string> command = {ProgramPath("pleatd"), "--listen", "127.0.0.1:0",
-                                        "--data-dir", data_folder};
+    std::vector<std::string> command = {
+        ProgramPath("pleatd"), "--listen",       "127.0.0.1:0", "--data-dir",
+        data_folder,           "--job-priority", "normal"};
     command.insert(command.end(), flags.begin(), flags.end());
     return command;
   }

@@ -106,7 +106,8 @@ class Daemon {
 };
 
 std::vector<std::string> Flags(const TemporaryFolder& folder) {
-  return {"--data-dir", folder.path(), "--listen", "127.0.0.1:0", "--reserve-bytes", "1MB"};
+  return {"--data-dir",      folder.path(), "--listen",       "127.0.0.1:0",
+          "--reserve-bytes", "1MB",         "--job-priority", "normal"};
 }
 
 TEST(PleatdTest, ServesEndsOnSigtermAndComesBack) {
