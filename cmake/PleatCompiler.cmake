@@ -16,16 +16,18 @@ add_compile_options(-Wall -Wextra -Werror -Wno-psabi -ffp-contract=off)
 string(REPLACE "-O2" "-O3" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 
+# At -O1 gcc 12 sees uninitialized values in Eigen and dangling references to arguments that are none.
+set(PLEAT_O1_WARNINGS $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+                      $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-pointer>)
 # Tests and the command line spend their time in the library: optimizing their own code costs more
 # than it gives.
-# At -O1 gcc 12 sees uninitialized values in Eigen and dangling references to arguments that are none.
-set(PLEAT_COLD_OPTIONS -O1 $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
-                       $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-pointer>)
+set(PLEAT_COLD_OPTIONS -O1 ${PLEAT_O1_WARNINGS})
 
 if(PLEAT_SANITIZE)
   # Less optimization: the compiler takes most of the time of these workflows, not the tests.
   string(REPLACE "-O3" "-O1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
-  add_compile_options(-fsanitize=${PLEAT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_compile_options(-fsanitize=${PLEAT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+                      ${PLEAT_O1_WARNINGS})
   add_link_options(-fsanitize=${PLEAT_SANITIZE})
 endif()
 if(PLEAT_BUILD_FUZZERS)
