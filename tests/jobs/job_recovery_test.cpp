@@ -100,6 +100,14 @@ TEST(JobRecoveryTest, SuspectsRunAlone) {
   EXPECT_EQ(running.most(), 2);
 }
 
+// The job when it has its first warning.
+JobInfo WaitForWarning(JobManager& jobs, const std::string& id) {
+  const auto job = jobs.Find(id).value();
+  JobSnapshot snapshot = job->snapshot();
+  while (snapshot.info.warnings.empty()) snapshot = job->WaitForChange(snapshot.revision, .2);
+  return snapshot.info;
+}
+
 // A failed job became a successful one after a restart, when its row could not be written.
 TEST(JobRecoveryTest, NobodySeesAnEndThatIsNotSaved) {
   Journal journal;
@@ -113,11 +121,9 @@ TEST(JobRecoveryTest, NobodySeesAnEndThatIsNotSaved) {
       journal.save());
   const std::string id = jobs.Create(Named("x"))->id;
   jobs.Start();
-  const auto job = jobs.Find(id).value();
-  JobSnapshot snapshot = job->snapshot();
-  while (snapshot.info.warnings.empty()) snapshot = job->WaitForChange(snapshot.revision, .2);
-  EXPECT_THAT(snapshot.info.warnings[0], HasSubstr("disk full"));
-  EXPECT_EQ(snapshot.info.state, JobState::kRunning);
+  const JobInfo warned = WaitForWarning(jobs, id);
+  EXPECT_THAT(warned.warnings[0], HasSubstr("disk full"));
+  EXPECT_EQ(warned.state, JobState::kRunning);
   EXPECT_EQ(journal.at(id).info.state, JobState::kRunning);
   journal.Fail(false);
   EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kFailed);
@@ -135,9 +141,7 @@ TEST(JobRecoveryTest, AnEndThatCannotBeSavedDoesNotHoldUpAShutdown) {
       journal.save());
   const std::string id = jobs.Create(Named("x"))->id;
   jobs.Start();
-  const auto job = jobs.Find(id).value();
-  JobSnapshot snapshot = job->snapshot();
-  while (snapshot.info.warnings.empty()) snapshot = job->WaitForChange(snapshot.revision, .2);
+  WaitForWarning(jobs, id);
   jobs.Shutdown();
   EXPECT_FALSE(IsFinal(jobs.Get(id)->state));
   EXPECT_EQ(journal.at(id).info.state, JobState::kRunning);  // the next process runs it again

@@ -27,10 +27,6 @@ struct StoreVerbOptions {
   bool fast = false;
 };
 
-constexpr EntryKind kShownKinds[] = {EntryKind::kSequence, EntryKind::kModel,
-                                     EntryKind::kCompressedSequence, EntryKind::kJob,
-                                     EntryKind::kRig};
-
 ordered_json ProblemsJson(const std::vector<StoreProblem>& problems) {
   ordered_json list = ordered_json::array();
   for (const StoreProblem& problem : problems) {
@@ -58,7 +54,7 @@ absl::Status ProblemStatus(const std::string& folder, size_t num_problems,
 void PrintCheckJson(const StoreCheck& check, std::ostream& out) {
   ordered_json json;
   json["store_id"] = check.store_id;
-  for (const EntryKind kind : kShownKinds) {
+  for (const EntryKind kind : kEntryKinds) {
     json["entries"][EntryKindName(kind)] = check.num_entries[static_cast<size_t>(kind)];
   }
   json["files"] = check.num_files;
@@ -76,7 +72,7 @@ void PrintCheckJson(const StoreCheck& check, std::ostream& out) {
 
 void PrintCheckText(const StoreCheck& check, std::ostream& out) {
   out << "store       " << (check.store_id.empty() ? "without an id" : check.store_id) << "\n";
-  for (const EntryKind kind : kShownKinds) {
+  for (const EntryKind kind : kEntryKinds) {
     out << absl::StrFormat("%-20s %d\n", absl::StrCat(EntryKindName(kind), "s"),
                            check.num_entries[static_cast<size_t>(kind)]);
   }

@@ -30,7 +30,6 @@ void JobManager::Restore(std::vector<StoredJob> jobs) {
   const auto num_were_running = std::ranges::count(
       jobs, JobState::kRunning, [](const StoredJob& stored) { return stored.info.state; });
   for (StoredJob& stored : jobs) {
-    const std::string id = stored.info.id;
     if (stored.info.state == JobState::kRunning) {
       RestoreRunning({std::move(stored.info), stored.attempts, 0}, num_were_running == 1);
       continue;
@@ -38,15 +37,11 @@ void JobManager::Restore(std::vector<StoredJob> jobs) {
     auto job =
         std::make_shared<JobStateMachine>(std::move(stored.info), stored.attempts, options_.clock);
     std::lock_guard lock(mutex_);
-    order_.push_back(id);
-    NoteRequest(job->snapshot().info);
-    if (job->snapshot().info.state == JobState::kQueued) queue_.push_back(job);
-    jobs_.emplace(id, std::move(job));
+    Register(std::move(job));
   }
 }
 
 void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
-  const std::string id = snapshot.info.id;
   // The attempt was counted when it began. Only of a job that ran alone is it known what it did.
   if (!ran_alone && snapshot.attempts > 0) --snapshot.attempts;
   snapshot.info.fraction = 0;
@@ -60,16 +55,16 @@ void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
   }
   Save(job.get());
   std::lock_guard lock(mutex_);
-  order_.push_back(id);
-  NoteRequest(snapshot.info);
-  jobs_.emplace(id, job);
-  if (is_hopeless) return;
-  suspects_.insert(id);
-  queue_.push_back(std::move(job));
+  if (!is_hopeless) suspects_.insert(job->id());
+  Register(std::move(job));
 }
 
-void JobManager::NoteRequest(const JobInfo& info) {
+void JobManager::Register(std::shared_ptr<JobStateMachine> job) {
+  const JobInfo info = job->snapshot().info;
+  order_.push_back(info.id);
   if (!info.request_id.empty()) ids_by_request_.emplace(info.request_id, info.id);
+  if (info.state == JobState::kQueued) queue_.push_back(job);
+  jobs_.emplace(info.id, std::move(job));
 }
 
 void JobManager::Start() {
@@ -113,10 +108,7 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   PLEAT_RETURN_IF_ERROR(save_(draft, 0));
   {
     std::lock_guard lock(mutex_);
-    jobs_.emplace(draft.id, job);
-    NoteRequest(draft);
-    order_.push_back(draft.id);
-    queue_.push_back(job);
+    Register(std::move(job));
   }
   changed_.notify_all();  // one that may not take it would keep the word to itself
   return draft;

@@ -54,6 +54,8 @@ const char* EntryKindName(EntryKind kind) {
   return "unknown";
 }
 
+std::string CatalogPath(const std::string& data_dir) { return data_dir + "/catalogue.db"; }
+
 Catalog::Catalog() = default;
 
 // The last connection to close writes the log back into the database, so it must be the writer.

@@ -60,7 +60,7 @@ class Statement {
 
   // True when there is a row.
   absl::StatusOr<bool> Step(absl::string_view action);
-  // Of the current row; column: from 0.
+  // These two read a column of the current row, counted from 0.
   std::string Bytes(int column);
   int Int(int column) { return sqlite3_column_int(statement_, column); }
 

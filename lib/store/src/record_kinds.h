@@ -8,10 +8,6 @@
 
 namespace pleat {
 
-inline constexpr EntryKind kEntryKinds[] = {EntryKind::kSequence, EntryKind::kModel,
-                                            EntryKind::kCompressedSequence, EntryKind::kJob,
-                                            EntryKind::kRig};
-
 // OK when `record` can be decoded as what a row of this kind holds; rigs have none.
 absl::Status CheckRecord(EntryKind kind, const std::string& record);
 

@@ -61,7 +61,7 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
       BlobStore::Open(data_dir + "/blobs", options.reserve_bytes, options.before_sync));
   store->blobs_ = std::make_unique<BlobStore>(std::move(blobs));
   PLEAT_ASSIGN_OR_RETURN(store->catalog_,
-                         Catalog::Open(data_dir + "/catalogue.db", options.before_sync));
+                         Catalog::Open(CatalogPath(data_dir), options.before_sync));
   PLEAT_ASSIGN_OR_RETURN(store->uploads_, UploadArea::Open(data_dir + "/uploads", kUploadAgeHours,
                                                            options.before_sync));
   PLEAT_RETURN_IF_ERROR(store->Reconcile(data_dir));

@@ -23,11 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string CatalogPath(const std::string& folder) { return folder + "/catalogue.db"; }
-
 void RemoveDatabase(const std::string& path) {
   std::error_code ignored;
-  for (const char* suffix : {"", "-wal", "-shm"}) fs::remove(path + suffix, ignored);
+  for (const char* suffix : kCatalogSuffixes) fs::remove(path + suffix, ignored);
 }
 
 // True when the folder is missing, or holds nothing but the lock that a process leaves.
@@ -126,10 +124,7 @@ class StoreCopier {
       for (const EntryKind kind : kFileKinds) snapshot->Delete(kind, id).IgnoreError();
       return absl::OkStatus();
     }
-    copy_.problems.push_back({absl::IsNotFound(why)   ? StoreProblem::Kind::kMissingFile
-                              : absl::IsDataLoss(why) ? StoreProblem::Kind::kDamagedFile
-                                                      : StoreProblem::Kind::kUnreadableFile,
-                              id, std::string(why.message())});
+    copy_.problems.push_back(FileProblem(id, why));
     return absl::OkStatus();
   }
 

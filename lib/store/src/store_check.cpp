@@ -91,10 +91,7 @@ class StoreInspection {
       check_.num_bytes += *size;
     }
     if (status.ok() || !catalog_->NamesFile(id).value_or(true)) return;  // deleted meanwhile
-    const auto kind = absl::IsNotFound(status)   ? StoreProblem::Kind::kMissingFile
-                      : absl::IsDataLoss(status) ? StoreProblem::Kind::kDamagedFile
-                                                 : StoreProblem::Kind::kUnreadableFile;
-    Add(kind, id, std::string(status.message()));
+    check_.problems.push_back(FileProblem(id, status));
   }
 
   Catalog* const catalog_;
@@ -124,9 +121,16 @@ const char* StoreProblemName(StoreProblem::Kind kind) {
   return "unknown";
 }
 
+StoreProblem FileProblem(const std::string& id, const absl::Status& why) {
+  const auto kind = absl::IsNotFound(why)   ? StoreProblem::Kind::kMissingFile
+                    : absl::IsDataLoss(why) ? StoreProblem::Kind::kDamagedFile
+                                            : StoreProblem::Kind::kUnreadableFile;
+  return {kind, id, std::string(why.message())};
+}
+
 absl::StatusOr<StoreCheck> CheckStore(const std::string& data_dir, bool verify_files,
                                       const Progress& progress) {
-  const std::string catalog_path = data_dir + "/catalogue.db";
+  const std::string catalog_path = CatalogPath(data_dir);
   std::error_code error;
   if (!std::filesystem::exists(catalog_path, error)) {
     return absl::NotFoundError(absl::StrCat("'", data_dir,

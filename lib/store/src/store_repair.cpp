@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <unordered_set>
 #include <utility>
@@ -47,12 +48,12 @@ class StoreRepairer {
 
  private:
   absl::Status OpenCatalog() {
-    const std::string path = data_dir_ + "/catalogue.db";
+    const std::string path = CatalogPath(data_dir_);
     absl::StatusOr<std::unique_ptr<Catalog>> catalog = Catalog::Open(path);
     if (absl::IsDataLoss(catalog.status())) {
       repair_.has_new_catalog = true;
       std::error_code error;
-      for (const char* suffix : {"-wal", "-shm", ""}) {
+      for (const char* suffix : kCatalogSuffixes) {
         if (!fs::exists(path + suffix, error)) continue;
         PLEAT_RETURN_IF_ERROR(quarantine_.Take(path + suffix, "the catalog is damaged"));
       }
@@ -97,18 +98,20 @@ class StoreRepairer {
       }
       PLEAT_RETURN_IF_ERROR(bytes.status());
       if (good_rows_.contains(id)) continue;
-      PLEAT_ASSIGN_OR_RETURN(const bool has_row, MakeRow(id, *bytes));
-      if (!has_row) repair_.unknown.push_back(id);
+      const absl::StatusOr<FileDescription> description = describe_(id, *bytes);
+      if (description.ok()) {
+        PLEAT_RETURN_IF_ERROR(MakeRow(id, *description));
+      } else {
+        repair_.unknown.push_back(id);
+      }
     }
     return progress.Report(1);
   }
 
-  absl::StatusOr<bool> MakeRow(const std::string& id, const std::string& bytes) {
-    const absl::StatusOr<FileDescription> description = describe_(id, bytes);
-    if (!description.ok()) return false;
-    PLEAT_RETURN_IF_ERROR(catalog_->Put(description->kind, {id, description->record}));
+  absl::Status MakeRow(const std::string& id, const FileDescription& description) {
+    PLEAT_RETURN_IF_ERROR(catalog_->Put(description.kind, {id, description.record}));
     repair_.rows_made.push_back(id);
-    return true;
+    return absl::OkStatus();
   }
 
   // A copy goes back, under the name that the content has; the file in quarantine goes only then.
@@ -121,11 +124,14 @@ class StoreRepairer {
       const std::string path = absl::StrCat(quarantine_.folder(), "/", files[i].name);
       const absl::StatusOr<std::string> bytes = ReadFile(path);
       if (!bytes.ok() || ToHex(ComputeSha256(*bytes)) != id) continue;
+      std::optional<FileDescription> missing_row;
       if (!good_rows_.contains(id)) {
-        if (!describe_(id, *bytes).ok()) continue;
+        absl::StatusOr<FileDescription> description = describe_(id, *bytes);
+        if (!description.ok()) continue;
+        missing_row = *std::move(description);
       }
       PLEAT_RETURN_IF_ERROR(blobs_->Put(*bytes).status());
-      if (!good_rows_.contains(id)) PLEAT_RETURN_IF_ERROR(MakeRow(id, *bytes).status());
+      if (missing_row) PLEAT_RETURN_IF_ERROR(MakeRow(id, *missing_row));
       std::error_code ignored;
       fs::remove(path, ignored);
       repair_.returned.push_back(id);

@@ -61,7 +61,7 @@ class ConnectionListener {
   std::atomic<int> num_open_ = 0;
   std::atomic<uint64_t> num_refused_ = 0;
 
-  // Of the thread alone.
+  // The listener's thread alone uses what follows.
   std::map<int, std::string> watchers_;     // the peers of open connections, by the watcher's fd
   std::map<std::string, int> num_by_peer_;  // open connections
   uint64_t num_reported_ = 0;

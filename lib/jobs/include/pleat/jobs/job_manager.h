@@ -109,10 +109,11 @@ class JobManager {
   std::condition_variable stopped_;  // shutting_down_
   // Returns the job of `draft.request_id`, null when there is none. Call with mutex_ held.
   absl::StatusOr<std::shared_ptr<JobStateMachine>> FindRequest(const JobInfo& draft) const;
-  void NoteRequest(const JobInfo& info);  // call with mutex_ held
+  // Makes the job known, and lets it wait if it is queued. Call with mutex_ held.
+  void Register(std::shared_ptr<JobStateMachine> job);
 
   std::map<std::string, std::shared_ptr<JobStateMachine>> jobs_;  // guarded by mutex_
-  std::map<std::string, std::string> ids_by_request_;             // of jobs; guarded by mutex_
+  std::map<std::string, std::string> ids_by_request_;             // guarded by mutex_
   std::vector<std::string> order_;                                // guarded by mutex_
   std::deque<std::shared_ptr<JobStateMachine>> queue_;            // guarded by mutex_
   std::set<std::string> suspects_;  // ids of jobs that run alone; guarded by mutex_

@@ -15,10 +15,18 @@ class Database;
 class SyncHookVfs;
 
 enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig };
+inline constexpr EntryKind kEntryKinds[] = {EntryKind::kSequence, EntryKind::kModel,
+                                            EntryKind::kCompressedSequence, EntryKind::kJob,
+                                            EntryKind::kRig};
 // Those that are a file and a row; jobs are rows alone.
 inline constexpr EntryKind kFileKinds[] = {EntryKind::kSequence, EntryKind::kModel,
                                            EntryKind::kCompressedSequence, EntryKind::kRig};
 const char* EntryKindName(EntryKind kind);  // "compressed sequence"
+
+// Where the catalog of a data folder is, and the endings of the files that SQLite keeps for it: the
+// database comes last.
+std::string CatalogPath(const std::string& data_dir);
+inline constexpr const char* kCatalogSuffixes[] = {"-wal", "-shm", ""};
 
 struct CatalogEntry {
   std::string id;

@@ -18,7 +18,7 @@ class DiskSpace;
 // is destroyed. Not thread-safe.
 class SpaceReservation {
  public:
-  SpaceReservation() = default;  // of nothing
+  SpaceReservation() = default;  // keeps nothing
   SpaceReservation(std::shared_ptr<DiskSpace> space, uint64_t bytes)
       : space_(std::move(space)), bytes_(bytes) {}
   ~SpaceReservation() { Spend(bytes_); }

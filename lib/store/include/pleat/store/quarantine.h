@@ -15,15 +15,15 @@ namespace pleat {
 
 struct QuarantinedFile {
   std::string name;  // in the folder of the quarantine
-  std::string
-      time{};  // when it came there: "2026-11-30T17:45:00Z", empty when nobody wrote it down
+  // When it came there, as in "2026-11-30T17:45:00Z"; empty when nobody wrote it down.
+  std::string time{};
   std::string reason{};  // "no entry names it"
   uint64_t size_bytes = 0;
 };
 
-// The folder DATA/quarantine with a manifest of one line for each file that ever came. Nothing in
-// it is ever removed by Pleat: an operator looks at it (`pleat store check`), puts files back
-// (`pleat store repair`), or removes them. Thread-safe.
+// The folder DATA/quarantine with a manifest of one line for each file that ever came. Pleat
+// removes nothing from it but what `pleat store repair` has put back: an operator looks at it
+// (`pleat store check`), repairs, or removes files. Thread-safe.
 class Quarantine {
  public:
   explicit Quarantine(std::string folder, SyncHook before_sync = {})

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/store/catalog.h"
@@ -24,10 +25,13 @@ struct StoreProblem {
     kUnknownFile,     // a file that no entry names
   };
   Kind kind;
-  std::string id;    // of the entry or file; empty for kIdentity
+  std::string id;    // the entry or file; empty for kIdentity
   std::string text;  // a sentence for the operator
 };
 const char* StoreProblemName(StoreProblem::Kind kind);  // "missing file"
+
+// The problem of the file `id` that `why`, an error of BlobStore, is about.
+StoreProblem FileProblem(const std::string& id, const absl::Status& why);
 
 struct StoreCheck {
   std::string store_id;                 // empty: never written
