@@ -1,13 +1,12 @@
 #include <chrono>
 #include <memory>
-#include <random>
 #include <string>
 #include <thread>
 #include <utility>
 
-#include "absl/strings/str_format.h"
 #include "job_subscription.h"
 #include "pages.h"
+#include "pleat/base/random_id.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/service_messages.h"
 #include "pleat/wire/training_messages.h"
@@ -18,10 +17,7 @@ namespace {
 
 constexpr auto kRetryPause = std::chrono::milliseconds(200);
 
-std::string MakeRequestId() {
-  std::random_device device;
-  return absl::StrFormat("%08x%08x%08x%08x", device(), device(), device(), device());
-}
+std::string MakeRequestId() { return RandomHexId(4); }
 
 class RemoteJobs final : public JobService {
  public:

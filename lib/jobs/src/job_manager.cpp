@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
-#include <random>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
+#include "pleat/base/random_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/thread_priority.h"
 
 namespace pleat {
 namespace {
 
-std::string MakeJobId() {
-  std::random_device device;
-  return absl::StrFormat("job-%08x%08x", device(), device());
-}
+std::string MakeJobId() { return "job-" + RandomHexId(2); }
 
 }  // namespace
 

@@ -1,18 +1,17 @@
 #include "store_identity.h"
 
 #include <algorithm>
-#include <random>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "pleat/base/file.h"
+#include "pleat/base/random_id.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
 
-constexpr size_t kStoreIdLength = 32;
+constexpr int kStoreIdLength = 32;
 constexpr uint64_t kMaxIdFileBytes = 256;
 
 constexpr char kWhatToDo[] =
@@ -50,19 +49,16 @@ absl::StatusOr<std::string> AgreeOnStoreId(const StoreSides& sides, const std::s
                              sides.num_files, " that are there"));
 }
 
-std::string MakeStoreId() {
-  std::random_device device;
-  return absl::StrFormat("%08x%08x%08x%08x", device(), device(), device(), device());
-}
+std::string MakeStoreId() { return RandomHexId(kStoreIdLength / 8); }
 
 absl::StatusOr<std::string> ReadBlobsId(const std::string& blobs_folder) {
   const absl::StatusOr<std::string> text = ReadFile(IdPath(blobs_folder), kMaxIdFileBytes);
   if (absl::IsNotFound(text.status())) return std::string();
   PLEAT_RETURN_IF_ERROR(text.status());
   const std::string id(absl::StripAsciiWhitespace(*text));
-  const bool is_id = id.size() == kStoreIdLength && std::ranges::all_of(id, [](unsigned char c) {
-                       return absl::ascii_isxdigit(c);
-                     });
+  const bool is_id =
+      id.size() == size_t{kStoreIdLength} &&
+      std::ranges::all_of(id, [](unsigned char c) { return absl::ascii_isxdigit(c); });
   if (is_id) return id;
   return absl::DataLossError(absl::StrCat("'", IdPath(blobs_folder), "' is damaged", kWhatToDo));
 }
