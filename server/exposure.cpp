@@ -1,15 +1,9 @@
 #include "exposure.h"
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "pleat/base/address.h"
 
 namespace pleat {
-
-bool IsLocalAddress(const std::string& listen) {
-  if (absl::StartsWith(listen, "unix:")) return true;
-  const std::string host = listen.substr(0, listen.rfind(':'));
-  return host == "localhost" || host == "[::1]" || host == "::1" || absl::StartsWith(host, "127.");
-}
 
 absl::Status CheckExposure(const Exposure& exposure) {
   if (IsLocalAddress(exposure.listen)) return absl::OkStatus();
@@ -18,6 +12,13 @@ absl::Status CheckExposure(const Exposure& exposure) {
         "other machines could reach ", exposure.listen,
         " in plain text; give --tls-cert and "
         "--tls-key, listen on 127.0.0.1, or say --allow-unencrypted where the network is trusted"));
+  }
+  if (!exposure.knows_callers && !exposure.allow_anonymous) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "whoever reaches ", exposure.listen,
+        " could read and delete everything; make tokens with 'pleat token create', or ask for "
+        "certificates with --tls-client-ca, or say --allow-anonymous where the network is "
+        "trusted"));
   }
   if (exposure.is_root && !exposure.allow_root) {
     return absl::FailedPreconditionError(absl::StrCat("other machines could reach ",

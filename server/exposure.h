@@ -10,16 +10,16 @@ namespace pleat {
 struct Exposure {
   std::string listen;  // HOST:PORT or unix:PATH
   bool encrypted = false;
+  bool knows_callers = false;  // by tokens or by certificates of the clients
   bool is_root = false;
   bool allow_unencrypted = false;  // --allow-unencrypted
+  bool allow_anonymous = false;    // --allow-anonymous
   bool allow_root = false;         // --allow-root
 };
 
-// True of unix sockets and of loopback addresses, which only this machine reaches.
-bool IsLocalAddress(const std::string& listen);
-
-// kFailedPrecondition names the flag that is missing when other machines could reach the server in
-// plain text, or reach one that runs as root.
+// An address that only this machine reaches needs nothing. For others, kFailedPrecondition names
+// the flag that is missing when they could reach the server in plain text, or without saying who
+// they are, or when it runs as root.
 absl::Status CheckExposure(const Exposure& exposure);
 
 }  // namespace pleat

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "call_observers.h"
 #include "options.h"
 #include "pleat/metrics/server_metrics.h"
 #include "service_gauges.h"
@@ -53,17 +54,18 @@ int Run(const ServerOptions& options) {
       LocalCharacterService::Open(service_options);
   if (!service.ok()) return Fail(service.status());
   ServerMetrics metrics;
-  const CallListener calls = {
-      [&](const std::string& method) { metrics.CallStarted(method); },
-      [&](const std::string& method, int status, double seconds) {
-        metrics.CallEnded(method, absl::StatusCodeToString(static_cast<absl::StatusCode>(status)),
-                          seconds);
-      }};
+  absl::StatusOr<std::unique_ptr<TokenRegistry>> tokens = OpenTokens(options.token_file);
+  if (!tokens.ok()) return Fail(tokens.status());
+  absl::StatusOr<std::unique_ptr<AuditLog>> audit_log = OpenAuditLog(options.audit_log);
+  if (!audit_log.ok()) return Fail(audit_log.status());
+  const CallListener calls = ObserveCalls(&metrics, audit_log->get(), tokens->get());
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
   grpc.call_listener = &calls;
+  grpc.tokens = tokens->get();
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
+  WarnBeforeExpiry((*server)->certificate_expiry());
   AddServiceGauges(service->get(), &metrics);
   AddNetworkGauges(server->get(), &metrics);
   if (!options.metrics_listen.empty()) {

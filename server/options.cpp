@@ -5,16 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
-#include "pleat/base/file.h"
+#include "pleat/base/status.h"
+#include "pleat/identity/token_file.h"
 
 namespace pleat {
 namespace {
 
 constexpr double kScrubHours = 7 * 24;
-
-struct TlsPaths {
-  std::string certificate, key, client_ca;
-};
 
 void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_hours) {
   app->add_option("--data-dir", service->data_dir, "Folder that keeps sequences, jobs and models")
@@ -58,7 +55,7 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
       ->capture_default_str();
 }
 
-void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
+void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
   app->add_option("--listen", grpc->listen,
                   "HOST:PORT or unix:PATH; port 0 = any free one, printed at the start")
       ->capture_default_str();
@@ -80,33 +77,51 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc, TlsPaths* tls) {
                   "Of one address")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  app->add_option("--tls-cert", tls->certificate, "PEM file with the server's certificate chain");
-  app->add_option("--tls-key", tls->key, "PEM file with its private key");
-  app->add_option("--tls-client-ca", tls->client_ca,
-                  "PEM file with the authority of client certificates; then each client needs one");
+  app->add_option("--tls-cert", grpc->tls.certificate,
+                  "PEM file with the server's certificate chain")
+      ->check(CLI::ExistingFile);
+  app->add_option("--tls-key", grpc->tls.key, "PEM file with its private key")
+      ->check(CLI::ExistingFile);
+  app->add_option("--tls-client-ca", grpc->tls.client_ca,
+                  "PEM file with the authority of client certificates; then each client needs one")
+      ->check(CLI::ExistingFile);
 }
 
-absl::Status ReadTlsFiles(const TlsPaths& paths, GrpcServerOptions* grpc) {
-  for (const auto& [path, text] :
-       {std::pair(&paths.certificate, &grpc->tls_certificate),
-        std::pair(&paths.key, &grpc->tls_key), std::pair(&paths.client_ca, &grpc->tls_client_ca)}) {
-    if (path->empty()) continue;
-    absl::StatusOr<std::string> bytes = ReadFile(*path, 1 << 20);
-    if (!bytes.ok()) return bytes.status();
-    *text = *std::move(bytes);
-  }
-  return absl::OkStatus();
+void AddAccessFlags(CLI::App* app, ServerOptions* options) {
+  app->add_option("--token-file", options->token_file,
+                  "Tokens of 'pleat token'; as soon as there is one, each call needs one "
+                  "[DATA/tokens.json]");
+  app->add_option("--audit-log", options->audit_log,
+                  "File that receives a line about each call that changes something, gives away "
+                  "content or is refused");
+  app->add_flag(
+      "--allow-unencrypted", options->exposure.allow_unencrypted,
+      "Let other machines connect without TLS: whoever can listen on the network sees all");
+  app->add_flag("--allow-anonymous", options->exposure.allow_anonymous,
+                "Let other machines connect without a token or a certificate");
+  app->add_flag("--allow-root", options->exposure.allow_root,
+                "Let other machines connect to a server that runs as root");
+}
+
+// Whether others may reach the server as the flags ask (exposure.h).
+absl::Status CheckAccess(ServerOptions* options) {
+  Exposure& exposure = options->exposure;
+  exposure.listen = options->grpc.listen;
+  exposure.encrypted = !options->grpc.tls.certificate.empty();
+  exposure.is_root = geteuid() == 0;
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<Token> tokens, ReadTokens(options->token_file));
+  exposure.knows_callers = !options->grpc.tls.client_ca.empty() || !tokens.empty();
+  return CheckExposure(exposure);
 }
 
 }  // namespace
 
 CommandLine ParseCommandLine(int argc, const char* const* argv) {
   CommandLine line;
-  TlsPaths tls;
   line.options.grpc.listen = "127.0.0.1:7320";
   CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
   app.set_version_flag("--version", PLEAT_VERSION);
-  AddNetworkFlags(&app, &line.options.grpc, &tls);
+  AddNetworkFlags(&app, &line.options.grpc);
   double scrub_hours = kScrubHours;
   AddServiceFlags(&app, &line.options.service, &scrub_hours);
   std::string job_priority = "idle";
@@ -119,11 +134,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
                  "How long running calls may go on after SIGTERM")
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
-  app.add_flag(
-      "--allow-unencrypted", line.options.exposure.allow_unencrypted,
-      "Let other machines connect without TLS: whoever can listen on the network sees all");
-  app.add_flag("--allow-root", line.options.exposure.allow_root,
-               "Let other machines connect to a server that runs as root");
+  AddAccessFlags(&app, &line.options);
   app.add_option("--metrics-listen", line.options.metrics_listen,
                  "HOST:PORT that answers GET /metrics for Prometheus, in plain text");
   app.add_option("--log-level", line.options.logging.level,
@@ -141,13 +152,10 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   }
   line.options.service.scrub_seconds = 3600 * scrub_hours;
   line.options.service.jobs_in_idle_time = job_priority == "idle";
-  Exposure& exposure = line.options.exposure;
-  exposure.listen = line.options.grpc.listen;
-  exposure.encrypted = !tls.certificate.empty();
-  exposure.is_root = geteuid() == 0;
-  absl::Status status = CheckExposure(exposure);
-  if (status.ok()) status = ReadTlsFiles(tls, &line.options.grpc);
-  if (!status.ok()) {
+  if (line.options.token_file.empty()) {
+    line.options.token_file = TokenPath(line.options.service.data_dir);
+  }
+  if (const absl::Status status = CheckAccess(&line.options); !status.ok()) {
     line.exit = true;
     line.exit_code = 2;
     line.message = std::string(status.message()) + "\n";

@@ -17,12 +17,14 @@ struct ServerOptions {
   GrpcServerOptions grpc;
   LoggingOptions logging;
   std::string metrics_listen;  // HOST:PORT, empty = no metrics
+  std::string token_file;      // who may call; it need not exist
+  std::string audit_log;       // empty = none
   Exposure exposure;           // checked by ParseCommandLine
   double drain_seconds = 10;   // running calls may go on for so long after SIGTERM
 };
 
 // What the command line asks for: options, or a text to print and an exit code (for --help, for
-// --version and for wrong flags). Parsing reads the certificate files.
+// --version and for wrong flags). Parsing reads the token file.
 struct CommandLine {
   ServerOptions options;
   bool exit = false;

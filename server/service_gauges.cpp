@@ -30,6 +30,11 @@ void AddNetworkGauges(const GrpcServer* server, ServerMetrics* metrics) {
                     [server] { return 1. * server->num_connections(); });
   metrics->AddGauge("pleat_refused_connections", "Connections refused since the start", {},
                     [server] { return static_cast<double>(server->num_refused_connections()); });
+  if (!server->certificate_expiry()) return;
+  metrics->AddGauge(
+      "pleat_certificate_expiry_timestamp_seconds",
+      "When the TLS certificate on the disk expires; 0 = it cannot be read", {},
+      [server] { return static_cast<double>(server->certificate_expiry().value_or(0)); });
 }
 
 }  // namespace pleat

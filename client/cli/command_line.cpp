@@ -41,6 +41,8 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddCompressedVerb(*app, session);
   AddBenchVerb(*app, session);
   AddStoreVerb(*app, session);
+  AddTokenVerb(*app, session);
+  AddStatusVerb(*app, session);
   AddVersionVerb(*app, session);
   return app;
 }

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
   session.environment_server = Environment("PLEAT_SERVER");
   session.environment_data = Environment("PLEAT_DATA");
   session.environment_home = Environment("HOME");
+  session.environment_token = Environment("PLEAT_TOKEN");
   return static_cast<int>(
       pleat::RunCommandLine(std::vector<std::string>(argv + 1, argv + argc), session));
 }

@@ -1,5 +1,6 @@
 #include "cli/service.h"
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "cli/exit_code.h"
 #include "cli/show/progress_display.h"
@@ -12,6 +13,8 @@ namespace pleat {
 
 namespace {
 
+constexpr uint64_t kMaxTokenFileBytes = 4096;
+
 absl::StatusOr<std::unique_ptr<RemoteCharacterService>> Connect(const Session& session) {
   RemoteOptions options;
   options.tls = session.tls || !session.tls_ca.empty() || !session.tls_certificate.empty();
@@ -22,6 +25,11 @@ absl::StatusOr<std::unique_ptr<RemoteCharacterService>> Connect(const Session& s
     PLEAT_ASSIGN_OR_RETURN(options.tls_client_certificate, ReadFile(session.tls_certificate));
     PLEAT_ASSIGN_OR_RETURN(options.tls_client_key, ReadFile(session.tls_key));
   }
+  options.token = session.environment_token;
+  if (!session.token_file.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(options.token, ReadFile(session.token_file, kMaxTokenFileBytes));
+  }
+  absl::StripAsciiWhitespace(&options.token);
   return RemoteCharacterService::Connect(session.ServerAddress(), std::move(options));
 }
 
@@ -39,7 +47,7 @@ absl::StatusOr<std::unique_ptr<CharacterService>> OpenService(const Session& ses
 
 absl::StatusOr<std::unique_ptr<RemoteCharacterService>> OpenRemoteService(const Session& session,
                                                                           const std::string& verb) {
-  if (session.local) return UsageError(verb + " measures a server: it has no --local");
+  if (session.local) return UsageError(verb + " talks to a server: it has no --local");
   return Connect(session);
 }
 

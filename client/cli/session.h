@@ -16,6 +16,7 @@ struct Session {
   std::string environment_server;  // PLEAT_SERVER, empty when unset
   std::string environment_data;    // PLEAT_DATA, empty when unset
   std::string environment_home;    // HOME, empty when unset
+  std::string environment_token;   // PLEAT_TOKEN, empty when unset
 
   // The flags that verbs share.
   std::string server;    // --server
@@ -25,6 +26,7 @@ struct Session {
   std::string tls_ca;           // --tls-ca: a PEM file, empty = the authorities of the system
   std::string tls_certificate;  // --tls-cert and --tls-key: PEM files of the client
   std::string tls_key;
+  std::string token_file;  // --token-file: holds the token; empty = PLEAT_TOKEN
   bool json = false;
   bool quiet = false;
   bool force = false;   // existing files may be replaced

@@ -22,6 +22,7 @@
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
+#include "support/token_files.h"
 
 namespace pleat {
 namespace {
@@ -305,6 +306,19 @@ TEST(PleatdTest, IsNotOpenToOtherMachinesByMistake) {
   Daemon daemon({"--data-dir", folder.path(), "--listen", "0.0.0.0:0"});
   EXPECT_EQ(daemon.Wait(), 2);
   EXPECT_THAT(daemon.output(), HasSubstr("--allow-unencrypted"));
+}
+
+TEST(PleatdTest, IsOpenToOtherMachinesWhenItKnowsItsCallers) {
+  TestTokens tokens;  // in a data folder
+  const std::vector<std::string> flags = {"--data-dir",          tokens.folder(),   "--listen",
+                                          "0.0.0.0:0",           "--reserve-bytes", "1MB",
+                                          "--allow-unencrypted", "--allow-root"};
+  Daemon anonymous(flags);
+  EXPECT_EQ(anonymous.Wait(), 2);
+  EXPECT_THAT(anonymous.output(), HasSubstr("pleat token create"));
+  tokens.Add("Ada", "admin");
+  Daemon known(flags);
+  EXPECT_NE(known.WaitForAddress(), "") << known.output();
 }
 
 TEST(PleatdTest, LogsJson) {

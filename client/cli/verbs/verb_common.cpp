@@ -43,6 +43,9 @@ void AddServerFlags(CLI::App* verb, Session& session) {
   CLI::Option* key = verb->add_option("--tls-key", session.tls_key, "PEM file: its private key")
                          ->needs(certificate);
   certificate->needs(key);
+  verb->add_option("--token-file", session.token_file,
+                   "file with the token for the server [the text in PLEAT_TOKEN]")
+      ->excludes(local);
   verb->add_option("--data-dir", session.data_dir,
                    "with --local: folder of sequences, jobs and models "
                    "[PLEAT_DATA, else ~/.local/share/pleat]")

@@ -49,6 +49,8 @@ void AddJobsVerb(CLI::App& app, Session& session);
 void AddModelsVerb(CLI::App& app, Session& session);
 void AddCompressedVerb(CLI::App& app, Session& session);
 void AddStoreVerb(CLI::App& app, Session& session);
+void AddTokenVerb(CLI::App& app, Session& session);
+void AddStatusVerb(CLI::App& app, Session& session);
 void AddVersionVerb(CLI::App& app, Session& session);
 
 }  // namespace pleat

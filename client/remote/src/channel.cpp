@@ -8,9 +8,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "token_interceptor.h"
 
 namespace pleat {
 namespace {
@@ -21,6 +25,8 @@ constexpr int kMaxReceiveBytes = 64 << 20;
 constexpr int kKeepaliveMs = 120'000;
 constexpr int kLiveLookaheadBytes = 65536;
 constexpr auto kProbeTime = std::chrono::seconds(1);
+// grpc.health.v1.HealthCheckResponse with its field 1, the status, SERVING.
+constexpr std::string_view kServing = "\x08\x01";
 constexpr auto kPoll = std::chrono::milliseconds(50);
 
 // When the server cannot be reached, gRPC repeats the calls that may be repeated without harm.
@@ -42,9 +48,9 @@ std::shared_ptr<grpc::ChannelCredentials> MakeCredentials(const RemoteOptions& o
   return grpc::SslCredentials(tls);
 }
 
-// Returns the reason, in gRPC's words, for which a call fails now. It calls the standard health
-// service, which every server has.
-std::string ReasonOfFailure(const std::shared_ptr<grpc::Channel>& channel) {
+}  // namespace
+
+grpc::Status AskForHealth(const std::shared_ptr<grpc::Channel>& channel, bool* serving) {
   grpc::GenericStub stub(channel);
   grpc::CompletionQueue queue;
   grpc::ClientContext context;
@@ -58,8 +64,14 @@ std::string ReasonOfFailure(const std::shared_ptr<grpc::Channel>& channel) {
   void* tag = nullptr;
   bool ok = false;
   queue.Next(&tag, &ok);
-  return status.error_message();
+  grpc::Slice answer;
+  *serving =
+      status.ok() && response.DumpToSingleSlice(&answer).ok() &&
+      std::string_view(reinterpret_cast<const char*>(answer.begin()), answer.size()) == kServing;
+  return status;
 }
+
+namespace {
 
 absl::Status NoConnection(const std::string& address, const RemoteOptions& options,
                           const std::string& reason) {
@@ -85,7 +97,8 @@ absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
   grpc_connectivity_state state = channel->GetState(true);
   while (state != GRPC_CHANNEL_READY) {
     if (state == GRPC_CHANNEL_TRANSIENT_FAILURE) {
-      reason = ReasonOfFailure(channel);
+      bool serving = false;
+      reason = AskForHealth(channel, &serving).error_message();
       if (options.tls && absl::StrContains(reason, "andshake")) break;  // waiting will not help
     }
     if (!channel->WaitForStateChange(state, deadline)) break;
@@ -111,7 +124,10 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const Rem
     arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
     arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, kLiveLookaheadBytes);
   }
-  return grpc::CreateCustomChannel(address, MakeCredentials(options), arguments);
+  std::vector<std::unique_ptr<grpc::experimental::ClientInterceptorFactoryInterface>> interceptors;
+  if (!options.token.empty()) interceptors.push_back(ShowToken(options.token));
+  return grpc::experimental::CreateCustomChannelWithInterceptors(
+      address, MakeCredentials(options), arguments, std::move(interceptors));
 }
 
 absl::Status FromGrpcStatus(const grpc::Status& status) {

@@ -2,15 +2,34 @@
 
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "channel.h"
+#include "pleat/base/address.h"
 #include "pleat/base/status.h"
+#include "pleat/identity/token.h"
 #include "remote_services.h"
 #include "remote_state.h"
 
 namespace pleat {
+namespace {
+
+absl::Status CheckToken(const std::string& address, const RemoteOptions& options) {
+  if (options.token.empty()) return absl::OkStatus();
+  if (!ParseTokenText(options.token)) {
+    return absl::InvalidArgumentError(
+        "the token has another form than pleat_ID_SECRET; copy it whole, as 'pleat token create' "
+        "printed it");
+  }
+  if (options.tls || IsLocalAddress(address)) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      "the token would go to '", address, "' in plain text, where others can read it; use TLS"));
+}
+
+}  // namespace
 
 absl::StatusOr<std::unique_ptr<RemoteCharacterService>> RemoteCharacterService::Connect(
     const std::string& address, RemoteOptions options) {
+  PLEAT_RETURN_IF_ERROR(CheckToken(address, options));
   std::shared_ptr<grpc::Channel> channel = MakeChannel(address, options, ChannelUse::kCalls);
   PLEAT_RETURN_IF_ERROR(WaitForConnection(channel, address, options));
   return std::unique_ptr<RemoteCharacterService>(new RemoteCharacterService(
@@ -32,5 +51,12 @@ RemoteCharacterService::RemoteCharacterService(std::unique_ptr<RemoteState> stat
       compressed_sequences_(MakeRemoteCompressedSequences(state_.get())) {}
 
 RemoteCharacterService::~RemoteCharacterService() = default;
+
+absl::Status RemoteCharacterService::CheckHealth() {
+  bool serving = false;
+  PLEAT_RETURN_IF_ERROR(FromGrpcStatus(AskForHealth(state_->channel, &serving)));
+  if (serving) return absl::OkStatus();
+  return absl::UnavailableError("the server does not serve now; it may be shutting down");
+}
 
 }  // namespace pleat

@@ -1,7 +1,12 @@
 #include "call_listening.h"
 
 #include <chrono>
+#include <optional>
 #include <string>
+
+#include "named_ids.h"
+#include "pleat/identity/token.h"
+#include "pleat/reactors/admission.h"
 
 namespace pleat {
 namespace {
@@ -10,19 +15,36 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 
+// Returns "DeleteModel" for "/pleat.v1.ModelService/DeleteModel", and nothing for foreign services.
+std::string_view PleatRpc(std::string_view method) {
+  constexpr std::string_view kPackage = "/pleat.v1.";
+  if (method.substr(0, kPackage.size()) != kPackage) return {};
+  return method.substr(method.rfind('/') + 1);
+}
+
 // Lives as long as its call. A call that ends without a status was cancelled.
 class ListeningInterceptor final : public grpc::experimental::Interceptor {
  public:
-  ListeningInterceptor(const CallListener* listener, const char* method)
-      : listener_(listener), method_(method) {
-    listener_->on_start(method_);
+  ListeningInterceptor(const CallListener* listener, RunningCalls* running, ServerRpcInfo* info)
+      : listener_(listener), running_(running), call_(info->server_context()) {
+    facts_.method = info->method();
+    const RpcRule* rule = FindRpcRule(PleatRpc(facts_.method));
+    facts_.audited = rule != nullptr && rule->audited;
+    if (listener_ != nullptr) listener_->on_start(facts_.method);
   }
   ~ListeningInterceptor() override {
+    entry_.reset();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    listener_->on_end(method_, status_, elapsed.count());
+    if (listener_ != nullptr) listener_->on_end(facts_, status_, elapsed.count());
   }
 
   void Intercept(InterceptorBatchMethods* methods) override {
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_INITIAL_METADATA)) {
+      NoteCaller();
+    }
+    if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_MESSAGE)) {
+      NoteRequest(methods->GetRecvMessage());
+    }
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
       status_ = methods->GetSendStatus().error_code();
     }
@@ -30,29 +52,53 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
   }
 
  private:
+  void NoteCaller() {
+    facts_.peer = call_->peer();
+    if (!facts_.token_id.empty()) return;
+    if (const std::optional<TokenText> token = ParseTokenText(ShownToken(*call_))) {
+      facts_.token_id = token->id;
+      entry_.emplace(running_, facts_.token_id, call_);
+    }
+  }
+
+  // The first message says what the call is about; later ones are data or poses.
+  void NoteRequest(const void* message) {
+    if (!facts_.audited || has_request_ || message == nullptr) return;
+    has_request_ = true;
+    // Every audited RPC is Pleat's, and every request of these is a generated class, whose first
+    // and only base is Message.
+    facts_.ids = NamedIds(*static_cast<const google::protobuf::Message*>(message));
+  }
+
   const CallListener* const listener_;
-  const std::string method_;
+  RunningCalls* const running_;
+  const grpc::ServerContextBase* const call_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  CallFacts facts_;
+  std::optional<RunningCalls::Entry> entry_;
+  bool has_request_ = false;
   int status_ = grpc::StatusCode::CANCELLED;
 };
 
 class ListeningFactory final : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
-  explicit ListeningFactory(const CallListener* listener) : listener_(listener) {}
+  ListeningFactory(const CallListener* listener, RunningCalls* running)
+      : listener_(listener), running_(running) {}
   grpc::experimental::Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
-    return new ListeningInterceptor(listener_, info->method());  // gRPC owns it
+    return new ListeningInterceptor(listener_, running_, info);  // gRPC owns it
   }
 
  private:
   const CallListener* const listener_;
+  RunningCalls* const running_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>>
-MakeCallListening(const CallListener* listener) {
+MakeCallListening(const CallListener* listener, RunningCalls* running) {
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> factories;
-  factories.push_back(std::make_unique<ListeningFactory>(listener));
+  factories.push_back(std::make_unique<ListeningFactory>(listener, running));
   return factories;
 }
 

@@ -1,4 +1,4 @@
-// Tells a listener about every call, whatever its kind.
+// Tells a CallListener of every call, whatever its handler is.
 #pragma once
 
 #include <grpcpp/support/server_interceptor.h>
@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "pleat/grpc/grpc_server.h"
+#include "running_calls.h"
 
 namespace pleat {
 
-// The listener must outlive the server that gets the factories.
+// `running` receives the calls that show a token. Both must outlive the server; `listener` may be
+// null.
 std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>>
-MakeCallListening(const CallListener* listener);
+MakeCallListening(const CallListener* listener, RunningCalls* running);
 
 }  // namespace pleat

@@ -6,10 +6,16 @@
 #include <openssl/pem.h>
 #include <openssl/x509.h>
 
+#include <ctime>
 #include <memory>
+
+#include "pleat/base/file.h"
+#include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
+
+constexpr uint64_t kMaxPemBytes = 1 << 20;
 
 using Bio = std::unique_ptr<BIO, decltype(&BIO_free)>;
 using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
@@ -21,6 +27,10 @@ Bio Reader(const std::string& text) {
 
 Certificate ReadCertificate(const std::string& text) {
   return Certificate(PEM_read_bio_X509(Reader(text).get(), nullptr, nullptr, nullptr), X509_free);
+}
+
+absl::Status NoAuthority() {
+  return absl::UnavailableError("the authority of client certificates is no PEM certificate");
 }
 
 absl::Status Check(const std::string& certificate, const std::string& key,
@@ -38,7 +48,7 @@ absl::Status Check(const std::string& certificate, const std::string& key,
     return absl::UnavailableError("the TLS certificate and the key do not fit together");
   }
   if (!client_ca.empty() && ReadCertificate(client_ca) == nullptr) {
-    return absl::UnavailableError("the authority of client certificates is no PEM certificate");
+    return NoAuthority();
   }
   return absl::OkStatus();
 }
@@ -50,6 +60,33 @@ absl::Status CheckCertificates(const std::string& certificate, const std::string
   const absl::Status status = Check(certificate, key, client_ca);
   ERR_clear_error();  // what OpenSSL noted is said; the next user of this thread starts clean
   return status;
+}
+
+absl::Status CheckCertificateFiles(const std::string& certificate_path, const std::string& key_path,
+                                   const std::string& client_ca_path) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string certificate, ReadFile(certificate_path, kMaxPemBytes));
+  PLEAT_ASSIGN_OR_RETURN(const std::string key, ReadFile(key_path, kMaxPemBytes));
+  std::string client_ca;
+  if (!client_ca_path.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(client_ca, ReadFile(client_ca_path, kMaxPemBytes));
+    if (client_ca.empty()) return NoAuthority();
+  }
+  return CheckCertificates(certificate, key, client_ca);
+}
+
+std::optional<int64_t> CertificateExpiry(const std::string& certificate) {
+  const Certificate parsed = ReadCertificate(certificate);
+  ERR_clear_error();
+  std::tm time{};
+  if (parsed == nullptr || ASN1_TIME_to_tm(X509_get0_notAfter(parsed.get()), &time) != 1) {
+    return std::nullopt;
+  }
+  return timegm(&time);
+}
+
+std::optional<int64_t> CertificateFileExpiry(const std::string& certificate_path) {
+  const absl::StatusOr<std::string> certificate = ReadFile(certificate_path, kMaxPemBytes);
+  return certificate.ok() ? CertificateExpiry(*certificate) : std::nullopt;
 }
 
 }  // namespace pleat

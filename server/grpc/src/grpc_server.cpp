@@ -7,6 +7,8 @@
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/security/server_credentials.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 #include <spdlog/spdlog.h>
@@ -23,7 +25,10 @@
 #include "certificate_check.h"
 #include "connection_listener.h"
 #include "pleat/base/status.h"
+#include "revocation_watch.h"
+#include "running_calls.h"
 #include "services.h"
+#include "tls_version.h"
 
 namespace pleat {
 namespace {
@@ -37,25 +42,27 @@ constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
 constexpr auto kSlowReaderTime = std::chrono::seconds(1);
 constexpr auto kCloseTime = std::chrono::milliseconds(100);
 
-absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(
-    const GrpcServerOptions& options) {
-  if (options.tls_certificate.empty() != options.tls_key.empty()) {
+absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> MakeCredentials(const TlsFiles& files) {
+  if (files.certificate.empty() != files.key.empty()) {
     return absl::InvalidArgumentError("TLS needs both a certificate and its key");
   }
-  if (options.tls_certificate.empty()) {
-    if (!options.tls_client_ca.empty()) {
+  if (files.certificate.empty()) {
+    if (!files.client_ca.empty()) {
       return absl::InvalidArgumentError("client certificates need TLS: give certificate and key");
     }
     return grpc::InsecureServerCredentials();
   }
-  PLEAT_RETURN_IF_ERROR(
-      CheckCertificates(options.tls_certificate, options.tls_key, options.tls_client_ca));
-  grpc::SslServerCredentialsOptions tls(
-      options.tls_client_ca.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
-                                    : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
-  tls.pem_key_cert_pairs.push_back({options.tls_key, options.tls_certificate});
-  tls.pem_root_certs = options.tls_client_ca;
-  return grpc::SslServerCredentials(tls);
+  PLEAT_RETURN_IF_ERROR(CheckCertificateFiles(files.certificate, files.key, files.client_ca));
+  PLEAT_RETURN_IF_ERROR(RequireTls13());
+  grpc::experimental::TlsServerCredentialsOptions tls(
+      std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
+          files.key, files.certificate, files.client_ca, files.reload_seconds));
+  tls.watch_identity_key_cert_pairs();
+  if (!files.client_ca.empty()) {
+    tls.watch_root_certs();
+    tls.set_cert_request_type(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  }
+  return grpc::experimental::TlsServerCredentials(tls);
 }
 
 // gRPC 1.51 inflates a compressed message before it looks at its size: 14 MiB become 11 GB. So
@@ -77,7 +84,8 @@ void LogForGrpc(gpr_log_func_args* args) {
 class GrpcServerImpl final : public GrpcServer {
  public:
   GrpcServerImpl(CharacterService* service, const GrpcServerOptions& options)
-      : request_memory_(options.request_bytes, "--request-bytes"),
+      : certificate_(options.tls.certificate),
+        request_memory_(options.request_bytes, "--request-bytes"),
         storage_executor_(options.num_storage_threads) {
     if (options.pose_executor == nullptr) own_pose_executor_.emplace(0);
     context_.sequences = &service->sequences();
@@ -89,6 +97,7 @@ class GrpcServerImpl final : public GrpcServer {
     context_.storage_executor = &storage_executor_;
     context_.request_memory = &request_memory_;
     context_.max_open_streams = options.max_open_streams;
+    context_.tokens = options.tokens;
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
     services_.push_back(MakeModelService(&context_));
@@ -102,7 +111,7 @@ class GrpcServerImpl final : public GrpcServer {
     grpc::EnableDefaultHealthCheckService(true);
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<grpc::ServerCredentials> credentials,
-                           MakeCredentials(options));
+                           MakeCredentials(options.tls));
     grpc::ServerBuilder builder;
     PLEAT_ASSIGN_OR_RETURN(listener_,
                            ConnectionListener::Open(options.listen, options.connections));
@@ -118,9 +127,8 @@ class GrpcServerImpl final : public GrpcServer {
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
-    if (options.call_listener != nullptr) {
-      builder.experimental().SetInterceptorCreators(MakeCallListening(options.call_listener));
-    }
+    builder.experimental().SetInterceptorCreators(
+        MakeCallListening(options.call_listener, &running_calls_));
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
@@ -134,11 +142,16 @@ class GrpcServerImpl final : public GrpcServer {
           acceptor_->HandleNewConnection(&connection);
         },
         [](const std::string& what) { spdlog::warn("{}", what); });
+    if (options.tokens != nullptr) revocation_.emplace(options.tokens, &running_calls_);
     return absl::OkStatus();
   }
 
   int port() const override { return port_; }
   int num_connections() const override { return listener_->num_open(); }
+  std::optional<int64_t> certificate_expiry() const override {
+    if (certificate_.empty()) return std::nullopt;
+    return CertificateFileExpiry(certificate_);
+  }
   uint64_t num_refused_connections() const override { return listener_->num_refused(); }
 
   std::shared_ptr<grpc::Channel> InProcessChannel() override {
@@ -148,6 +161,7 @@ class GrpcServerImpl final : public GrpcServer {
   void Shutdown(double drain_seconds) override {
     std::lock_guard lock(shutdown_mutex_);
     if (server_ == nullptr) return;
+    revocation_.reset();
     context_.draining = true;
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
     context_.live_sessions.DrainAll();
@@ -176,7 +190,9 @@ class GrpcServerImpl final : public GrpcServer {
     context_.open_calls.WaitUntilNone(deadline);
   }
 
-  MemoryBudget request_memory_;  // outlives the calls
+  const std::string certificate_;  // the path of its file
+  MemoryBudget request_memory_;    // these two outlive the calls
+  RunningCalls running_calls_;
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
   std::optional<Executor> own_pose_executor_;
@@ -187,6 +203,7 @@ class GrpcServerImpl final : public GrpcServer {
   std::unique_ptr<ConnectionListener> listener_;
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
+  std::optional<RevocationWatch> revocation_;
 };
 
 }  // namespace

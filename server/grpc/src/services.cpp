@@ -2,6 +2,7 @@
 
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/handlers/unary_handlers.h"
+#include "pleat/reactors/admission.h"
 #include "pleat/reactors/run_unary.h"
 #include "pleat/v1/compressed_sequence_service.grpc.pb.h"
 #include "pleat/v1/job_service.grpc.pb.h"
@@ -18,6 +19,14 @@
                     [=, this] { return pleat::rpc(*context_, *request, reply); });         \
   }
 
+// A method `rpc` that answers with a stream.
+#define PLEAT_SERVER_STREAM(rpc)                                                               \
+  grpc::ServerWriteReactor<v1::rpc##Response>* rpc(grpc::CallbackServerContext* call,          \
+                                                   const v1::rpc##Request* request) override { \
+    return StartAdmitted<grpc::ServerWriteReactor<v1::rpc##Response>>(                         \
+        context_, *call, #rpc, [&] { return pleat::rpc(context_, *request); });                \
+  }
+
 namespace pleat {
 namespace {
 
@@ -29,8 +38,10 @@ class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
   PLEAT_UNARY(ListSequences, storage_executor)
   PLEAT_UNARY(DeleteSequence, storage_executor)
   grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
-      grpc::CallbackServerContext*, v1::UploadSequenceResponse* response) override {
-    return pleat::UploadSequence(context_, response);
+      grpc::CallbackServerContext* call, v1::UploadSequenceResponse* response) override {
+    return StartAdmitted<grpc::ServerReadReactor<v1::UploadSequenceRequest>>(
+        context_, *call, "UploadSequence",
+        [&] { return pleat::UploadSequence(context_, response); });
   }
 
  private:
@@ -45,10 +56,7 @@ class JobServiceImpl final : public v1::JobService::CallbackService {
   PLEAT_UNARY(GetJob, storage_executor)
   PLEAT_UNARY(ListJobs, storage_executor)
   PLEAT_UNARY(CancelJob, storage_executor)
-  grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
-      grpc::CallbackServerContext*, const v1::WatchJobRequest* request) override {
-    return pleat::WatchJob(context_, *request);
-  }
+  PLEAT_SERVER_STREAM(WatchJob)
 
  private:
   HandlerContext* context_;
@@ -60,10 +68,7 @@ class ModelServiceImpl final : public v1::ModelService::CallbackService {
   PLEAT_UNARY(GetModel, storage_executor)
   PLEAT_UNARY(ListModels, storage_executor)
   PLEAT_UNARY(DeleteModel, storage_executor)
-  grpc::ServerWriteReactor<v1::DownloadModelResponse>* DownloadModel(
-      grpc::CallbackServerContext*, const v1::DownloadModelRequest* request) override {
-    return pleat::DownloadModel(context_, *request);
-  }
+  PLEAT_SERVER_STREAM(DownloadModel)
 
  private:
   HandlerContext* context_;
@@ -76,17 +81,13 @@ class CompressedSequenceServiceImpl final : public v1::CompressedSequenceService
   PLEAT_UNARY(ListCompressedSequences, storage_executor)
   PLEAT_UNARY(DeleteCompressedSequence, storage_executor)
   grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadCompressedSequence(
-      grpc::CallbackServerContext*, v1::UploadCompressedSequenceResponse* response) override {
-    return pleat::UploadCompressedSequence(context_, response);
+      grpc::CallbackServerContext* call, v1::UploadCompressedSequenceResponse* response) override {
+    return StartAdmitted<grpc::ServerReadReactor<v1::UploadSequenceRequest>>(
+        context_, *call, "UploadCompressedSequence",
+        [&] { return pleat::UploadCompressedSequence(context_, response); });
   }
-  grpc::ServerWriteReactor<v1::DownloadCompressedSequenceResponse>* DownloadCompressedSequence(
-      grpc::CallbackServerContext*, const v1::DownloadCompressedSequenceRequest* request) override {
-    return pleat::DownloadCompressedSequence(context_, *request);
-  }
-  grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
-      grpc::CallbackServerContext*, const v1::DecodeFramesRequest* request) override {
-    return pleat::DecodeFrames(context_, *request);
-  }
+  PLEAT_SERVER_STREAM(DownloadCompressedSequence)
+  PLEAT_SERVER_STREAM(DecodeFrames)
 
  private:
   HandlerContext* context_;
@@ -97,13 +98,11 @@ class PoseServiceImpl final : public v1::PoseService::CallbackService {
   explicit PoseServiceImpl(HandlerContext* context) : context_(context) {}
   PLEAT_UNARY(GetStreamHeader, pose_executor)
   PLEAT_UNARY(EvaluatePose, pose_executor)
-  grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
-      grpc::CallbackServerContext*, const v1::EvaluateClipRequest* request) override {
-    return pleat::EvaluateClip(context_, *request);
-  }
+  PLEAT_SERVER_STREAM(EvaluateClip)
   grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
       grpc::CallbackServerContext* call) override {
-    return pleat::LiveSession(context_, call);
+    return StartAdmitted<grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>>(
+        context_, *call, "LiveSession", [&] { return pleat::LiveSession(context_, call); });
   }
 
  private:

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "pleat/reactors/admission.h"
 #include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
 
@@ -81,6 +82,9 @@ grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServer
                                    Executor* executor, const char* rpc,
                                    std::function<absl::Status()> handler) {
   const uint64_t flow = std::hash<std::string>()(call->peer()) | 1;  // one per connection, never 0
+  if (absl::Status status = Admit(*context, *call, rpc); !status.ok()) {
+    handler = [status = std::move(status)] { return status; };
+  }
   return StartReactor<UnaryReactor>(context, executor, flow, rpc, std::move(handler));
 }
 

@@ -13,7 +13,7 @@ TEST(BenchVerbTest, MeasuresServersOnly) {
   const TubeFiles files;
   const Outcome outcome = files.RunInStore({"bench", "4f"});
   EXPECT_EQ(outcome.code, ExitCode::kUsage);
-  EXPECT_THAT(outcome.err, HasSubstr("bench measures a server: it has no --local"));
+  EXPECT_THAT(outcome.err, HasSubstr("bench talks to a server: it has no --local"));
 }
 
 TEST(BenchVerbTest, AServerThatIsNotThereIsUnavailable) {

@@ -6,12 +6,15 @@
 
 #include <thread>
 
+#include "pleat/base/file.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/model_service.grpc.pb.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
 #include "pleat/v1/sequence_service.grpc.pb.h"
 #include "server/handlers/mock_server.h"
 #include "support/checkpoint.h"
+#include "support/status_matchers.h"
+#include "support/temporary_folder.h"
 
 namespace pleat {
 namespace {
@@ -57,12 +60,17 @@ TEST_F(GrpcServerTest, AnAddressThatIsTakenIsRefused) {
 TEST_F(GrpcServerTest, CertificatesThatDoNotFitAreRefused) {
   MockService service;
   for (const GrpcServerOptions& half :
-       {GrpcServerOptions{.tls_certificate = "c"}, GrpcServerOptions{.tls_key = "k"},
-        GrpcServerOptions{.tls_client_ca = "ca"}}) {
+       {GrpcServerOptions{.tls = {.certificate = "c"}}, GrpcServerOptions{.tls = {.key = "k"}},
+        GrpcServerOptions{.tls = {.client_ca = "ca"}}}) {
     EXPECT_THAT(GrpcServer::Start(&service, half),
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("certificate")));
   }
-  EXPECT_THAT(GrpcServer::Start(&service, {.tls_certificate = "no PEM", .tls_key = "no PEM"}),
+  EXPECT_THAT(GrpcServer::Start(&service, {.tls = {.certificate = "/no/such/file", .key = "k"}}),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("/no/such/file")));
+  TemporaryFolder folder;
+  const std::string path = folder.path() + "/file";
+  ASSERT_THAT(WriteFile(path, "no PEM"), IsOk());
+  EXPECT_THAT(GrpcServer::Start(&service, {.tls = {.certificate = path, .key = path}}),
               HasStatus(absl::StatusCode::kUnavailable, HasSubstr("no PEM certificate")));
 }
 

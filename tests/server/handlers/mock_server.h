@@ -27,10 +27,13 @@ struct MockService final : CharacterService {
 
 // The mocks behind a channel without network. Set expectations before the call.
 struct MockServer {
-  MockServer() { spdlog::set_level(spdlog::level::err); }  // refusals are what is tested
+  explicit MockServer(const GrpcServerOptions& options = {})
+      : server(GrpcServer::Start(&service, options).value()) {
+    spdlog::set_level(spdlog::level::err);  // refusals are what is tested
+  }
 
   MockService service;
-  const std::unique_ptr<GrpcServer> server = GrpcServer::Start(&service, {}).value();
+  const std::unique_ptr<GrpcServer> server;
   const std::shared_ptr<grpc::Channel> channel = server->InProcessChannel();
   grpc::ClientContext call;
 };

@@ -29,6 +29,10 @@ class RemoteCharacterService final : public CharacterService {
                                                              RemoteOptions options = {});
   ~RemoteCharacterService() override;
 
+  // OK when the server says that it serves, which needs no token; kUnavailable when it says that it
+  // does not, as while it shuts down.
+  absl::Status CheckHealth();
+
   SequenceService& sequences() override { return *sequences_; }
   JobService& jobs() override { return *jobs_; }
   ModelService& models() override { return *models_; }

@@ -17,6 +17,8 @@ struct RemoteOptions {
   bool tls = false;
   std::string tls_root_certificates{};                     // PEM; empty: those of the system
   std::string tls_client_certificate{}, tls_client_key{};  // PEM, for servers that ask
+  // Sent with every call. Connect refuses to send it to another machine without TLS.
+  std::string token{};
 };
 
 }  // namespace pleat

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "pleat/base/executor.h"
+#include "pleat/identity/token_registry.h"
 #include "pleat/service/character_service.h"
 
 namespace grpc {
@@ -21,21 +24,39 @@ struct ConnectionLimits {
   int max_connections_per_peer = 1024;  // with one address
 };
 
+// What is known of a call when it has ended.
+struct CallFacts {
+  std::string method;            // "/pleat.v1.ModelService/DeleteModel"
+  std::string peer;              // as gRPC writes it: "ipv4:10.0.0.7:52114"
+  std::string token_id;          // of the token that it showed, good or not; empty: none
+  bool audited = false;          // it belongs in the audit log, whatever its end
+  std::vector<std::string> ids;  // that its request names; only of audited calls
+};
+
 // Hears of every call, from any thread. status: a grpc::StatusCode.
 struct CallListener {
   std::function<void(const std::string& method)> on_start;
-  std::function<void(const std::string& method, int status, double seconds)> on_end;
+  std::function<void(const CallFacts& facts, int status, double seconds)> on_end;
+};
+
+// PEM files. Certificate and key come together; with client_ca, clients must show a certificate
+// that it has signed. A file that is replaced is used for the connections that begin some seconds
+// later; replace certificate and key together, by renaming their folder.
+struct TlsFiles {
+  std::string certificate{}, key{}, client_ca{};
+  unsigned reload_seconds = 10;  // between two looks at the files
 };
 
 struct GrpcServerOptions {
   std::string listen = "127.0.0.1:0";  // HOST:PORT or unix:PATH; port 0 takes any free one
-  // PEM texts; certificate and key come together. With client_ca, clients must show a certificate
-  // that it has signed.
-  std::string tls_certificate{}, tls_key{}, tls_client_ca{};
+  TlsFiles tls{};                      // without a certificate: plain text
   // Computes poses. The service shares it for its own work on poses, so that all of them take
   // turns. Null makes the server start its own threads, one per core. It must outlive the server.
   Executor* pose_executor = nullptr;
   const CallListener* call_listener = nullptr;  // must outlive the server; may be null
+  // Says who may call what; it must outlive the server. Null: everybody may do everything. Calls of
+  // a token that is revoked or expires end within a second.
+  TokenRegistry* tokens = nullptr;
   int num_storage_threads = 4;  // for the disk, the catalog and the checks of uploads
   // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
   // 1 GiB.
@@ -58,6 +79,9 @@ class GrpcServer {
 
   virtual int port() const = 0;  // 0 for an address without a port
   virtual int num_connections() const = 0;
+  // The Unix second at which the certificate that is on the disk now expires; nothing without TLS,
+  // or while the file cannot be read.
+  virtual std::optional<int64_t> certificate_expiry() const = 0;
   virtual uint64_t num_refused_connections() const = 0;
   // A channel that needs no network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;

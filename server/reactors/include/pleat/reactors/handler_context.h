@@ -5,6 +5,7 @@
 
 #include "pleat/base/executor.h"
 #include "pleat/base/memory_budget.h"
+#include "pleat/identity/token_registry.h"
 #include "pleat/reactors/live_registry.h"
 #include "pleat/reactors/open_calls.h"
 #include "pleat/service/compressed_sequence_service.h"
@@ -26,7 +27,8 @@ struct HandlerContext {
   Executor* pose_executor = nullptr;     // for milliseconds of computation
   Executor* storage_executor = nullptr;  // for the disk, the catalog and the checks of uploads
   MemoryBudget* request_memory =
-      nullptr;  // for large requests while they are worked on; null: none
+      nullptr;                      // for large requests while they are worked on; null: none
+  TokenRegistry* tokens = nullptr;  // who may call; null: everybody
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;
   std::atomic<bool> draining = false;  // the server shuts down: new calls are refused

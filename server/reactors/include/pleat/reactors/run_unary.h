@@ -12,8 +12,8 @@ namespace pleat {
 
 // `handler` runs on `executor`, not on the network thread; the request and the response live until
 // it has returned. A call that was cancelled while it waited is not run, and neither is one that
-// comes while the server shuts down. Exceptions become a status. The calls of one connection take
-// turns with those of the others.
+// comes while the server shuts down or that may not call `rpc` (admission.h). Exceptions become a
+// status. The calls of one connection take turns with those of the others.
 grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServerContext* call,
                                    Executor* executor, const char* rpc,
                                    std::function<absl::Status()> handler);

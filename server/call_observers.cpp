@@ -1,0 +1,71 @@
+#include "call_observers.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+#include "absl/status/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr int kWarningDays = 30;
+
+template <typename Unit>
+int64_t UnixTime() {
+  return std::chrono::duration_cast<Unit>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, TokenRegistry* tokens,
+           AuditLog* audit_log) {
+  AuditEntry entry{.rpc = facts.method.substr(facts.method.rfind('/') + 1),
+                   .peer = facts.peer,
+                   .token_id = facts.token_id,
+                   .token_name = {},
+                   .ids = facts.ids,
+                   .status = absl::StatusCodeToString(status),
+                   .seconds = seconds};
+  // Whoever was not let in may have shown an id of somebody else.
+  if (status != absl::StatusCode::kUnauthenticated) {
+    entry.token_name = tokens->NameOf(facts.token_id);
+  }
+  if (const absl::Status written = audit_log->Write(entry); !written.ok()) {
+    spdlog::error("{}", std::string(written.message()));
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<TokenRegistry>> OpenTokens(const std::string& path) {
+  return TokenRegistry::Open(
+      {.path = path,
+       .clock = &UnixTime<std::chrono::seconds>,
+       .on_problem = [](const std::string& problem) { spdlog::error("{}", problem); }});
+}
+
+absl::StatusOr<std::unique_ptr<AuditLog>> OpenAuditLog(const std::string& path) {
+  if (path.empty()) return std::unique_ptr<AuditLog>();
+  return AuditLog::Open(path, &UnixTime<std::chrono::milliseconds>);
+}
+
+CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens) {
+  return {[metrics](const std::string& method) { metrics->CallStarted(method); },
+          [=](const CallFacts& facts, int code, double seconds) {
+            const auto status = static_cast<absl::StatusCode>(code);
+            metrics->CallEnded(facts.method, absl::StatusCodeToString(status), seconds);
+            const bool refused = status == absl::StatusCode::kUnauthenticated ||
+                                 status == absl::StatusCode::kPermissionDenied;
+            if (audit_log != nullptr && (facts.audited || refused)) {
+              Audit(facts, status, seconds, tokens, audit_log);
+            }
+          }};
+}
+
+void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry) {
+  if (!certificate_expiry) return;
+  const int64_t days = (*certificate_expiry - UnixTime<std::chrono::seconds>()) / (24 * 3600);
+  if (days < kWarningDays) spdlog::warn("the TLS certificate expires in {} days", days);
+}
+
+}  // namespace pleat

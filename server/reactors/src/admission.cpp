@@ -1,0 +1,69 @@
+#include "pleat/reactors/admission.h"
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+constexpr RpcRule kRules[] = {
+    {"QueryUpload", Scope::kTrain, false},
+    {"UploadSequence", Scope::kTrain, true},
+    {"GetSequence", Scope::kRead, false},
+    {"ListSequences", Scope::kRead, false},
+    {"DeleteSequence", Scope::kAdmin, true},
+    {"CreateTrainingJob", Scope::kTrain, true},
+    {"CreateCompressionJob", Scope::kTrain, true},
+    {"GetJob", Scope::kRead, false},
+    {"ListJobs", Scope::kRead, false},
+    {"WatchJob", Scope::kRead, false},
+    {"CancelJob", Scope::kTrain, true},
+    {"GetModel", Scope::kRead, false},
+    {"ListModels", Scope::kRead, false},
+    {"DeleteModel", Scope::kAdmin, true},
+    {"DownloadModel", Scope::kRead, true},
+    {"UploadCompressedSequence", Scope::kTrain, true},
+    {"GetCompressedSequence", Scope::kRead, false},
+    {"ListCompressedSequences", Scope::kRead, false},
+    {"DeleteCompressedSequence", Scope::kAdmin, true},
+    {"DownloadCompressedSequence", Scope::kRead, true},
+    {"DecodeFrames", Scope::kPose, true},
+    {"GetStreamHeader", Scope::kPose, false},
+    {"EvaluatePose", Scope::kPose, false},
+    {"EvaluateClip", Scope::kPose, true},
+    {"LiveSession", Scope::kPose, true},
+};
+
+}  // namespace
+
+const RpcRule* FindRpcRule(std::string_view rpc) {
+  for (const RpcRule& rule : kRules) {
+    if (rule.rpc == rpc) return &rule;
+  }
+  return nullptr;
+}
+
+std::string ShownToken(const grpc::ServerContextBase& call) {
+  const auto it = call.client_metadata().find("authorization");
+  if (it == call.client_metadata().end()) return "";
+  absl::string_view value(it->second.data(), it->second.size());
+  constexpr absl::string_view kScheme = "Bearer ";
+  if (!absl::StartsWithIgnoreCase(value, kScheme)) return "";
+  value.remove_prefix(kScheme.size());
+  return std::string(value);
+}
+
+absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase& call,
+                   std::string_view rpc) {
+  if (context.tokens == nullptr || !context.tokens->required()) return absl::OkStatus();
+  const RpcRule* rule = FindRpcRule(rpc);
+  if (rule == nullptr) return absl::InternalError(absl::StrCat("nobody says who may call ", rpc));
+  PLEAT_ASSIGN_OR_RETURN(const Token token, context.tokens->Authenticate(ShownToken(call)));
+  if (token.scopes.Has(rule->scope)) return absl::OkStatus();
+  return absl::PermissionDeniedError(absl::StrCat("the token '", token.name, "' allows ",
+                                                  ScopesText(token.scopes), "; ", rpc, " needs ",
+                                                  ScopeName(rule->scope)));
+}
+
+}  // namespace pleat

@@ -1,0 +1,149 @@
+// Tokens in front of a whole server over mocks: who is let in, and who has to leave.
+#include "pleat/reactors/admission.h"
+
+#include <grpcpp/generic/generic_stub.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "pleat/v1/job_service.grpc.pb.h"
+#include "pleat/v1/model_service.grpc.pb.h"
+#include "pleat/v1/sequence_service.grpc.pb.h"
+#include "server/handlers/mock_server.h"
+#include "support/token_files.h"
+
+namespace pleat {
+namespace {
+
+using ::testing::_;
+using ::testing::HasSubstr;
+
+class AdmissionTest : public testing::Test {
+ protected:
+  grpc::Status Delete(const std::string& authorization) {
+    grpc::ClientContext context;
+    if (!authorization.empty()) context.AddMetadata("authorization", authorization);
+    v1::DeleteModelRequest request;
+    v1::DeleteModelResponse response;
+    request.set_id(kId);
+    return v1::ModelService::NewStub(mock_.channel)->DeleteModel(&context, request, &response);
+  }
+  void ExpectDeletes(int count) {
+    EXPECT_CALL(mock_.service.mock_models, Delete(kId))
+        .Times(count)
+        .WillRepeatedly(testing::Return(absl::OkStatus()));
+  }
+
+  TestTokens tokens_;
+  MockServer mock_{{.tokens = tokens_.registry()}};
+};
+
+TEST_F(AdmissionTest, WithoutTokensEverybodyMayDoEverything) {
+  ExpectDeletes(2);
+  EXPECT_TRUE(Delete("").ok());
+  EXPECT_TRUE(Delete("Bearer nonsense").ok());
+}
+
+TEST_F(AdmissionTest, AsSoonAsThereIsATokenEachCallNeedsOne) {
+  const NewToken admin = tokens_.Add("Ada", "read,admin");
+  const NewToken reader = tokens_.Add("Rea", "read,pose,train");
+  ExpectDeletes(2);
+  EXPECT_TRUE(Delete("Bearer " + admin.text).ok());
+  EXPECT_TRUE(Delete("bearer " + admin.text).ok()) << "the scheme is not case-sensitive";
+  EXPECT_THAT(Delete(""), HasGrpcStatus(grpc::StatusCode::UNAUTHENTICATED, HasSubstr("token")));
+  EXPECT_THAT(Delete("Bearer " + admin.text.substr(1)),
+              HasGrpcStatus(grpc::StatusCode::UNAUTHENTICATED, HasSubstr("token")));
+  EXPECT_THAT(Delete("Basic " + admin.text),
+              HasGrpcStatus(grpc::StatusCode::UNAUTHENTICATED, HasSubstr("token")));
+  EXPECT_THAT(Delete("Bearer " + reader.text),
+              HasGrpcStatus(grpc::StatusCode::PERMISSION_DENIED,
+                            HasSubstr("'Rea' allows read,pose,train; DeleteModel needs admin")));
+}
+
+TEST_F(AdmissionTest, StreamsAreRefusedAsWell) {
+  const NewToken reader = tokens_.Add("Rea", "read");
+  mock_.call.AddMetadata("authorization", "Bearer " + reader.text);
+  v1::UploadSequenceResponse response;
+  const auto upload =
+      v1::SequenceService::NewStub(mock_.channel)->UploadSequence(&mock_.call, &response);
+  EXPECT_THAT(upload->Finish(),
+              HasGrpcStatus(grpc::StatusCode::PERMISSION_DENIED, HasSubstr("needs train")));
+  grpc::ClientContext context;
+  const auto watch =
+      v1::JobService::NewStub(mock_.channel)->WatchJob(&context, v1::WatchJobRequest());
+  v1::WatchJobResponse update;
+  EXPECT_FALSE(watch->Read(&update));
+  EXPECT_THAT(watch->Finish(), HasGrpcStatus(grpc::StatusCode::UNAUTHENTICATED, _));
+}
+
+TEST_F(AdmissionTest, ACallUnderWayEndsWhenItsTokenIsRevoked) {
+  const NewToken reader = tokens_.Add("Rea", "read"), other = tokens_.Add("Otto", "read");
+  EXPECT_CALL(mock_.service.mock_jobs, Subscribe).WillRepeatedly([](auto&&...) {
+    auto subscription = std::make_unique<testing::NiceMock<MockJobSubscription>>();
+    ON_CALL(*subscription, current).WillByDefault([] { return JobUpdate{{}, 1}; });
+    return subscription;
+  });
+  const auto stub = v1::JobService::NewStub(mock_.channel);
+  v1::WatchJobRequest request;
+  request.set_id("job-1");
+  grpc::ClientContext other_context;
+  other_context.AddMetadata("authorization", "Bearer " + other.text);
+  mock_.call.AddMetadata("authorization", "Bearer " + reader.text);
+  const auto watch = stub->WatchJob(&mock_.call, request);
+  const auto other_watch = stub->WatchJob(&other_context, request);
+  v1::WatchJobResponse update;
+  ASSERT_TRUE(watch->Read(&update));
+  ASSERT_TRUE(other_watch->Read(&update));
+  tokens_.Revoke(reader.token.id);
+  EXPECT_FALSE(watch->Read(&update));  // returns when the server has cancelled the call
+  EXPECT_FALSE(watch->Finish().ok());
+  tokens_.Revoke(other.token.id);
+  EXPECT_FALSE(other_watch->Read(&update));
+  EXPECT_FALSE(other_watch->Finish().ok());
+}
+
+TEST(RpcRuleTest, EveryRpcHasExactlyOneRule) {
+  const google::protobuf::DescriptorPool& pool =
+      *google::protobuf::DescriptorPool::generated_pool();
+  std::set<std::string> names;
+  for (const char* file : {"sequence_service", "job_service", "model_service", "pose_service",
+                           "compressed_sequence_service"}) {
+    const auto* descriptor = pool.FindFileByName(std::string("pleat/v1/") + file + ".proto");
+    ASSERT_NE(descriptor, nullptr) << file;
+    for (int s = 0; s < descriptor->service_count(); ++s) {
+      for (int m = 0; m < descriptor->service(s)->method_count(); ++m) {
+        const std::string& name = descriptor->service(s)->method(m)->name();
+        EXPECT_TRUE(names.insert(name).second) << name << " stands in two services";
+        const RpcRule* rule = FindRpcRule(name);
+        ASSERT_NE(rule, nullptr) << name;
+        // What deletes is for administrators, and what changes something is in the audit log.
+        EXPECT_EQ(rule->scope == Scope::kAdmin, name.starts_with("Delete")) << name;
+        if (name.starts_with("Delete") || name.starts_with("Create") ||
+            name.starts_with("Upload") || name.starts_with("Download")) {
+          EXPECT_TRUE(rule->audited) << name;
+        }
+      }
+    }
+  }
+  EXPECT_GE(names.size(), 25);
+  EXPECT_EQ(FindRpcRule("Check"), nullptr);
+}
+
+TEST_F(AdmissionTest, TheHealthCheckNeedsNoToken) {
+  tokens_.Add("Ada", "admin");
+  grpc::GenericStub stub(mock_.channel);
+  grpc::CompletionQueue queue;
+  grpc::ByteBuffer request, response;
+  grpc::Status status;
+  const auto call =
+      stub.PrepareUnaryCall(&mock_.call, "/grpc.health.v1.Health/Check", request, &queue);
+  call->StartCall();
+  call->Finish(&response, &status, nullptr);
+  void* tag = nullptr;
+  bool ok = false;
+  queue.Next(&tag, &ok);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+}
+
+}  // namespace
+}  // namespace pleat

@@ -1,0 +1,92 @@
+#include "call_listening.h"
+
+#include <gtest/gtest.h>
+
+#include "pleat/v1/job_service.grpc.pb.h"
+#include "pleat/v1/model_service.grpc.pb.h"
+#include "server/handlers/mock_server.h"
+#include "support/token_files.h"
+
+namespace pleat {
+namespace {
+
+// What a listener has heard, from any thread.
+class Heard {
+ public:
+  struct End {
+    CallFacts facts;
+    int status;
+  };
+
+  const CallListener* listener() const { return &listener_; }
+  End WaitForEnd() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !ends_.empty(); });
+    End end = ends_.front();
+    ends_.erase(ends_.begin());
+    return end;
+  }
+  int num_started() {
+    std::lock_guard lock(mutex_);
+    return num_started_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int num_started_ = 0;
+  std::vector<End> ends_;
+  const CallListener listener_{[this](const std::string&) {
+                                 std::lock_guard lock(mutex_);
+                                 ++num_started_;
+                               },
+                               [this](const CallFacts& facts, int status, double seconds) {
+                                 EXPECT_GE(seconds, 0);
+                                 std::lock_guard lock(mutex_);
+                                 ends_.push_back({facts, status});
+                                 changed_.notify_all();
+                               }};
+};
+
+class CallListeningTest : public testing::Test {
+ protected:
+  Heard heard_;
+  MockServer mock_{{.call_listener = heard_.listener()}};
+};
+
+TEST_F(CallListeningTest, AnAuditedCallTellsWhatItIsAbout) {
+  const NewToken made = MakeToken("Ada", ScopeSet::All(), 0, {});
+  EXPECT_CALL(mock_.service.mock_models, Delete(kId))
+      .WillOnce(testing::Return(absl::NotFoundError("none")));
+  mock_.call.AddMetadata("authorization", "Bearer " + made.text);
+  v1::DeleteModelRequest request;
+  v1::DeleteModelResponse response;
+  request.set_id(kId);
+  EXPECT_FALSE(
+      v1::ModelService::NewStub(mock_.channel)->DeleteModel(&mock_.call, request, &response).ok());
+  const Heard::End end = heard_.WaitForEnd();
+  EXPECT_EQ(heard_.num_started(), 1);
+  EXPECT_EQ(end.facts.method, "/pleat.v1.ModelService/DeleteModel");
+  EXPECT_EQ(end.status, grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(end.facts.token_id, made.token.id);
+  EXPECT_TRUE(end.facts.audited);
+  EXPECT_EQ(end.facts.ids, std::vector<std::string>{kId});
+  EXPECT_FALSE(end.facts.peer.empty());
+}
+
+TEST_F(CallListeningTest, AnUnauditedCallTellsNoIds) {
+  EXPECT_CALL(mock_.service.mock_models, Get(kId))
+      .WillOnce(testing::Return(absl::NotFoundError("none")));
+  v1::GetModelRequest request;
+  v1::GetModelResponse response;
+  request.set_id(kId);
+  EXPECT_FALSE(
+      v1::ModelService::NewStub(mock_.channel)->GetModel(&mock_.call, request, &response).ok());
+  const Heard::End end = heard_.WaitForEnd();
+  EXPECT_FALSE(end.facts.audited);
+  EXPECT_TRUE(end.facts.ids.empty());
+  EXPECT_TRUE(end.facts.token_id.empty());
+}
+
+}  // namespace
+}  // namespace pleat
