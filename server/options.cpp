@@ -66,6 +66,10 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
                   "Uploads, downloads, watches, clips and live sessions together")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+  app->add_option("--max-streams-per-client", grpc->max_streams_per_client,
+                  "Of these, for one token, or for one address of callers without tokens")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
   app->add_option("--request-bytes", grpc->request_bytes,
                   "Memory for the poses of clips, all calls together")
       ->transform(CLI::AsSizeValue(false))

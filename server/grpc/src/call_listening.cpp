@@ -5,7 +5,6 @@
 #include <string>
 
 #include "named_ids.h"
-#include "pleat/identity/token.h"
 #include "pleat/reactors/admission.h"
 
 namespace pleat {
@@ -26,7 +25,10 @@ std::string_view PleatRpc(std::string_view method) {
 class ListeningInterceptor final : public grpc::experimental::Interceptor {
  public:
   ListeningInterceptor(const CallListener* listener, RunningCalls* running, ServerRpcInfo* info)
-      : listener_(listener), running_(running), call_(info->server_context()) {
+      : listener_(listener),
+        running_(running),
+        call_(info->server_context()),
+        is_stream_(info->type() != ServerRpcInfo::Type::UNARY) {
     facts_.method = info->method();
     const RpcRule* rule = FindRpcRule(PleatRpc(facts_.method));
     facts_.audited = rule != nullptr && rule->audited;
@@ -53,12 +55,11 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
 
  private:
   void NoteCaller() {
+    if (entry_) return;
+    const CallOrigin origin = OriginOf(*call_);
     facts_.peer = call_->peer();
-    if (!facts_.token_id.empty()) return;
-    if (const std::optional<TokenText> token = ParseTokenText(ShownToken(*call_))) {
-      facts_.token_id = token->id;
-      entry_.emplace(running_, facts_.token_id, call_);
-    }
+    facts_.token_id = origin.token_id;
+    entry_.emplace(running_, origin, is_stream_, call_);
   }
 
   // The first message says what the call is about; later ones are data or poses.
@@ -73,6 +74,7 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
   const CallListener* const listener_;
   RunningCalls* const running_;
   const grpc::ServerContextBase* const call_;
+  const bool is_stream_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   CallFacts facts_;
   std::optional<RunningCalls::Entry> entry_;

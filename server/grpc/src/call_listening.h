@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "pleat/grpc/grpc_server.h"
-#include "running_calls.h"
+#include "pleat/reactors/running_calls.h"
 
 namespace pleat {
 
-// `running` receives the calls that show a token. Both must outlive the server; `listener` may be
+// `running` receives the calls. Both must outlive the server; `listener` may be
 // null.
 std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>>
 MakeCallListening(const CallListener* listener, RunningCalls* running);

@@ -26,7 +26,6 @@
 #include "connection_listener.h"
 #include "pleat/base/status.h"
 #include "revocation_watch.h"
-#include "running_calls.h"
 #include "services.h"
 #include "tls_version.h"
 
@@ -86,7 +85,8 @@ class GrpcServerImpl final : public GrpcServer {
   GrpcServerImpl(CharacterService* service, const GrpcServerOptions& options)
       : certificate_(options.tls.certificate),
         request_memory_(options.request_bytes, "--request-bytes"),
-        storage_executor_(options.num_storage_threads) {
+        storage_executor_(options.num_storage_threads),
+        transfer_executor_(options.num_transfer_threads) {
     if (options.pose_executor == nullptr) own_pose_executor_.emplace(0);
     context_.sequences = &service->sequences();
     context_.jobs = &service->jobs();
@@ -95,8 +95,10 @@ class GrpcServerImpl final : public GrpcServer {
     context_.compressed_sequences = &service->compressed_sequences();
     context_.pose_executor = own_pose_executor_ ? &*own_pose_executor_ : options.pose_executor;
     context_.storage_executor = &storage_executor_;
+    context_.transfer_executor = &transfer_executor_;
     context_.request_memory = &request_memory_;
     context_.max_open_streams = options.max_open_streams;
+    context_.max_streams_per_client = options.max_streams_per_client;
     context_.tokens = options.tokens;
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
@@ -128,7 +130,7 @@ class GrpcServerImpl final : public GrpcServer {
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
     builder.experimental().SetInterceptorCreators(
-        MakeCallListening(options.call_listener, &running_calls_));
+        MakeCallListening(options.call_listener, &context_.running_calls));
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
@@ -142,7 +144,7 @@ class GrpcServerImpl final : public GrpcServer {
           acceptor_->HandleNewConnection(&connection);
         },
         [](const std::string& what) { spdlog::warn("{}", what); });
-    if (options.tokens != nullptr) revocation_.emplace(options.tokens, &running_calls_);
+    if (options.tokens != nullptr) revocation_.emplace(options.tokens, &context_.running_calls);
     return absl::OkStatus();
   }
 
@@ -191,12 +193,11 @@ class GrpcServerImpl final : public GrpcServer {
   }
 
   const std::string certificate_;  // the path of its file
-  MemoryBudget request_memory_;    // these two outlive the calls
-  RunningCalls running_calls_;
+  MemoryBudget request_memory_;    // outlives the calls
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
   std::optional<Executor> own_pose_executor_;
-  Executor storage_executor_;
+  Executor storage_executor_, transfer_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   std::mutex shutdown_mutex_;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "pleat/identity/token_registry.h"
-#include "running_calls.h"
+#include "pleat/reactors/running_calls.h"
 
 namespace pleat {
 

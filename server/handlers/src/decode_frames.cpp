@@ -69,7 +69,7 @@ grpc::ServerWriteReactor<v1::DecodeFramesResponse>* DecodeFrames(
     HandlerContext* context, const v1::DecodeFramesRequest& request) {
   const auto decode = std::make_shared<Decode>(Decode{context->compressed_sequences, request});
   return StartReactor<PullStream<v1::DecodeFramesResponse>>(
-      context, context->storage_executor, "DecodeFrames",
+      context, context->transfer_executor, "DecodeFrames",
       [decode](v1::DecodeFramesResponse* response) { return decode->Next(response); });
 }
 

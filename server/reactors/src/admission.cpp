@@ -66,4 +66,18 @@ absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase&
                                                   ScopeName(rule->scope)));
 }
 
+absl::Status AdmitStream(HandlerContext* context, const grpc::ServerContextBase& call,
+                         std::string_view rpc) {
+  PLEAT_RETURN_IF_ERROR(Admit(*context, call, rpc));
+  const int limit = context->max_streams_per_client;
+  // This stream is among those that are counted.
+  if (limit == 0 || context->running_calls.NumStreams(OriginOf(call).client) <= limit) {
+    return absl::OkStatus();
+  }
+  return absl::ResourceExhaustedError(
+      absl::StrCat("this client has ", limit,
+                   " streams (--max-streams-per-client); close one of "
+                   "them or try again later"));
+}
+
 }  // namespace pleat

@@ -28,6 +28,14 @@ class AdmissionTest : public testing::Test {
     request.set_id(kId);
     return v1::ModelService::NewStub(mock_.channel)->DeleteModel(&context, request, &response);
   }
+  // Jobs that never change: a watch of one gives its state once and stays open.
+  static void ExpectEndlessJobs(MockJobService* jobs) {
+    EXPECT_CALL(*jobs, Subscribe).WillRepeatedly([](auto&&...) {
+      auto subscription = std::make_unique<testing::NiceMock<MockJobSubscription>>();
+      ON_CALL(*subscription, current).WillByDefault([] { return JobUpdate{{}, 1}; });
+      return subscription;
+    });
+  }
   void ExpectDeletes(int count) {
     EXPECT_CALL(mock_.service.mock_models, Delete(kId))
         .Times(count)
@@ -78,11 +86,7 @@ TEST_F(AdmissionTest, StreamsAreRefusedAsWell) {
 
 TEST_F(AdmissionTest, ACallUnderWayEndsWhenItsTokenIsRevoked) {
   const NewToken reader = tokens_.Add("Rea", "read"), other = tokens_.Add("Otto", "read");
-  EXPECT_CALL(mock_.service.mock_jobs, Subscribe).WillRepeatedly([](auto&&...) {
-    auto subscription = std::make_unique<testing::NiceMock<MockJobSubscription>>();
-    ON_CALL(*subscription, current).WillByDefault([] { return JobUpdate{{}, 1}; });
-    return subscription;
-  });
+  ExpectEndlessJobs(&mock_.service.mock_jobs);
   const auto stub = v1::JobService::NewStub(mock_.channel);
   v1::WatchJobRequest request;
   request.set_id("job-1");
@@ -100,6 +104,31 @@ TEST_F(AdmissionTest, ACallUnderWayEndsWhenItsTokenIsRevoked) {
   tokens_.Revoke(other.token.id);
   EXPECT_FALSE(other_watch->Read(&update));
   EXPECT_FALSE(other_watch->Finish().ok());
+}
+
+TEST_F(AdmissionTest, OneClientCannotHaveAllStreams) {
+  MockServer server({.tokens = tokens_.registry(), .max_streams_per_client = 2});
+  ExpectEndlessJobs(&server.service.mock_jobs);
+  const NewToken one = tokens_.Add("one", "read"), other = tokens_.Add("other", "read");
+  const auto stub = v1::JobService::NewStub(server.channel);
+  std::vector<std::unique_ptr<grpc::ClientContext>> contexts;
+  const auto watch = [&](const NewToken& token) {
+    contexts.push_back(std::make_unique<grpc::ClientContext>());
+    contexts.back()->AddMetadata("authorization", "Bearer " + token.text);
+    return stub->WatchJob(contexts.back().get(), v1::WatchJobRequest());
+  };
+  v1::WatchJobResponse update;
+  const auto first = watch(one), second = watch(one);
+  ASSERT_TRUE(first->Read(&update));
+  ASSERT_TRUE(second->Read(&update));
+  const auto third = watch(one);
+  EXPECT_FALSE(third->Read(&update));
+  EXPECT_THAT(third->Finish(), HasGrpcStatus(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                             HasSubstr("--max-streams-per-client")));
+  const auto foreign = watch(other);
+  EXPECT_TRUE(foreign->Read(&update));
+  server.server->Shutdown(0);
+  for (const auto* open : {&first, &second, &foreign}) EXPECT_FALSE((*open)->Finish().ok());
 }
 
 TEST(RpcRuleTest, EveryRpcHasExactlyOneRule) {

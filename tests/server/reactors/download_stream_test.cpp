@@ -21,7 +21,7 @@ class DownloadStreamTest : public testing::Test {
  protected:
   DownloadStreamTest() {
     spdlog::set_level(spdlog::level::off);
-    context_.storage_executor = executor_.get();
+    context_.transfer_executor = executor_.get();
     context_.max_open_streams = 1;
     for (size_t i = 0; i < file_.size(); ++i) file_[i] = static_cast<char>(i * 7);
     executor_.Release();

@@ -47,7 +47,7 @@ class UploadStreamTest : public testing::Test {
  protected:
   UploadStreamTest() {
     spdlog::set_level(spdlog::level::off);
-    context_.storage_executor = executor_.get();
+    context_.transfer_executor = executor_.get();
     context_.max_open_streams = 1;
     executor_.Release();
   }

@@ -57,7 +57,8 @@ struct GrpcServerOptions {
   // Says who may call what; it must outlive the server. Null: everybody may do everything. Calls of
   // a token that is revoked or expires end within a second.
   TokenRegistry* tokens = nullptr;
-  int num_storage_threads = 4;  // for the disk, the catalog and the checks of uploads
+  int num_storage_threads = 2;   // for answers out of the catalog
+  int num_transfer_threads = 4;  // for uploads with their checks, downloads and decoding
   // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
   // 1 GiB.
   int max_receive_bytes = 16 << 20;
@@ -66,7 +67,10 @@ struct GrpcServerOptions {
   uint64_t request_bytes = uint64_t{512} << 20;
   ConnectionLimits connections{};
   int max_streams_per_connection = 128;
-  int max_open_streams = 256;  // uploads, watches, clips, live sessions, downloads
+  int max_open_streams = 1024;  // uploads, watches, clips, live sessions, downloads
+  // The same for one token, or for one address of callers without tokens: one client cannot have
+  // all streams.
+  int max_streams_per_client = 256;
 };
 
 class GrpcServer {

@@ -36,6 +36,10 @@ std::string ShownToken(const grpc::ServerContextBase& call);
 absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase& call,
                    std::string_view rpc);
 
+// The same for a stream. kResourceExhausted when its client has too many others.
+absl::Status AdmitStream(HandlerContext* context, const grpc::ServerContextBase& call,
+                         std::string_view rpc);
+
 // A stream that ends before it begins.
 template <typename GrpcReactor>
 class RefusedStream final : public CallReactor<GrpcReactor> {
@@ -56,7 +60,7 @@ class RefusedStream final : public CallReactor<GrpcReactor> {
 template <typename GrpcReactor, typename Start>
 GrpcReactor* StartAdmitted(HandlerContext* context, const grpc::ServerContextBase& call,
                            const char* rpc, Start start) {
-  absl::Status status = Admit(*context, call, rpc);
+  absl::Status status = AdmitStream(context, call, rpc);
   if (status.ok()) return start();
   return StartReactor<RefusedStream<GrpcReactor>>(context, rpc, std::move(status));
 }

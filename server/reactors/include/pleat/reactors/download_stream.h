@@ -56,7 +56,7 @@ grpc::ServerWriteReactor<Response>* StartDownload(HandlerContext* context, const
   const char* rpc = source.rpc;
   const auto download = std::make_shared<Download>(Download{std::move(source), id, offset_bytes});
   return StartReactor<PullStream<Response>>(
-      context, context->storage_executor, rpc,
+      context, context->transfer_executor, rpc,
       [download](Response* response) { return download->Next(response); });
 }
 

@@ -8,6 +8,7 @@
 #include "pleat/identity/token_registry.h"
 #include "pleat/reactors/live_registry.h"
 #include "pleat/reactors/open_calls.h"
+#include "pleat/reactors/running_calls.h"
 #include "pleat/service/compressed_sequence_service.h"
 #include "pleat/service/job_service.h"
 #include "pleat/service/model_service.h"
@@ -25,14 +26,19 @@ struct HandlerContext {
   CompressedSequenceService* compressed_sequences = nullptr;
 
   Executor* pose_executor = nullptr;     // for milliseconds of computation
-  Executor* storage_executor = nullptr;  // for the disk, the catalog and the checks of uploads
+  Executor* storage_executor = nullptr;  // for answers out of the catalog
+  // For uploads, downloads and decoding, which take seconds: else five uploads at their ends would
+  // hold up every question about a job.
+  Executor* transfer_executor = nullptr;
   MemoryBudget* request_memory =
       nullptr;                      // for large requests while they are worked on; null: none
   TokenRegistry* tokens = nullptr;  // who may call; null: everybody
   int max_open_streams = 0;
   std::atomic<int> num_open_streams = 0;
+  int max_streams_per_client = 0;      // 0: no limit
   std::atomic<bool> draining = false;  // the server shuts down: new calls are refused
   OpenCalls open_calls;                // streams included
+  RunningCalls running_calls;          // by client
   LiveRegistry live_sessions;
 };
 

@@ -49,7 +49,7 @@ class UploadStream final : public CallReactor<grpc::ServerReadReactor<v1::Upload
 
   void Start() { StartRead(&request_); }
   void OnReadDone(bool ok) override {
-    Post(context_->storage_executor, [this, ok] {
+    Post(context_->transfer_executor, [this, ok] {
       bool finished = !ok;
       const absl::Status status =
           CallGuarded([&] { return ok ? TakePart(&finished) : Complete(); });

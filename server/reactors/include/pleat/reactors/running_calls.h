@@ -1,4 +1,4 @@
-// The calls under way that showed a token, so that those of a revoked token can be ended.
+// The calls under way: how many streams a client has, and whose token a call showed.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -10,6 +10,15 @@
 #include <string>
 
 namespace pleat {
+
+// Who makes a call.
+struct CallOrigin {
+  // Stands for the token that the call shows, or for the address that it comes from. Whoever does
+  // not know a token cannot make calls in its name, not even refused ones.
+  std::string client;
+  std::string token_id;  // as the call says; empty: it shows none
+};
+CallOrigin OriginOf(const grpc::ServerContextBase& call);
 
 // A call can be cancelled from here while another thread ends it. Each has a lock of its own for
 // that, held while it is cancelled: its end waits. The lock is recursive, because TryCancel may run
@@ -25,22 +34,27 @@ class RunningCalls {
   // Keeps a call in the list as long as it lives, which must be no longer than the call.
   class Entry {
    public:
-    Entry(RunningCalls* calls, const std::string& token_id, const grpc::ServerContextBase* context);
+    Entry(RunningCalls* calls, const CallOrigin& origin, bool is_stream,
+          const grpc::ServerContextBase* context);
     ~Entry();
     Entry(const Entry&) = delete;
     Entry& operator=(const Entry&) = delete;
 
    private:
     RunningCalls* const calls_;
+    const std::string stream_client_;  // empty: no stream
     Calls::iterator place_;
   };
+
+  int NumStreams(const std::string& client);
 
   // Cancels the calls of all tokens for which `is_good` says no. It asks once for each token.
   void CancelUnless(const std::function<bool(const std::string& token_id)>& is_good);
 
  private:
-  std::mutex mutex_;  // never held while a call is cancelled
-  Calls calls_;       // guarded by mutex_
+  std::mutex mutex_;                    // never held while a call is cancelled
+  Calls calls_;                         // guarded by mutex_
+  std::map<std::string, int> streams_;  // by client, none is 0; guarded by mutex_
 };
 
 }  // namespace pleat

@@ -1,0 +1,77 @@
+#include "pleat/reactors/running_calls.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/sha256.h"
+#include "pleat/identity/token.h"
+#include "pleat/reactors/admission.h"
+
+namespace pleat {
+namespace {
+
+// "ipv4:10.0.0.7:52114" without the port, which is another one for each connection.
+std::string HostOfPeer(const std::string& peer) {
+  return peer.starts_with("ipv4:") || peer.starts_with("ipv6:") ? peer.substr(0, peer.rfind(':'))
+                                                                : peer;
+}
+
+}  // namespace
+
+CallOrigin OriginOf(const grpc::ServerContextBase& call) {
+  const std::string shown = ShownToken(call);
+  const std::optional<TokenText> token = ParseTokenText(shown);
+  if (!token) return {.client = HostOfPeer(call.peer()), .token_id = {}};
+  return {.client = absl::StrCat("token:", ToHex(ComputeSha256(shown))), .token_id = token->id};
+}
+
+RunningCalls::Entry::Entry(RunningCalls* calls, const CallOrigin& origin, bool is_stream,
+                           const grpc::ServerContextBase* context)
+    : calls_(calls), stream_client_(is_stream ? origin.client : "") {
+  auto call = std::make_shared<Call>();
+  call->context = context;
+  std::lock_guard lock(calls_->mutex_);
+  place_ = calls_->calls_.emplace(origin.token_id, std::move(call));
+  if (is_stream) ++calls_->streams_[stream_client_];
+}
+
+RunningCalls::Entry::~Entry() {
+  std::shared_ptr<Call> call;
+  {
+    std::lock_guard lock(calls_->mutex_);
+    call = place_->second;
+    calls_->calls_.erase(place_);
+    const auto streams = calls_->streams_.find(stream_client_);
+    if (streams != calls_->streams_.end() && --streams->second == 0) {
+      calls_->streams_.erase(streams);
+    }
+  }
+  std::lock_guard lock(call->mutex);
+  call->context = nullptr;
+}
+
+int RunningCalls::NumStreams(const std::string& client) {
+  std::lock_guard lock(mutex_);
+  const auto streams = streams_.find(client);
+  return streams == streams_.end() ? 0 : streams->second;
+}
+
+void RunningCalls::CancelUnless(const std::function<bool(const std::string& token_id)>& is_good) {
+  Calls calls;
+  {
+    std::lock_guard lock(mutex_);
+    calls = calls_;
+  }
+  calls.erase("");  // these showed no token
+  for (auto it = calls.begin(); it != calls.end();) {
+    const auto end = calls.upper_bound(it->first);
+    const bool good = is_good(it->first);
+    for (; it != end; ++it) {
+      if (good) continue;
+      std::lock_guard lock(it->second->mutex);
+      if (it->second->context != nullptr) it->second->context->TryCancel();
+    }
+  }
+}
+
+}  // namespace pleat
