@@ -63,6 +63,7 @@ int Run(const ServerOptions& options) {
   grpc.pose_executor = (*service)->poses().executor();
   grpc.call_listener = &calls;
   grpc.tokens = tokens->get();
+  grpc.probe = [&service] { return (*service)->ProbeDisk(); };
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
   WarnBeforeExpiry((*server)->certificate_expiry());

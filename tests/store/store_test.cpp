@@ -34,6 +34,25 @@ TEST(StoreTest, OneProcessPerFolder) {
   EXPECT_THAT(Store::Open({.data_dir = folder.File("data")}), IsOk());
 }
 
+TEST(StoreTest, AProbeTellsWhetherSomethingCanBeStored) {
+  TemporaryFolder folder;
+  const std::string data = folder.File("data");
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto store,
+                               Store::Open({.data_dir = data, .reserve_bytes = 0}));
+    EXPECT_THAT(store->ProbeDisk(), IsOk());
+    EXPECT_FALSE(std::filesystem::exists(data + "/probe"));
+    // What is in the way of the probe is in the way of everything.
+    std::filesystem::create_directories(data + "/probe/x");
+    const absl::Status status = store->ProbeDisk();
+    EXPECT_THAT(status, HasStatus(absl::StatusCode::kUnavailable, HasSubstr("written")));
+    EXPECT_EQ(status.message().find(data), absl::string_view::npos) << "clients may see it";
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto full,
+                             Store::Open({.data_dir = data, .reserve_bytes = uint64_t{1} << 60}));
+  EXPECT_THAT(full->ProbeDisk(), HasStatus(absl::StatusCode::kResourceExhausted));
+}
+
 class StoreSyncTest : public testing::Test {
  protected:
   absl::Status AddModel(const std::string& bytes) {

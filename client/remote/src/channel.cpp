@@ -50,12 +50,18 @@ std::shared_ptr<grpc::ChannelCredentials> MakeCredentials(const RemoteOptions& o
 
 }  // namespace
 
-grpc::Status AskForHealth(const std::shared_ptr<grpc::Channel>& channel, bool* serving) {
+grpc::Status AskForHealth(const std::shared_ptr<grpc::Channel>& channel, const std::string& service,
+                          bool* serving) {
   grpc::GenericStub stub(channel);
   grpc::CompletionQueue queue;
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kProbeTime);
-  grpc::ByteBuffer request, response;
+  // grpc.health.v1.HealthCheckRequest with its field 1, the name, which has less than 128 bytes.
+  const grpc::Slice name(
+      service.empty()
+          ? ""
+          : absl::StrCat("\x0a", std::string(1, static_cast<char>(service.size())), service));
+  grpc::ByteBuffer request(&name, 1), response;
   grpc::Status status;
   const auto call =
       stub.PrepareUnaryCall(&context, "/grpc.health.v1.Health/Check", request, &queue);
@@ -98,7 +104,7 @@ absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
   while (state != GRPC_CHANNEL_READY) {
     if (state == GRPC_CHANNEL_TRANSIENT_FAILURE) {
       bool serving = false;
-      reason = AskForHealth(channel, &serving).error_message();
+      reason = AskForHealth(channel, "", &serving).error_message();
       if (options.tls && absl::StrContains(reason, "andshake")) break;  // waiting will not help
     }
     if (!channel->WaitForStateChange(state, deadline)) break;

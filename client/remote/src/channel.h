@@ -23,9 +23,10 @@ enum class ChannelUse {
 std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const RemoteOptions& options,
                                            ChannelUse use);
 
-// Asks the standard health service, which every server has, whether the server serves. The status
-// is that of the call.
-grpc::Status AskForHealth(const std::shared_ptr<grpc::Channel>& channel, bool* serving);
+// Asks the standard health service, which every server has, whether `service` serves; the empty
+// name stands for the server itself. The status is that of the call.
+grpc::Status AskForHealth(const std::shared_ptr<grpc::Channel>& channel, const std::string& service,
+                          bool* serving);
 
 // Waits until the channel is connected, for at most options.connect_seconds. kUnavailable says why
 // it is not. When the TLS handshake fails, it returns at once.

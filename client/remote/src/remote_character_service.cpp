@@ -13,6 +13,9 @@
 namespace pleat {
 namespace {
 
+// As in server/grpc/src/health_watch.h.
+constexpr char kReadyName[] = "pleat.ready";
+
 absl::Status CheckToken(const std::string& address, const RemoteOptions& options) {
   if (options.token.empty()) return absl::OkStatus();
   if (!ParseTokenText(options.token)) {
@@ -52,11 +55,13 @@ RemoteCharacterService::RemoteCharacterService(std::unique_ptr<RemoteState> stat
 
 RemoteCharacterService::~RemoteCharacterService() = default;
 
-absl::Status RemoteCharacterService::CheckHealth() {
-  bool serving = false;
-  PLEAT_RETURN_IF_ERROR(FromGrpcStatus(AskForHealth(state_->channel, &serving)));
-  if (serving) return absl::OkStatus();
-  return absl::UnavailableError("the server does not serve now; it may be shutting down");
+absl::StatusOr<ServerHealth> RemoteCharacterService::CheckHealth() {
+  ServerHealth health;
+  PLEAT_RETURN_IF_ERROR(FromGrpcStatus(AskForHealth(state_->channel, "", &health.serves)));
+  const absl::Status ready =
+      FromGrpcStatus(AskForHealth(state_->channel, kReadyName, &health.can_store));
+  if (absl::IsNotFound(ready)) health.can_store = health.serves;  // a server before 0.2
+  return health;
 }
 
 }  // namespace pleat

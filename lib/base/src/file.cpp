@@ -76,7 +76,7 @@ absl::StatusOr<std::string> ReadFile(const std::string& path, uint64_t max_bytes
   return bytes;
 }
 
-absl::Status WriteFile(const std::string& path, std::string_view bytes) {
+absl::Status WriteFile(const std::string& path, std::string_view bytes, unsigned mode) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   if (!parent.empty()) {
     std::error_code error;
@@ -95,7 +95,7 @@ absl::Status WriteFile(const std::string& path, std::string_view bytes) {
     FileDescriptor file(mkostemp(temporary.data(), O_CLOEXEC));
     if (file.get() < 0) return FileError("create a file beside", path);
     absl::Status status = WriteAll(file.get(), bytes, path);
-    if (status.ok() && fchmod(file.get(), 0644) != 0) status = FileError("set the mode of", path);
+    if (status.ok() && fchmod(file.get(), mode) != 0) status = FileError("set the mode of", path);
     if (status.ok() && fsync(file.get()) != 0) status = FileError("sync", path);
     if (status.ok() && rename(temporary.c_str(), path.c_str()) != 0) {
       status = FileError("rename a file to", path);

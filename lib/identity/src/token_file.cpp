@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -133,11 +132,7 @@ absl::Status ChangeTokens(const std::string& path,
   PLEAT_ASSIGN_OR_RETURN(const TokenLock lock, TokenLock::Take(path));
   PLEAT_ASSIGN_OR_RETURN(std::vector<Token> tokens, ReadTokens(path));
   PLEAT_RETURN_IF_ERROR(change(&tokens));
-  PLEAT_RETURN_IF_ERROR(WriteFile(path, FormatTokens(tokens)));
-  if (chmod(path.c_str(), 0600) != 0) {
-    return absl::ErrnoToStatus(errno, absl::StrCat("cannot keep others out of '", path, "'"));
-  }
-  return absl::OkStatus();
+  return WriteFile(path, FormatTokens(tokens), 0600);
 }
 
 }  // namespace pleat

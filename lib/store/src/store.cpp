@@ -40,7 +40,8 @@ class Store::IdLock {
 };
 
 Store::Store(const StoreOptions& options)
-    : on_problem_(options.on_problem),
+    : data_dir_(options.data_dir),
+      on_problem_(options.on_problem),
       quarantine_(options.data_dir + "/quarantine", options.before_sync) {}
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) {
@@ -77,6 +78,17 @@ Store::~Store() {
 
 void Store::Report(const std::string& problem) const {
   if (on_problem_) on_problem_(problem);
+}
+
+absl::Status Store::ProbeDisk() {
+  PLEAT_RETURN_IF_ERROR(blobs_->ReserveSpace(1).status());
+  // The path stays out of the message, which clients may see.
+  const std::string path = data_dir_ + "/probe";
+  const absl::Status status = WriteFile(path, "?");
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (status.ok()) return status;
+  return absl::UnavailableError("nothing can be written to the server's disk");
 }
 
 absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {

@@ -24,6 +24,7 @@
 #include "call_listening.h"
 #include "certificate_check.h"
 #include "connection_listener.h"
+#include "health_watch.h"
 #include "pleat/base/status.h"
 #include "revocation_watch.h"
 #include "services.h"
@@ -144,6 +145,7 @@ class GrpcServerImpl final : public GrpcServer {
           acceptor_->HandleNewConnection(&connection);
         },
         [](const std::string& what) { spdlog::warn("{}", what); });
+    health_.emplace(server_->GetHealthCheckService(), options.probe);
     if (options.tokens != nullptr) revocation_.emplace(options.tokens, &context_.running_calls);
     return absl::OkStatus();
   }
@@ -164,6 +166,7 @@ class GrpcServerImpl final : public GrpcServer {
     std::lock_guard lock(shutdown_mutex_);
     if (server_ == nullptr) return;
     revocation_.reset();
+    health_.reset();
     context_.draining = true;
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
     context_.live_sessions.DrainAll();
@@ -205,6 +208,7 @@ class GrpcServerImpl final : public GrpcServer {
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
   std::optional<RevocationWatch> revocation_;
+  std::optional<HealthWatch> health_;
 };
 
 }  // namespace

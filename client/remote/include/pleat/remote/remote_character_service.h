@@ -16,6 +16,11 @@ class Channel;
 
 namespace pleat {
 
+struct ServerHealth {
+  bool serves = false;     // false: it shuts down
+  bool can_store = false;  // uploads and jobs are taken; false: its disk is full or in trouble
+};
+
 // Owns the connection and the five services over it. Thread-safe. Errors of the connection are
 // kUnavailable, when nobody answers, and kDeadlineExceeded; all others are the server's own.
 // Uploads, downloads and watches that break off continue where they stopped.
@@ -29,9 +34,8 @@ class RemoteCharacterService final : public CharacterService {
                                                              RemoteOptions options = {});
   ~RemoteCharacterService() override;
 
-  // OK when the server says that it serves, which needs no token; kUnavailable when it says that it
-  // does not, as while it shuts down.
-  absl::Status CheckHealth();
+  // What the server says of itself, which needs no token.
+  absl::StatusOr<ServerHealth> CheckHealth();
 
   SequenceService& sequences() override { return *sequences_; }
   JobService& jobs() override { return *jobs_; }

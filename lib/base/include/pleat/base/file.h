@@ -19,7 +19,7 @@ absl::StatusOr<std::string> ReadFile(const std::string& path,
 // Writes `bytes` to a temporary file beside `path`, syncs it and renames it over `path`, so that
 // readers see the old content or the new one, never a part of it, even after a crash. Missing
 // parent folders are created. On an error the old file is untouched and the temporary one is
-// removed.
-absl::Status WriteFile(const std::string& path, std::string_view bytes);
+// removed. mode: the permissions of the file, from its first moment.
+absl::Status WriteFile(const std::string& path, std::string_view bytes, unsigned mode = 0644);
 
 }  // namespace pleat

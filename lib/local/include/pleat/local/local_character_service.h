@@ -56,6 +56,8 @@ class LocalCharacterService final : public CharacterService {
   // For an operator. Free bytes of the disk: -1 when it does not answer.
   double FreeDiskBytes() const;
   size_t NumQuarantinedFiles() const;
+  // Why nothing can be stored at the moment (Store::ProbeDisk).
+  absl::Status ProbeDisk() { return files_.store().ProbeDisk(); }
 
   // Stops the workers and ends all subscriptions. Jobs that run are queued for the next process.
   void Shutdown() { jobs_.Shutdown(); }

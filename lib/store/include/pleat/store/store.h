@@ -86,6 +86,10 @@ class Store {
   absl::StatusOr<std::string> Read(const std::string& id);
   absl::Status Verify(const std::string& id);
 
+  // Writes, syncs and removes a file of one byte. The error says why nothing can be stored at the
+  // moment: the disk gives errors or is read-only, or its room is used up but for the reserve.
+  absl::Status ProbeDisk();
+
   // Tells the operator (StoreOptions::on_problem).
   void Report(const std::string& problem) const;
 
@@ -106,6 +110,7 @@ class Store {
   absl::Status RemoveUnnamed(const std::string& id);
   absl::Status QuarantineIfDamaged(const std::string& id);
 
+  const std::string data_dir_;
   const std::function<void(const std::string& problem)> on_problem_;
   Quarantine quarantine_;
   std::unique_ptr<FolderLock> lock_;

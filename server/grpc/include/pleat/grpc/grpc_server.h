@@ -57,6 +57,9 @@ struct GrpcServerOptions {
   // Says who may call what; it must outlive the server. Null: everybody may do everything. Calls of
   // a token that is revoked or expires end within a second.
   TokenRegistry* tokens = nullptr;
+  // Says why nothing can be stored at the moment; asked every two seconds, for the health service.
+  // Null: nobody asks.
+  std::function<absl::Status()> probe{};
   int num_storage_threads = 2;   // for answers out of the catalog
   int num_transfer_threads = 4;  // for uploads with their checks, downloads and decoding
   // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
