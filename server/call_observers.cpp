@@ -24,6 +24,7 @@ void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, Toke
                    .token_id = facts.token_id,
                    .token_name = {},
                    .ids = facts.ids,
+                   .trace_id = facts.trace_id,
                    .status = absl::StatusCodeToString(status),
                    .seconds = seconds};
   // Whoever was not let in may have shown an id of somebody else.
@@ -33,6 +34,11 @@ void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, Toke
   if (const absl::Status written = audit_log->Write(entry); !written.ok()) {
     spdlog::error("{}", std::string(written.message()));
   }
+}
+
+void LogSlowCall(const CallFacts& facts, double seconds) {
+  spdlog::warn("{} took {:.3f} s (from {}{}{})", facts.method, seconds, facts.peer,
+               facts.trace_id.empty() ? "" : ", trace ", facts.trace_id);
 }
 
 }  // namespace
@@ -49,11 +55,13 @@ absl::StatusOr<std::unique_ptr<AuditLog>> OpenAuditLog(const std::string& path) 
   return AuditLog::Open(path, &UnixTime<std::chrono::milliseconds>);
 }
 
-CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens) {
+CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens,
+                          double slow_call_seconds) {
   return {[metrics](const std::string& method) { metrics->CallStarted(method); },
           [=](const CallFacts& facts, int code, double seconds) {
             const auto status = static_cast<absl::StatusCode>(code);
             metrics->CallEnded(facts.method, absl::StatusCodeToString(status), seconds);
+            if (!facts.is_stream && seconds > slow_call_seconds) LogSlowCall(facts, seconds);
             const bool refused = status == absl::StatusCode::kUnauthenticated ||
                                  status == absl::StatusCode::kPermissionDenied;
             if (audit_log != nullptr && (facts.audited || refused)) {

@@ -20,8 +20,10 @@ absl::StatusOr<std::unique_ptr<TokenRegistry>> OpenTokens(const std::string& pat
 absl::StatusOr<std::unique_ptr<AuditLog>> OpenAuditLog(const std::string& path);
 
 // Counts each call, and writes a line to the audit log when the call belongs there or was refused.
+// A call that is no stream and takes longer than `slow_call_seconds` is a warning in the log.
 // `audit_log` may be null. All must outlive the server.
-CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens);
+CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens,
+                          double slow_call_seconds);
 
 // Logs a warning when a certificate expires within the next month.
 void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry);

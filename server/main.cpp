@@ -58,7 +58,8 @@ int Run(const ServerOptions& options) {
   if (!tokens.ok()) return Fail(tokens.status());
   absl::StatusOr<std::unique_ptr<AuditLog>> audit_log = OpenAuditLog(options.audit_log);
   if (!audit_log.ok()) return Fail(audit_log.status());
-  const CallListener calls = ObserveCalls(&metrics, audit_log->get(), tokens->get());
+  const CallListener calls =
+      ObserveCalls(&metrics, audit_log->get(), tokens->get(), options.slow_call_seconds);
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
   grpc.call_listener = &calls;

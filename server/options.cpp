@@ -141,6 +141,10 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   AddAccessFlags(&app, &line.options);
   app.add_option("--metrics-listen", line.options.metrics_listen,
                  "HOST:PORT that answers GET /metrics for Prometheus, in plain text");
+  app.add_option("--slow-call-seconds", line.options.slow_call_seconds,
+                 "A call that is no stream and takes longer is a warning in the log")
+      ->check(CLI::Range(0., 3600.))
+      ->capture_default_str();
   app.add_option("--log-level", line.options.logging.level,
                  "trace, debug, info, warning, error or off")
       ->capture_default_str();

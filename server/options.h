@@ -16,11 +16,12 @@ struct ServerOptions {
   LocalServiceOptions service;
   GrpcServerOptions grpc;
   LoggingOptions logging;
-  std::string metrics_listen;  // HOST:PORT, empty = no metrics
-  std::string token_file;      // who may call; it need not exist
-  std::string audit_log;       // empty = none
-  Exposure exposure;           // checked by ParseCommandLine
-  double drain_seconds = 10;   // running calls may go on for so long after SIGTERM
+  std::string metrics_listen;    // HOST:PORT, empty = no metrics
+  std::string token_file;        // who may call; it need not exist
+  std::string audit_log;         // empty = none
+  Exposure exposure;             // checked by ParseCommandLine
+  double slow_call_seconds = 1;  // longer calls are a warning in the log
+  double drain_seconds = 10;     // running calls may go on for so long after SIGTERM
 };
 
 // What the command line asks for: options, or a text to print and an exit code (for --help, for

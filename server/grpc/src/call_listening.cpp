@@ -6,6 +6,7 @@
 
 #include "named_ids.h"
 #include "pleat/reactors/admission.h"
+#include "trace_context.h"
 
 namespace pleat {
 namespace {
@@ -25,11 +26,9 @@ std::string_view PleatRpc(std::string_view method) {
 class ListeningInterceptor final : public grpc::experimental::Interceptor {
  public:
   ListeningInterceptor(const CallListener* listener, RunningCalls* running, ServerRpcInfo* info)
-      : listener_(listener),
-        running_(running),
-        call_(info->server_context()),
-        is_stream_(info->type() != ServerRpcInfo::Type::UNARY) {
+      : listener_(listener), running_(running), call_(info->server_context()) {
     facts_.method = info->method();
+    facts_.is_stream = info->type() != ServerRpcInfo::Type::UNARY;
     const RpcRule* rule = FindRpcRule(PleatRpc(facts_.method));
     facts_.audited = rule != nullptr && rule->audited;
     if (listener_ != nullptr) listener_->on_start(facts_.method);
@@ -59,7 +58,11 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
     const CallOrigin origin = OriginOf(*call_);
     facts_.peer = call_->peer();
     facts_.token_id = origin.token_id;
-    entry_.emplace(running_, origin, is_stream_, call_);
+    const auto trace = call_->client_metadata().find("traceparent");
+    if (trace != call_->client_metadata().end()) {
+      facts_.trace_id = TraceIdOf({trace->second.data(), trace->second.size()});
+    }
+    entry_.emplace(running_, origin, facts_.is_stream, call_);
   }
 
   // The first message says what the call is about; later ones are data or poses.
@@ -74,7 +77,6 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
   const CallListener* const listener_;
   RunningCalls* const running_;
   const grpc::ServerContextBase* const call_;
-  const bool is_stream_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   CallFacts facts_;
   std::optional<RunningCalls::Entry> entry_;

@@ -39,6 +39,7 @@ TEST_F(AuditLogTest, OneLineSaysWhoDidWhat) {
                              .token_id = "5d0f3a9b2c4e6871",
                              .token_name = "Zoë",
                              .ids = {"a", "b"},
+                             .trace_id = "4bf92f3577b34da6a3ce929d0e0e4736",
                              .status = "OK",
                              .seconds = .25}),
               IsOk());
@@ -49,6 +50,7 @@ TEST_F(AuditLogTest, OneLineSaysWhoDidWhat) {
                                            {"token", "5d0f3a9b2c4e6871"},
                                            {"name", "Zoë"},
                                            {"ids", {"a", "b"}},
+                                           {"trace", "4bf92f3577b34da6a3ce929d0e0e4736"},
                                            {"status", "OK"},
                                            {"seconds", .25}}));
 }
@@ -59,6 +61,7 @@ TEST_F(AuditLogTest, NothingFromOutsideForgesALine) {
                              .token_id = {},
                              .token_name = {},
                              .ids = {"x\"}\n{\"rpc\":\"DeleteModel\"", "\xff\xfe", "\x1b[2J"},
+                             .trace_id = {},
                              .status = "NOT_FOUND"}),
               IsOk());
   ASSERT_EQ(Lines().size(), 1);
@@ -79,6 +82,7 @@ TEST_F(AuditLogTest, GrowsOverRestartsAndLinesOfThreadsDoNotMix) {
                                   .token_id = {},
                                   .token_name = {},
                                   .ids = {},
+                                  .trace_id = {},
                                   .status = "OK"}),
                       IsOk());
         }

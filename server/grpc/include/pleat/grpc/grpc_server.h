@@ -26,9 +26,11 @@ struct ConnectionLimits {
 
 // What is known of a call when it has ended.
 struct CallFacts {
-  std::string method;            // "/pleat.v1.ModelService/DeleteModel"
-  std::string peer;              // as gRPC writes it: "ipv4:10.0.0.7:52114"
-  std::string token_id;          // of the token that it showed, good or not; empty: none
+  std::string method;    // "/pleat.v1.ModelService/DeleteModel"
+  std::string peer;      // as gRPC writes it: "ipv4:10.0.0.7:52114"
+  std::string token_id;  // of the token that it showed, good or not; empty: none
+  std::string trace_id;  // of the W3C trace that it belongs to, 32 digits; empty: none
+  bool is_stream = false;
   bool audited = false;          // it belongs in the audit log, whatever its end
   std::vector<std::string> ids;  // that its request names; only of audited calls
 };

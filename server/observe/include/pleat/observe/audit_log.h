@@ -18,6 +18,7 @@ struct AuditEntry {
   // then anybody may have written the id.
   std::string token_id, token_name;
   std::vector<std::string> ids;  // what the request names
+  std::string trace_id;          // W3C; empty: none
   std::string status;            // "OK", "NOT_FOUND", ...
   double seconds = 0;            // from the begin of the call to its end
 };
