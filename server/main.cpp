@@ -34,6 +34,17 @@ void RaiseDescriptorLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+// An empty address means that nobody is answered.
+absl::Status ServeMetrics(const std::string& address, LocalCharacterService* service,
+                          const GrpcServer* server, ServerMetrics* metrics) {
+  AddServiceGauges(service, metrics);
+  AddNetworkGauges(server, metrics);
+  if (address.empty()) return absl::OkStatus();
+  const absl::Status status = metrics->Serve(address);
+  if (status.ok()) spdlog::info("metrics at http://{}/metrics", address);
+  return status;
+}
+
 int Run(const ServerOptions& options) {
   if (const absl::Status status = ConfigureLogging(options.logging); !status.ok()) {
     std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
@@ -68,13 +79,10 @@ int Run(const ServerOptions& options) {
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());
   WarnBeforeExpiry((*server)->certificate_expiry());
-  AddServiceGauges(service->get(), &metrics);
-  AddNetworkGauges(server->get(), &metrics);
-  if (!options.metrics_listen.empty()) {
-    if (const absl::Status status = metrics.Serve(options.metrics_listen); !status.ok()) {
-      return Fail(status);
-    }
-    spdlog::info("metrics at http://{}/metrics", options.metrics_listen);
+  if (const absl::Status status =
+          ServeMetrics(options.metrics_listen, service->get(), server->get(), &metrics);
+      !status.ok()) {
+    return Fail(status);
   }
   const std::string address = Address(options.grpc, (*server)->port());
   // This line goes to standard output, so that a script can wait for it and read the port.
