@@ -16,10 +16,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "listening_socket.h"
+#include "pleat/base/file.h"
 #include "pleat/remote/remote_character_service.h"
 #include "pleat/v1/sequence_service.grpc.pb.h"
 #include "server/grpc/sockets.h"
+#include "support/certificates.h"
 #include "support/fake_training.h"
+#include "support/source_folder.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 #include "support/token_files.h"
@@ -299,6 +302,40 @@ TEST(PleatdTest, AnswersPrometheus) {
     std::string metrics;  // a call is counted soon after its client has the answer
     while (metrics.find(line) == std::string::npos) metrics = GetMetrics(port);
   }
+}
+
+// A panel that asks for a metric of another name shows nothing, and nobody notices.
+TEST(PleatdTest, EveryQueryOfTheDashboardNamesAMetric) {
+  TemporaryFolder folder;
+  const Certificate authority = Certificate::Authority("studio");
+  ASSERT_THAT(WriteFile(folder.File("server.pem"), authority.certificate_pem()), IsOk());
+  ASSERT_THAT(WriteFile(folder.File("server.key"), authority.key_pem()), IsOk());
+  const int port = ListeningSocket::Open("127.0.0.1:0")->port();
+  std::vector<std::string> flags = Flags(folder);
+  flags.insert(flags.end(), {"--metrics-listen", absl::StrCat("127.0.0.1:", port), "--tls-cert",
+                             folder.File("server.pem"), "--tls-key", folder.File("server.key")});
+  Daemon daemon(flags);
+  const std::string address = daemon.WaitForAddress();
+  ASSERT_NE(address, "") << daemon.output();
+  const auto channel = grpc::CreateChannel(
+      address, grpc::SslCredentials({.pem_root_certs = authority.certificate_pem()}));
+  grpc::ClientContext context;
+  v1::GetSequenceResponse response;
+  v1::SequenceService::NewStub(channel)->GetSequence(&context, {}, &response);  // counted, whatever
+  std::string metrics;
+  while (metrics.find("pleat_rpcs_total{") == std::string::npos) metrics = GetMetrics(port);
+
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string dashboard,
+                             ReadFile(InSourceFolder("server/grafana/pleat.json")));
+  int num_names = 0;
+  for (size_t at = dashboard.find("pleat_"); at != std::string::npos;
+       at = dashboard.find("pleat_", at + 1)) {
+    const std::string name =
+        dashboard.substr(at, dashboard.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", at) - at);
+    EXPECT_THAT(metrics, testing::ContainsRegex("\n" + name + "[{ ]")) << name;
+    ++num_names;
+  }
+  EXPECT_GE(num_names, 11);
 }
 
 TEST(PleatdTest, IsNotOpenToOtherMachinesByMistake) {
