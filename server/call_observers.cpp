@@ -22,7 +22,6 @@ void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, Toke
   AuditEntry entry{.rpc = facts.method.substr(facts.method.rfind('/') + 1),
                    .peer = facts.peer,
                    .token_id = facts.token_id,
-                   .token_name = {},
                    .ids = facts.ids,
                    .trace_id = facts.trace_id,
                    .status = absl::StatusCodeToString(status),

@@ -1,5 +1,6 @@
 #include "pleat/identity/token_file.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -67,7 +68,8 @@ TEST(TokenFileTest, OneWrongTokenRefusesTheFile) {
                 HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr(change.word)));
   }
   for (size_t length = 0; length + 2 < good.size(); length += 7) {
-    EXPECT_THAT(ParseTokens(good.substr(0, length)), HasStatus(absl::StatusCode::kInvalidArgument));
+    EXPECT_THAT(ParseTokens(good.substr(0, length)),
+                HasStatus(absl::StatusCode::kInvalidArgument, testing::HasSubstr("malformed")));
   }
 }
 
@@ -96,7 +98,7 @@ TEST(TokenFileTest, AnErrorLeavesTheFileAsItIs) {
                              tokens->clear();
                              return absl::NotFoundError("no such token");
                            }),
-              HasStatus(absl::StatusCode::kNotFound));
+              HasStatus(absl::StatusCode::kNotFound, "no such token"));
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::string after, ReadFile(path));
   EXPECT_EQ(after, before);
   ASSERT_THAT(WriteFile(path, "{"), IsOk());

@@ -1,5 +1,6 @@
 #include "pleat/identity/token.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "pleat/base/sha256.h"
@@ -50,7 +51,8 @@ TEST(TokenTest, NamesAreTextForLists) {
   EXPECT_THAT(CheckTokenName(std::string(64, 'x')), IsOk());
   for (const std::string& name : {std::string(), std::string(65, 'x'), std::string("a\nb"),
                                   std::string("a\0b", 3), std::string("\xff")}) {
-    EXPECT_THAT(CheckTokenName(name), HasStatus(absl::StatusCode::kInvalidArgument));
+    EXPECT_THAT(CheckTokenName(name),
+                HasStatus(absl::StatusCode::kInvalidArgument, testing::HasSubstr("token")));
   }
 }
 

@@ -308,8 +308,9 @@ TEST(PleatdTest, AnswersPrometheus) {
 TEST(PleatdTest, EveryQueryOfTheDashboardNamesAMetric) {
   TemporaryFolder folder;
   const Certificate authority = Certificate::Authority("studio");
-  ASSERT_THAT(WriteFile(folder.File("server.pem"), authority.certificate_pem()), IsOk());
-  ASSERT_THAT(WriteFile(folder.File("server.key"), authority.key_pem()), IsOk());
+  const Certificate own = Certificate::SignedBy(authority, "server");
+  ASSERT_THAT(WriteFile(folder.File("server.pem"), own.certificate_pem()), IsOk());
+  ASSERT_THAT(WriteFile(folder.File("server.key"), own.key_pem()), IsOk());
   const int port = ListeningSocket::Open("127.0.0.1:0")->port();
   std::vector<std::string> flags = Flags(folder);
   flags.insert(flags.end(), {"--metrics-listen", absl::StrCat("127.0.0.1:", port), "--tls-cert",
@@ -317,8 +318,9 @@ TEST(PleatdTest, EveryQueryOfTheDashboardNamesAMetric) {
   Daemon daemon(flags);
   const std::string address = daemon.WaitForAddress();
   ASSERT_NE(address, "") << daemon.output();
-  const auto channel = grpc::CreateChannel(
-      address, grpc::SslCredentials({.pem_root_certs = authority.certificate_pem()}));
+  grpc::SslCredentialsOptions tls;
+  tls.pem_root_certs = authority.certificate_pem();
+  const auto channel = grpc::CreateChannel(address, grpc::SslCredentials(tls));
   grpc::ClientContext context;
   v1::GetSequenceResponse response;
   v1::SequenceService::NewStub(channel)->GetSequence(&context, {}, &response);  // counted, whatever

@@ -50,7 +50,8 @@ TEST(StoreTest, AProbeTellsWhetherSomethingCanBeStored) {
   }
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto full,
                              Store::Open({.data_dir = data, .reserve_bytes = uint64_t{1} << 60}));
-  EXPECT_THAT(full->ProbeDisk(), HasStatus(absl::StatusCode::kResourceExhausted));
+  EXPECT_THAT(full->ProbeDisk(),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("no room")));
 }
 
 class StoreSyncTest : public testing::Test {

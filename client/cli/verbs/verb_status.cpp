@@ -1,5 +1,7 @@
 // status: whether a server serves, and whether it can store.
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "cli/service.h"

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "folder_lock.h"
+#include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "store_identity.h"
 

@@ -55,7 +55,7 @@ std::string ShownToken(const grpc::ServerContextBase& call) {
 }
 
 absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase& call,
-                   std::string_view rpc) {
+                   const char* rpc) {
   if (context.tokens == nullptr || !context.tokens->required()) return absl::OkStatus();
   const RpcRule* rule = FindRpcRule(rpc);
   if (rule == nullptr) return absl::InternalError(absl::StrCat("nobody says who may call ", rpc));
@@ -67,7 +67,7 @@ absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase&
 }
 
 absl::Status AdmitStream(HandlerContext* context, const grpc::ServerContextBase& call,
-                         std::string_view rpc) {
+                         const char* rpc) {
   PLEAT_RETURN_IF_ERROR(Admit(*context, call, rpc));
   const int limit = context->max_streams_per_client;
   // This stream is among those that are counted.

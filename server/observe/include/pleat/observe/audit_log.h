@@ -12,15 +12,15 @@
 namespace pleat {
 
 struct AuditEntry {
-  std::string rpc;   // "DeleteModel"
-  std::string peer;  // "ipv4:10.0.0.7:52114"
+  std::string rpc{};   // "DeleteModel"
+  std::string peer{};  // "ipv4:10.0.0.7:52114"
   // The token that the call showed. Its name is empty where the server does not know the token:
   // then anybody may have written the id.
-  std::string token_id, token_name;
-  std::vector<std::string> ids;  // what the request names
-  std::string trace_id;          // W3C; empty: none
-  std::string status;            // "OK", "NOT_FOUND", ...
-  double seconds = 0;            // from the begin of the call to its end
+  std::string token_id{}, token_name{};
+  std::vector<std::string> ids{};  // what the request names
+  std::string trace_id{};          // W3C; empty: none
+  std::string status{};            // "OK", "NOT_FOUND", ...
+  double seconds = 0;              // from the begin of the call to its end
 };
 
 // One JSON object per line (docs/security.md). Each line is one write to a file that was opened for

@@ -34,11 +34,11 @@ std::string ShownToken(const grpc::ServerContextBase& call);
 // OK when the call may go on. kUnauthenticated without a good token where tokens are required, and
 // kPermissionDenied when the token does not have the scope of the RPC.
 absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase& call,
-                   std::string_view rpc);
+                   const char* rpc);
 
 // The same for a stream. kResourceExhausted when its client has too many others.
 absl::Status AdmitStream(HandlerContext* context, const grpc::ServerContextBase& call,
-                         std::string_view rpc);
+                         const char* rpc);
 
 // A stream that ends before it begins.
 template <typename GrpcReactor>
