@@ -35,7 +35,8 @@ class MockSequenceService : public SequenceService {
   MOCK_METHOD(absl::StatusOr<SequenceInfo>, Upload, (const MeshSequence&, const Progress&),
               (override));
   MOCK_METHOD(absl::StatusOr<SequenceInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<SequenceInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<SequenceInfo>>, ListPage, (const PageRequest& request),
+              (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<UploadStatus>, QueryUpload, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<SequenceUpload>>, BeginUpload,
@@ -59,7 +60,7 @@ class MockJobService : public JobService {
   MOCK_METHOD(absl::StatusOr<JobInfo>, CreateCompression, (const CompressionRequest& request),
               (override));
   MOCK_METHOD(absl::StatusOr<JobInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<JobInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<JobInfo>>, ListPage, (const PageRequest& request), (override));
   MOCK_METHOD(absl::Status, Cancel, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<JobSubscription>>, Subscribe,
               (const std::string& id, std::function<void()> listener), (override));
@@ -70,7 +71,7 @@ class MockModelService : public ModelService {
   MockModelService();
   ~MockModelService() override;
   MOCK_METHOD(absl::StatusOr<ModelInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<ModelInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<ModelInfo>>, ListPage, (const PageRequest& request), (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
@@ -143,7 +144,8 @@ class MockCompressedSequenceService : public CompressedSequenceService {
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Upload,
               (const std::string& file, const Progress&), (override));
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<CompressedSequenceInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<CompressedSequenceInfo>>, ListPage, (const PageRequest& request),
+              (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));

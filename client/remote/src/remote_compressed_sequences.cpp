@@ -137,9 +137,10 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
     return FromProto(response.compressed_sequence());
   }
 
-  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() override {
-    return ReadPages<CompressedSequenceInfo, v1::ListCompressedSequencesRequest,
-                     v1::ListCompressedSequencesResponse>(
+  absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<CompressedSequenceInfo, v1::ListCompressedSequencesRequest,
+                    v1::ListCompressedSequencesResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::CompressedSequenceService::Stub::ListCompressedSequences, request,
                       response);

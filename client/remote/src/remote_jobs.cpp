@@ -53,8 +53,9 @@ class RemoteJobs final : public JobService {
     return FromProto(response.job());
   }
 
-  absl::StatusOr<std::vector<JobInfo>> List() override {
-    return ReadPages<JobInfo, v1::ListJobsRequest, v1::ListJobsResponse>(
+  absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<JobInfo, v1::ListJobsRequest, v1::ListJobsResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::JobService::Stub::ListJobs, request, response);
         },

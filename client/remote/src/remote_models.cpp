@@ -22,8 +22,9 @@ class RemoteModels final : public ModelService {
     return FromProto(response.model());
   }
 
-  absl::StatusOr<std::vector<ModelInfo>> List() override {
-    return ReadPages<ModelInfo, v1::ListModelsRequest, v1::ListModelsResponse>(
+  absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<ModelInfo, v1::ListModelsRequest, v1::ListModelsResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::ModelService::Stub::ListModels, request, response);
         },

@@ -29,8 +29,9 @@ class RemoteSequences final : public SequenceService {
     return FromProto(response.sequence());
   }
 
-  absl::StatusOr<std::vector<SequenceInfo>> List() override {
-    return ReadPages<SequenceInfo, v1::ListSequencesRequest, v1::ListSequencesResponse>(
+  absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<SequenceInfo, v1::ListSequencesRequest, v1::ListSequencesResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::SequenceService::Stub::ListSequences, request, response);
         },

@@ -86,8 +86,9 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Get(const std::
   return GetStored<CompressedSequenceInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<CompressedSequenceInfo>> LocalCompressedSequences::List() {
-  return ListStored<CompressedSequenceInfo>(files_);
+absl::StatusOr<Page<CompressedSequenceInfo>> LocalCompressedSequences::ListPage(
+    const PageRequest& request) {
+  return ListStoredPage<CompressedSequenceInfo>(files_, request);
 }
 
 absl::Status LocalCompressedSequences::Delete(const std::string& id) {

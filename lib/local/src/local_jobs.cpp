@@ -7,6 +7,7 @@
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
 #include "pleat/store/records.h"
+#include "stored_infos.h"
 
 namespace pleat {
 namespace {
@@ -145,7 +146,14 @@ absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& r
 
 absl::StatusOr<JobInfo> LocalJobs::Get(const std::string& id) { return manager_.Get(id); }
 
-absl::StatusOr<std::vector<JobInfo>> LocalJobs::List() { return manager_.List(); }
+absl::StatusOr<Page<JobInfo>> LocalJobs::ListPage(const PageRequest& request) {
+  PLEAT_ASSIGN_OR_RETURN(Page<JobInfo> page, ListStoredPage<JobInfo>(files_, request));
+  // The rows give the order; how far a job is, the manager knows better.
+  for (JobInfo& info : page.items) {
+    if (absl::StatusOr<JobInfo> now = manager_.Get(info.id); now.ok()) info = *std::move(now);
+  }
+  return page;
+}
 
 absl::Status LocalJobs::Cancel(const std::string& id) { return manager_.Cancel(id); }
 

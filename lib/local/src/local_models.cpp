@@ -12,7 +12,9 @@ absl::StatusOr<ModelInfo> LocalModels::Get(const std::string& id) {
   return GetStored<ModelInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() { return ListStored<ModelInfo>(files_); }
+absl::StatusOr<Page<ModelInfo>> LocalModels::ListPage(const PageRequest& request) {
+  return ListStoredPage<ModelInfo>(files_, request);
+}
 
 absl::Status LocalModels::Delete(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));

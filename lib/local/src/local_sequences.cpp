@@ -57,8 +57,8 @@ absl::StatusOr<SequenceInfo> LocalSequences::Get(const std::string& id) {
   return GetStored<SequenceInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<SequenceInfo>> LocalSequences::List() {
-  return ListStored<SequenceInfo>(files_);
+absl::StatusOr<Page<SequenceInfo>> LocalSequences::ListPage(const PageRequest& request) {
+  return ListStoredPage<SequenceInfo>(files_, request);
 }
 
 absl::Status LocalSequences::Delete(const std::string& id) {

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/status.h"
 #include "pleat/local/stored_files.h"
+#include "pleat/service/list_page.h"
 #include "pleat/store/records.h"
 
 namespace pleat {
@@ -26,6 +27,11 @@ struct StoredKind<ModelInfo> {
   static constexpr auto decode = &DecodeModelRecord;
 };
 template <>
+struct StoredKind<JobInfo> {
+  static constexpr EntryKind kind = EntryKind::kJob;
+  static constexpr auto decode = &DecodeJobRecord;
+};
+template <>
 struct StoredKind<CompressedSequenceInfo> {
   static constexpr EntryKind kind = EntryKind::kCompressedSequence;
   static constexpr auto decode = &DecodeCompressedSequenceRecord;
@@ -37,22 +43,30 @@ absl::StatusOr<Info> GetStored(Catalog& catalog, const std::string& id) {
   return StoredKind<Info>::decode(entry.record);
 }
 
+// The rows of one page, and the token of the next one.
+struct EntryPage {
+  std::vector<CatalogEntry> entries;
+  std::string next_token;
+};
+absl::StatusOr<EntryPage> ReadEntryPage(Catalog& catalog, EntryKind kind,
+                                        const PageRequest& request);
+
 // Leaves out rows that cannot be read, and tells the operator: one of them must not hide the
 // others.
 template <typename Info>
-absl::StatusOr<std::vector<Info>> ListStored(StoredFiles* files) {
+absl::StatusOr<Page<Info>> ListStoredPage(StoredFiles* files, const PageRequest& request) {
   constexpr EntryKind kKind = StoredKind<Info>::kind;
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries, files->catalog().List(kKind));
-  std::vector<Info> infos;
-  for (const CatalogEntry& entry : entries) {
+  PLEAT_ASSIGN_OR_RETURN(EntryPage rows, ReadEntryPage(files->catalog(), kKind, request));
+  Page<Info> page{.items = {}, .next_token = std::move(rows.next_token)};
+  for (const CatalogEntry& entry : rows.entries) {
     absl::StatusOr<Info> info = StoredKind<Info>::decode(entry.record);
     if (info.ok()) {
-      infos.push_back(*std::move(info));
+      page.items.push_back(*std::move(info));
     } else {
       files->ReportBadRow(kKind, entry.id, info.status());
     }
   }
-  return infos;
+  return page;
 }
 
 }  // namespace pleat

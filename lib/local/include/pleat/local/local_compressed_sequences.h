@@ -25,7 +25,7 @@ class LocalCompressedSequences final : public CompressedSequenceService {
   absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
                                                 const Progress& progress) override;
   absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() override;
+  absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
   absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,

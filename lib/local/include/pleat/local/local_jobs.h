@@ -24,7 +24,7 @@ class LocalJobs final : public JobService {
   absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
   absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) override;
   absl::StatusOr<JobInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<JobInfo>> List() override;
+  absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& request) override;
   absl::Status Cancel(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
       const std::string& id, std::function<void()> listener) override;

@@ -18,7 +18,7 @@ class LocalModels final : public ModelService {
   LocalModels(StoredFiles* files, uint64_t cache_bytes) : files_(files), cache_(cache_bytes) {}
 
   absl::StatusOr<ModelInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<ModelInfo>> List() override;
+  absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
   absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,

@@ -18,7 +18,7 @@ class LocalSequences final : public SequenceService {
   absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
                                       const Progress& progress) override;
   absl::StatusOr<SequenceInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<SequenceInfo>> List() override;
+  absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
   absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,

@@ -15,6 +15,7 @@
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/sequence_codec/compress_sequence.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -73,7 +74,13 @@ class CompressedSequenceService {
   virtual absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
                                                         const Progress& progress) = 0;
   virtual absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<CompressedSequenceInfo>> List() = 0;
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() {
+    return ReadAllPages<CompressedSequenceInfo>(
+        [this](const PageRequest& request) { return ListPage(request); });
+  }
   virtual absl::Status Delete(const std::string& id) = 0;
   // The whole file.
   virtual absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) = 0;

@@ -13,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/character/train_character.h"
 #include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -85,7 +86,12 @@ class JobService {
   virtual absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) = 0;
   virtual absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) = 0;
   virtual absl::StatusOr<JobInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<JobInfo>> List() = 0;  // oldest first
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<JobInfo>> List() {
+    return ReadAllPages<JobInfo>([this](const PageRequest& request) { return ListPage(request); });
+  }
   // kFailedPrecondition when the job is final. A running job stops within a second.
   virtual absl::Status Cancel(const std::string& id) = 0;
   // Calls `listener` after every change of the job or of the subscription's status, from any

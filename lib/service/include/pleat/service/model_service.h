@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -30,7 +31,13 @@ class ModelService {
   virtual ~ModelService() = default;
 
   virtual absl::StatusOr<ModelInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<ModelInfo>> List() = 0;
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<ModelInfo>> List() {
+    return ReadAllPages<ModelInfo>(
+        [this](const PageRequest& request) { return ListPage(request); });
+  }
   // Whoever uses the model at the moment keeps it until the end.
   virtual absl::Status Delete(const std::string& id) = 0;
   // The whole model file.

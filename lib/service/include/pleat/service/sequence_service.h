@@ -11,6 +11,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -33,7 +34,13 @@ class SequenceService {
   virtual absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
                                               const Progress& progress) = 0;
   virtual absl::StatusOr<SequenceInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<SequenceInfo>> List() = 0;
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<SequenceInfo>> List() {
+    return ReadAllPages<SequenceInfo>(
+        [this](const PageRequest& request) { return ListPage(request); });
+  }
   virtual absl::Status Delete(const std::string& id) = 0;
 
   // What has arrived of the file `id`, sequence or compressed sequence: where to go on.

@@ -1,0 +1,21 @@
+#include "stored_infos.h"
+
+#include "page_token.h"
+
+namespace pleat {
+
+absl::StatusOr<EntryPage> ReadEntryPage(Catalog& catalog, EntryKind kind,
+                                        const PageRequest& request) {
+  PLEAT_ASSIGN_OR_RETURN(const int max_items, MaxItemsOf(request));
+  PLEAT_ASSIGN_OR_RETURN(const int64_t after, ParsePageToken(kind, request.token));
+  EntryPage page;
+  // One more, which says whether there is a next page.
+  PLEAT_ASSIGN_OR_RETURN(page.entries, catalog.ListPage(kind, after, max_items + 1));
+  if (page.entries.size() > static_cast<size_t>(max_items)) {
+    page.entries.pop_back();
+    page.next_token = MakePageToken(kind, page.entries.back().position);
+  }
+  return page;
+}
+
+}  // namespace pleat
