@@ -283,6 +283,31 @@ TEST(MessagesTest, HostileInfosAreRefused) {
   EXPECT_FALSE(FromProto(skeleton).ok());
 }
 
+TEST(MessagesTest, TimesThatAreNoneAreRefused) {
+  JobInfo info;
+  info.id = "job-1";
+  info.created = absl::FromUnixNanos(1'796'072'709'123'456'789);
+  EXPECT_EQ(FromProto(Reparse(ToProto(info)))->created, info.created);
+  for (const absl::Time time : {absl::UnixEpoch() - absl::Nanoseconds(1), absl::UnixEpoch()}) {
+    info.created = time;
+    EXPECT_EQ(FromProto(Reparse(ToProto(info)))->created, time);
+  }
+  info.created = absl::InfiniteFuture();  // no time of a calendar; the last one goes out
+  v1::Job message = ToProto(info);
+  ASSERT_THAT(FromProto(message), IsOk());
+  const std::pair<int64_t, int32_t> wrong[] = {{int64_t{1} << 62, 0},
+                                               {std::numeric_limits<int64_t>::min(), 0},
+                                               {message.created().seconds() + 1, 0},
+                                               {0, -1},
+                                               {0, 1'000'000'000}};
+  for (const auto& [seconds, nanos] : wrong) {
+    message.mutable_created()->set_seconds(seconds);
+    message.mutable_created()->set_nanos(nanos);
+    EXPECT_THAT(FromProto(message),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("job.created")));
+  }
+}
+
 TEST(MessagesTest, NamesThatAreNoUtf8StillCrossTheWire) {
   SequenceInfo sequence{kId, "\xff\xfe", 1, 1, 1, {30, 1}, 1};
   EXPECT_EQ(FromProto(Reparse(ToProto(sequence)))->name, "\xef\xbf\xbd\xef\xbf\xbd");

@@ -1,6 +1,7 @@
 // compressed: the compressed sequences of a service.
 #include "absl/strings/str_format.h"
 #include "cli/show/info_json.h"
+#include "cli/show/time_text.h"
 #include "cli/verbs/stored_verb.h"
 
 namespace pleat {
@@ -13,7 +14,8 @@ std::vector<std::string> CompressedSequenceRow(const CompressedSequenceInfo& inf
           absl::StrCat(info.num_vertices),
           info.record ? absl::StrFormat("%.4g", info.record->summary.max_error_mm) : "",
           info.record ? absl::StrFormat("%.4g", info.record->summary.kg_percent) : "",
-          FormatBytes(static_cast<double>(info.size_bytes))};
+          FormatBytes(static_cast<double>(info.size_bytes)),
+          TimeText(info.life.created)};
 }
 
 }  // namespace
@@ -33,7 +35,7 @@ void AddCompressedVerb(CLI::App& app, Session& session) {
            },
        .file_ending = ".plt",
        .json = CompressedSequenceJson,
-       .header = {"id", "name", "frames", "vertices", "max mm", "KG %", "size"},
+       .header = {"id", "name", "frames", "vertices", "max mm", "KG %", "size", "created (UTC)"},
        .row = CompressedSequenceRow});
 }
 

@@ -10,6 +10,7 @@
 #include "cli/show/info_json.h"
 #include "cli/show/json_text.h"
 #include "cli/show/text_table.h"
+#include "cli/show/time_text.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
 
@@ -25,9 +26,11 @@ void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
   for (const JobInfo& job : jobs) {
     rows.push_back({job.id, JobStateName(job.state), job.stage,
                     absl::StrFormat("%.0f %%", 100 * job.fraction), JobKindName(job), job.name,
-                    job.result_id.substr(0, 12)});
+                    job.result_id.substr(0, 12), TimeText(job.created),
+                    DurationText(job.started, job.ended)});
   }
-  out << FormatTable({"id", "state", "stage", "done", "kind", "name", "result"}, rows);
+  out << FormatTable(
+      {"id", "state", "stage", "done", "kind", "name", "result", "created (UTC)", "took"}, rows);
 }
 
 absl::Status RunWatch(JobService& jobs, const std::string& id, const Session& session) {

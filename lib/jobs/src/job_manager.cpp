@@ -42,12 +42,17 @@ void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
   if (!ran_alone && snapshot.attempts > 0) --snapshot.attempts;
   snapshot.info.fraction = 0;
   const bool is_hopeless = ran_alone && snapshot.attempts >= options_.max_attempts;
-  if (!is_hopeless) snapshot.info.state = JobState::kQueued;
+  if (!is_hopeless) {
+    snapshot.info.state = JobState::kQueued;
+    snapshot.info.started.reset();
+  }
   auto job = std::make_shared<JobStateMachine>(snapshot.info, snapshot.attempts, options_.clock);
   if (is_hopeless) {
-    job->Fail(absl::AbortedError(absl::StrCat(
-        "the server stopped ", snapshot.attempts,
-        " times while this job was running alone; it may need more memory than there is")));
+    job->Fail(
+        absl::AbortedError(absl::StrCat(
+            "the server stopped ", snapshot.attempts,
+            " times while this job was running alone; it may need more memory than there is")),
+        options_.wall_clock());
   }
   Save(job.get());
   std::lock_guard lock(mutex_);
@@ -86,6 +91,7 @@ absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
 absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   draft.id = MakeJobId();
   draft.state = JobState::kQueued;
+  draft.created = options_.wall_clock();
   auto job = std::make_shared<JobStateMachine>(draft, 0, options_.clock);
   std::lock_guard creating(create_mutex_);
   {
@@ -142,10 +148,11 @@ absl::Status JobManager::Cancel(const std::string& id) {
     std::lock_guard lock(mutex_);
     was_waiting = std::erase(queue_, job) > 0;
   }
-  if (!was_waiting) return job->RequestCancel();  // its worker saves how it ends
+  const absl::Time now = options_.wall_clock();
+  if (!was_waiting) return job->RequestCancel(now);  // its worker saves how it ends
   const JobSnapshot snapshot = job->snapshot();
   JobStateMachine draft(snapshot.info, snapshot.attempts, options_.clock);
-  absl::Status status = draft.RequestCancel();
+  absl::Status status = draft.RequestCancel(now);
   if (status.ok()) status = save_(draft.snapshot().info, snapshot.attempts);
   if (!status.ok()) {
     {
@@ -155,7 +162,7 @@ absl::Status JobManager::Cancel(const std::string& id) {
     changed_.notify_all();
     return status;
   }
-  return job->RequestCancel();
+  return job->RequestCancel(now);
 }
 
 void JobManager::Shutdown() {
@@ -195,7 +202,7 @@ std::shared_ptr<JobStateMachine> JobManager::TakeNext() {
 void JobManager::Work() {
   if (options_.in_idle_time) RunInIdleTime();
   while (const std::shared_ptr<JobStateMachine> job = TakeNext()) {
-    if (job->Start()) {
+    if (job->Start(options_.wall_clock())) {
       Save(job.get());
       RunOne(job.get());
     } else {
@@ -223,13 +230,15 @@ void JobManager::RunOne(JobStateMachine* job) {
     // Its text is for programmers and may name anything.
     outcome = absl::InternalError("the job ended with an exception: a fault of Pleat");
   }
+  const absl::Time now = options_.wall_clock();
   if (outcome.ok()) {
-    End(job,
-        [&](JobStateMachine* it) { return it->Succeed(outcome->result_id, outcome->warnings); });
+    End(job, [&](JobStateMachine* it) {
+      return it->Succeed(outcome->result_id, outcome->warnings, now);
+    });
   } else if (outcome.status().code() != absl::StatusCode::kCancelled) {
-    End(job, [&](JobStateMachine* it) { return it->Fail(outcome.status()); });
+    End(job, [&](JobStateMachine* it) { return it->Fail(outcome.status(), now); });
   } else if (job->cancel_requested()) {
-    End(job, [](JobStateMachine* it) { return it->Cancelled(); });
+    End(job, [&](JobStateMachine* it) { return it->Cancelled(now); });
   } else {
     job->Requeue();  // the server shuts down; the next process goes on
     Save(job);

@@ -24,7 +24,7 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
 
 LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                                              std::unique_ptr<Store> store)
-    : files_(std::move(store), options.limits),
+    : files_(std::move(store), options.limits, options.wall_clock),
       sequences_(&files_),
       models_(&files_, options.cache_bytes),
       compressed_sequences_(&files_, options.decode_bytes),

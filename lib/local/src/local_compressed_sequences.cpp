@@ -74,12 +74,12 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
     upload->Discard();  // these bytes will never be a compressed sequence
     return decoder.status();
   }
-  CompressedSequenceInfo info =
+  const CompressedSequenceInfo info =
       known.ok() ? *std::move(known)
                  : MakeCompressedSequenceInfo(*decoder, upload->id(), size_bytes);
   PLEAT_RETURN_IF_ERROR(
       files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload));
-  return info;
+  return Get(info.id);
 }
 
 absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Get(const std::string& id) {

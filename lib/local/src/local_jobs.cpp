@@ -59,7 +59,9 @@ LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner ru
       sequences_(sequences),
       runner_(std::move(runner)),
       manager_(
-          JobManagerOptions{.num_workers = num_workers, .in_idle_time = in_idle_time},
+          JobManagerOptions{.num_workers = num_workers,
+                            .in_idle_time = in_idle_time,
+                            .wall_clock = files->clock()},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_.Run(job, progress);
           },

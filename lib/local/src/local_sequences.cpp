@@ -47,10 +47,10 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
                                                      files_->limits().max_upload_bytes));
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
-  SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
+  const SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
   PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes));
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
-  return info;
+  return Get(info.id);
 }
 
 absl::StatusOr<SequenceInfo> LocalSequences::Get(const std::string& id) {
@@ -99,9 +99,9 @@ absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload)
     upload->Discard();  // these bytes will never be a sequence
     return status;
   }
-  SequenceInfo info = MakeSequenceInfo(*sequence, upload->id(), bytes.size());
+  const SequenceInfo info = MakeSequenceInfo(*sequence, upload->id(), bytes.size());
   PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, upload));
-  return info;
+  return Get(info.id);
 }
 
 absl::StatusOr<MeshSequence> LocalSequences::Load(const std::string& id) {

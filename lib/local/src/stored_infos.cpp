@@ -4,6 +4,12 @@
 
 namespace pleat {
 
+EntryLife LifeOf(const CatalogEntry& entry) {
+  EntryLife life;
+  if (entry.created_unix_ms > 0) life.created = absl::FromUnixMillis(entry.created_unix_ms);
+  return life;
+}
+
 absl::StatusOr<EntryPage> ReadEntryPage(Catalog& catalog, EntryKind kind,
                                         const PageRequest& request) {
   PLEAT_ASSIGN_OR_RETURN(const int max_items, MaxItemsOf(request));

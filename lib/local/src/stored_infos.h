@@ -37,10 +37,20 @@ struct StoredKind<CompressedSequenceInfo> {
   static constexpr auto decode = &DecodeCompressedSequenceRecord;
 };
 
+EntryLife LifeOf(const CatalogEntry& entry);
+
+// Returns what a row says: its record, and when the entry came. Jobs keep their times themselves.
+template <typename Info>
+absl::StatusOr<Info> InfoOf(const CatalogEntry& entry) {
+  PLEAT_ASSIGN_OR_RETURN(Info info, StoredKind<Info>::decode(entry.record));
+  if constexpr (StoredKind<Info>::kind != EntryKind::kJob) info.life = LifeOf(entry);
+  return info;
+}
+
 template <typename Info>
 absl::StatusOr<Info> GetStored(Catalog& catalog, const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(const CatalogEntry entry, catalog.Get(StoredKind<Info>::kind, id));
-  return StoredKind<Info>::decode(entry.record);
+  return InfoOf<Info>(entry);
 }
 
 // The rows of one page, and the token of the next one.
@@ -59,7 +69,7 @@ absl::StatusOr<Page<Info>> ListStoredPage(StoredFiles* files, const PageRequest&
   PLEAT_ASSIGN_OR_RETURN(EntryPage rows, ReadEntryPage(files->catalog(), kKind, request));
   Page<Info> page{.items = {}, .next_token = std::move(rows.next_token)};
   for (const CatalogEntry& entry : rows.entries) {
-    absl::StatusOr<Info> info = StoredKind<Info>::decode(entry.record);
+    absl::StatusOr<Info> info = InfoOf<Info>(entry);
     if (info.ok()) {
       page.items.push_back(*std::move(info));
     } else {

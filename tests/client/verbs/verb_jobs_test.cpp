@@ -35,6 +35,8 @@ TEST(JobsVerbTest, JobsOfBothKindsAreListedAndShown) {
     EXPECT_EQ(job["name"], "tube");
     EXPECT_EQ(job["sequence_ids"].size(), 1u);
     EXPECT_EQ(job["result_id"].get<std::string>().size(), 64u);
+    EXPECT_LE(job["created"].get<std::string>(), job["started"].get<std::string>());
+    EXPECT_LE(job["started"].get<std::string>(), job["ended"].get<std::string>());
     const Outcome shown = files.RunInStore({"jobs", "show", job["id"].get<std::string>()});
     EXPECT_EQ(nlohmann::json::parse(shown.out), job);
   }

@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/base/wall_clock.h"
 #include "pleat/jobs/job_state_machine.h"
 
 namespace pleat {
@@ -38,6 +39,7 @@ struct JobManagerOptions {
   // the same process keep their pace.
   bool in_idle_time = false;
   MonotonicClock clock = SteadySeconds;
+  WallClock wall_clock = SystemTime;  // for the times that jobs keep
 };
 
 struct StoredJob {

@@ -31,6 +31,7 @@ struct LocalServiceOptions {
   uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
   double scrub_seconds = 0;  // in which every stored file is read once and verified; 0 = never
   ServiceLimits limits{};
+  WallClock wall_clock = SystemTime;  // for the times that entries and jobs keep
   TrainFunction train = TrainCharacter;
   // Receives sentences for the operator (StoreOptions::on_problem).
   std::function<void(const std::string& problem)> on_problem{};

@@ -14,6 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
+#include "pleat/base/wall_clock.h"
 #include "pleat/service/content_upload.h"
 #include "pleat/service/limits.h"
 #include "pleat/store/store.h"
@@ -23,8 +24,9 @@ namespace pleat {
 // The store together with the limits of the service. Thread-safe.
 class StoredFiles {
  public:
-  StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits)
-      : store_(std::move(store)), limits_(limits) {}
+  StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits,
+              WallClock clock = SystemTime)
+      : store_(std::move(store)), limits_(limits), clock_(std::move(clock)) {}
 
   Catalog& catalog() { return store_->catalog(); }
   UploadArea& uploads() { return store_->uploads(); }
@@ -32,11 +34,16 @@ class StoredFiles {
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 
-  // A file and its row appear and disappear together (see Store).
-  absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {
+  const WallClock& clock() const { return clock_; }
+
+  // A file and its row appear and disappear together (see Store). An entry that is new is created
+  // now.
+  absl::Status Add(EntryKind kind, CatalogEntry entry, std::string_view bytes) {
+    entry.created_unix_ms = absl::ToUnixMillis(clock_());
     return store_->Add(kind, entry, bytes);
   }
-  absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload) {
+  absl::Status Add(EntryKind kind, CatalogEntry entry, Upload* upload) {
+    entry.created_unix_ms = absl::ToUnixMillis(clock_());
     return store_->Add(kind, entry, upload);
   }
   absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
@@ -63,6 +70,7 @@ class StoredFiles {
  private:
   const std::unique_ptr<Store> store_;
   const ServiceLimits limits_;
+  const WallClock clock_;
   std::mutex mutex_;
   std::set<std::string> bad_rows_;  // that were reported; guarded by mutex_
 };

@@ -15,6 +15,7 @@
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/sequence_codec/compress_sequence.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
 
 namespace pleat {
@@ -35,6 +36,7 @@ struct CompressedSequenceInfo {
   FrameRate frame_rate;
   uint64_t size_bytes = 0;
   std::optional<CompressionRecord> record;  // none of files that were uploaded
+  EntryLife life{};
 };
 
 // Frames [begin, end) of a sequence; end 0: to its end.

@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "pleat/character/train_character.h"
 #include "pleat/sequence_codec/compress_sequence.h"
 #include "pleat/service/list_page.h"
@@ -58,6 +59,9 @@ struct JobInfo {
   std::vector<std::string> warnings;
   absl::Status error;     // why it failed or was cancelled
   std::string result_id;  // when it succeeded: the id of the model or the compressed sequence
+  // When it was created, was started the last time, and ended. None: it has not come to that, or an
+  // older version that wrote no times made the job.
+  std::optional<absl::Time> created, started, ended;
 };
 
 // A job at one moment.

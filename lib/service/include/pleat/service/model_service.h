@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
+#include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
 
 namespace pleat {
@@ -23,6 +24,7 @@ struct ModelInfo {
   uint64_t memory_bytes = 0;  // in the cache
   TrainOptions options;
   TrainingRecord record;
+  EntryLife life{};
 };
 
 // Thread-safe. kNotFound for an id that the service does not have.

@@ -11,6 +11,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
 
 namespace pleat {
@@ -21,6 +22,7 @@ struct SequenceInfo {
   int num_frames = 0, num_vertices = 0, num_faces = 0;
   FrameRate frame_rate;
   uint64_t size_bytes = 0;
+  EntryLife life{};
 };
 
 using SequenceUpload = ContentUpload<SequenceInfo>;
