@@ -62,6 +62,7 @@ class MockJobService : public JobService {
   MOCK_METHOD(absl::StatusOr<JobInfo>, Get, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<Page<JobInfo>>, ListPage, (const PageRequest& request), (override));
   MOCK_METHOD(absl::Status, Cancel, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<JobSubscription>>, Subscribe,
               (const std::string& id, std::function<void()> listener), (override));
 };

@@ -69,6 +69,13 @@ class RemoteJobs final : public JobService {
     return Call(&v1::JobService::Stub::CancelJob, request, &response);
   }
 
+  absl::Status Delete(const std::string& id) override {
+    v1::DeleteJobRequest request;
+    v1::DeleteJobResponse response;
+    request.set_id(id);
+    return Call(&v1::JobService::Stub::DeleteJob, request, &response);
+  }
+
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
       const std::string& id, std::function<void()> listener) override {
     return OpenRemoteSubscription(state_, id, std::move(listener));

@@ -67,6 +67,10 @@ LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner ru
           },
           [this](const JobInfo& info, int attempts) {
             return files_->catalog().Put(EntryKind::kJob, {info.id, EncodeRecord(info), attempts});
+          },
+          [this](const std::string& id) {
+            const absl::Status status = files_->catalog().Delete(EntryKind::kJob, id);
+            return absl::IsNotFound(status) ? absl::OkStatus() : status;
           }) {}
 
 absl::Status LocalJobs::Start() {
@@ -158,6 +162,8 @@ absl::StatusOr<Page<JobInfo>> LocalJobs::ListPage(const PageRequest& request) {
 }
 
 absl::Status LocalJobs::Cancel(const std::string& id) { return manager_.Cancel(id); }
+
+absl::Status LocalJobs::Delete(const std::string& id) { return manager_.Delete(id); }
 
 absl::StatusOr<std::unique_ptr<JobSubscription>> LocalJobs::Subscribe(
     const std::string& id, std::function<void()> listener) {

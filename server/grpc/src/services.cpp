@@ -45,6 +45,7 @@ class JobServiceImpl final : public v1::JobService::CallbackService {
   PLEAT_UNARY(GetJob, storage_executor)
   PLEAT_UNARY(ListJobs, storage_executor)
   PLEAT_UNARY(CancelJob, storage_executor)
+  PLEAT_UNARY(DeleteJob, storage_executor)
   grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(
       grpc::CallbackServerContext*, const v1::WatchJobRequest* request) override {
     return pleat::WatchJob(context_, *request);

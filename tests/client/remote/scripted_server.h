@@ -47,6 +47,7 @@ struct ScriptedJobs : v1::JobService::Service {
   PLEAT_SCRIPT_CALL(GetJob);
   PLEAT_SCRIPT_CALL(ListJobs);
   PLEAT_SCRIPT_CALL(CancelJob);
+  PLEAT_SCRIPT_CALL(DeleteJob);
   PLEAT_SCRIPT_STREAM(WatchJob);
 };
 

@@ -55,9 +55,18 @@ TEST(JobsVerbTest, AJobThatIsOverCannotBeCancelled) {
   EXPECT_THAT(outcome.err, HasSubstr(id));
 }
 
+TEST(JobsVerbTest, ADeletedJobIsForgottenAndItsModelStays) {
+  const TubeFiles files;
+  ASSERT_EQ(files.TrainInStore({"-q"}).code, ExitCode::kOk);
+  const auto jobs = nlohmann::json::parse(files.RunInStore({"jobs", "--json"}).out);
+  ASSERT_EQ(files.RunInStore({"jobs", "delete", jobs[0]["id"]}).code, ExitCode::kOk);
+  EXPECT_EQ(files.RunInStore({"jobs", "--json"}).out, "[]\n");
+  EXPECT_EQ(nlohmann::json::parse(files.RunInStore({"models", "--json"}).out).size(), 1u);
+}
+
 TEST(JobsVerbTest, MissingIdsAreToldApart) {
   const TubeFiles files;
-  for (const char* action : {"show", "cancel", "watch"}) {
+  for (const char* action : {"show", "cancel", "watch", "delete"}) {
     const Outcome without = files.RunInStore({"jobs", action});
     EXPECT_EQ(without.code, ExitCode::kUsage) << action;
     EXPECT_THAT(without.err, HasSubstr(std::string("'") + action + "' needs an id"));

@@ -26,6 +26,7 @@ class LocalJobs final : public JobService {
   absl::StatusOr<JobInfo> Get(const std::string& id) override;
   absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& request) override;
   absl::Status Cancel(const std::string& id) override;
+  absl::Status Delete(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
       const std::string& id, std::function<void()> listener) override;
 

@@ -98,6 +98,9 @@ class JobService {
   }
   // kFailedPrecondition when the job is final. A running job stops within a second.
   virtual absl::Status Cancel(const std::string& id) = 0;
+  // Forgets a job that is final, and its request id; what it made stays. kFailedPrecondition when
+  // the job is not final.
+  virtual absl::Status Delete(const std::string& id) = 0;
   // Calls `listener` after every change of the job or of the subscription's status, from any
   // thread. The listener must be quick and must not call the subscription: the news may be read
   // as soon as it has returned.

@@ -31,6 +31,8 @@ absl::Status ListJobs(HandlerContext& context, const v1::ListJobsRequest& reques
                       v1::ListJobsResponse* response);
 absl::Status CancelJob(HandlerContext& context, const v1::CancelJobRequest& request,
                        v1::CancelJobResponse* response);
+absl::Status DeleteJob(HandlerContext& context, const v1::DeleteJobRequest& request,
+                       v1::DeleteJobResponse* response);
 
 absl::Status GetModel(HandlerContext& context, const v1::GetModelRequest& request,
                       v1::GetModelResponse* response);
