@@ -28,6 +28,14 @@ class MockUpload : public ContentUpload<Info> {
 extern template class MockUpload<SequenceInfo>;
 extern template class MockUpload<CompressedSequenceInfo>;
 
+class MockDownload : public ContentDownload {
+ public:
+  MockDownload();
+  ~MockDownload() override;
+  MOCK_METHOD(uint64_t, size_bytes, (), (const, override));
+  MOCK_METHOD(absl::StatusOr<std::string>, Next, (), (override));
+};
+
 class MockSequenceService : public SequenceService {
  public:
   MockSequenceService();
@@ -76,8 +84,8 @@ class MockModelService : public ModelService {
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
-  MOCK_METHOD(absl::StatusOr<std::string>, ReadBytes,
-              (const std::string& id, uint64_t offset, uint64_t count), (override));
+  MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
+              (const std::string& id, uint64_t offset_bytes), (override));
 };
 
 class MockPoseSession : public PoseSession {
@@ -150,8 +158,8 @@ class MockCompressedSequenceService : public CompressedSequenceService {
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
-  MOCK_METHOD(absl::StatusOr<std::string>, ReadBytes,
-              (const std::string& id, uint64_t offset, uint64_t count), (override));
+  MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
+              (const std::string& id, uint64_t offset_bytes), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>>, BeginUpload,
               (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<DecodeSession>>, OpenDecode,

@@ -42,9 +42,9 @@ class RemoteModels final : public ModelService {
     return DownloadFile(*state_, id, progress, Start());
   }
 
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override {
-    return ReadFileBytes(id, offset, count, Start());
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override {
+    return OpenRemoteDownload(Start(), id, offset_bytes);
   }
 
  private:

@@ -101,9 +101,9 @@ absl::StatusOr<std::string> LocalCompressedSequences::Download(const std::string
   return files_->Download(EntryKind::kCompressedSequence, id, info.size_bytes, progress);
 }
 
-absl::StatusOr<std::string> LocalCompressedSequences::ReadBytes(const std::string& id,
-                                                                uint64_t offset, uint64_t count) {
-  return files_->ReadBytes(EntryKind::kCompressedSequence, id, offset, count);
+absl::StatusOr<std::unique_ptr<ContentDownload>> LocalCompressedSequences::OpenDownload(
+    const std::string& id, uint64_t offset_bytes) {
+  return files_->OpenDownload(EntryKind::kCompressedSequence, id, offset_bytes);
 }
 
 absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDecode(

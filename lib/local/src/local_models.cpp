@@ -27,9 +27,9 @@ absl::StatusOr<std::string> LocalModels::Download(const std::string& id, const P
   return files_->Download(EntryKind::kModel, id, info.size_bytes, progress);
 }
 
-absl::StatusOr<std::string> LocalModels::ReadBytes(const std::string& id, uint64_t offset,
-                                                   uint64_t count) {
-  return files_->ReadBytes(EntryKind::kModel, id, offset, count);
+absl::StatusOr<std::unique_ptr<ContentDownload>> LocalModels::OpenDownload(const std::string& id,
+                                                                           uint64_t offset_bytes) {
+  return files_->OpenDownload(EntryKind::kModel, id, offset_bytes);
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const std::string& id) {

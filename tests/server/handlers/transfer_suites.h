@@ -122,7 +122,7 @@ REGISTER_TYPED_TEST_SUITE_P(UploadHandlerTest, HandsOverThePiecesInOrder,
                             AnEmptyPieceIsRefused, PassesOnThatAnotherWriterHoldsIt,
                             PassesOnThatTheFileIsBad);
 
-// Case: Info, Request, Response, Mock (of a MockService), Download (starts the call).
+// Case: Request, Response, Mock (of a MockService), Download (starts the call).
 template <typename Case>
 class DownloadHandlerTest : public testing::Test {
  protected:
@@ -130,14 +130,14 @@ class DownloadHandlerTest : public testing::Test {
   static constexpr uint64_t kSize = kChunk + 3;
 
   auto& service() { return Case::Mock(mock_.service); }
-  void ExpectInfo() {
-    typename Case::Info info;
-    info.id = kId;
-    info.size_bytes = kSize;
-    EXPECT_CALL(service(), Get(kId)).WillOnce(testing::Return(info));
-  }
-  void ExpectRead(uint64_t offset, const std::string& bytes) {
-    EXPECT_CALL(service(), ReadBytes(kId, offset, kChunk)).WillOnce(testing::Return(bytes));
+  // The file is opened at `offset` and gives `pieces`.
+  void ExpectDownload(uint64_t offset, const std::vector<std::string>& pieces) {
+    auto download = std::make_unique<testing::NiceMock<MockDownload>>();
+    ON_CALL(*download, size_bytes).WillByDefault(testing::Return(kSize));
+    auto& next = EXPECT_CALL(*download, Next).Times(static_cast<int>(pieces.size()));
+    for (const std::string& piece : pieces) next.WillOnce(testing::Return(piece));
+    EXPECT_CALL(service(), OpenDownload(kId, offset))
+        .WillOnce(testing::Return(testing::ByMove(std::move(download))));
   }
   grpc::Status Download(const std::string& id, uint64_t offset) {
     typename Case::Request request;
@@ -160,16 +160,13 @@ TYPED_TEST_SUITE_P(DownloadHandlerTest);
 
 TYPED_TEST_P(DownloadHandlerTest, SendsTheFileInPieces) {
   const std::string first(this->kChunk, 'x');
-  this->ExpectInfo();
-  this->ExpectRead(0, first);
-  this->ExpectRead(this->kChunk, "end");
+  this->ExpectDownload(0, {first, "end"});
   EXPECT_TRUE(this->Download(kId, 0).ok());
   EXPECT_TRUE(this->bytes_ == first + "end");
 }
 
 TYPED_TEST_P(DownloadHandlerTest, GoesOnWhereTheClientSays) {
-  this->ExpectInfo();
-  this->ExpectRead(this->kChunk, "end");
+  this->ExpectDownload(this->kChunk, {"end"});
   EXPECT_TRUE(this->Download(kId, this->kChunk).ok());
   EXPECT_EQ(this->bytes_, "end");
 }
@@ -180,14 +177,19 @@ TYPED_TEST_P(DownloadHandlerTest, AnIdThatIsNoneNeverReachesTheService) {
 }
 
 TYPED_TEST_P(DownloadHandlerTest, AFileThatIsCutOffIsNotTheWholeFile) {
-  this->ExpectInfo();
-  this->ExpectRead(0, "");
+  this->ExpectDownload(0, {""});
   EXPECT_THAT(this->Download(kId, 0),
               HasGrpcStatus(grpc::StatusCode::DATA_LOSS, testing::HasSubstr("cut off")));
 }
 
+TYPED_TEST_P(DownloadHandlerTest, PassesOnThatThereIsNone) {
+  EXPECT_CALL(this->service(), OpenDownload(kId, 0))
+      .WillOnce(testing::Return(testing::ByMove(absl::NotFoundError("none"))));
+  EXPECT_THAT(this->Download(kId, 0), HasGrpcStatus(grpc::StatusCode::NOT_FOUND, "none"));
+}
+
 REGISTER_TYPED_TEST_SUITE_P(DownloadHandlerTest, SendsTheFileInPieces, GoesOnWhereTheClientSays,
                             AnIdThatIsNoneNeverReachesTheService,
-                            AFileThatIsCutOffIsNotTheWholeFile);
+                            AFileThatIsCutOffIsNotTheWholeFile, PassesOnThatThereIsNone);
 
 }  // namespace pleat

@@ -28,8 +28,8 @@ class LocalCompressedSequences final : public CompressedSequenceService {
   absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override;
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override;
   absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
       const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) override;
   absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,

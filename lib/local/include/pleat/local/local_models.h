@@ -21,8 +21,8 @@ class LocalModels final : public ModelService {
   absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override;
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override;
 
   // Returns the model, from the cache or loaded from the store. It stays in memory as long as the
   // handle lives. kNotFound when there is none, kDataLoss when its file is damaged.

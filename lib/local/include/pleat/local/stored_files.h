@@ -15,6 +15,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/base/wall_clock.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
 #include "pleat/service/limits.h"
 #include "pleat/store/store.h"
@@ -54,11 +55,12 @@ class StoredFiles {
   // Tells the operator about an entry whose row cannot be read, once for each.
   void ReportBadRow(EntryKind kind, const std::string& id, const absl::Status& why);
 
-  // Returns `count` bytes of the file of an entry from `offset` on, fewer at its end. A read from
-  // the start verifies the whole file first. kNotFound when there is no such entry, kDataLoss when
-  // its file has changed.
-  absl::StatusOr<std::string> ReadBytes(EntryKind kind, const std::string& id, uint64_t offset,
-                                        uint64_t count);
+  // Opens the file of an entry from `offset_bytes` on. A download from the start verifies the whole
+  // file first. kNotFound when there is no such entry, kDataLoss when its file has changed,
+  // kOutOfRange when the offset is behind its end.
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(EntryKind kind,
+                                                                const std::string& id,
+                                                                uint64_t offset_bytes);
   // Returns the whole file, which has `size_bytes`. kDataLoss when the file is shorter.
   absl::StatusOr<std::string> Download(EntryKind kind, const std::string& id, uint64_t size_bytes,
                                        const Progress& progress);

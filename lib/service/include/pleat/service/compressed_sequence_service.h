@@ -14,6 +14,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
 #include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
@@ -86,9 +87,10 @@ class CompressedSequenceService {
   virtual absl::Status Delete(const std::string& id) = 0;
   // The whole file.
   virtual absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) = 0;
-  // `count` bytes of the file from `offset`, fewer at its end.
-  virtual absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                                uint64_t count) = 0;
+  // The file in pieces, from `offset_bytes` on. kOutOfRange when that is behind its end, kDataLoss
+  // when the file has changed.
+  virtual absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                        uint64_t offset_bytes) = 0;
   // As SequenceService::BeginUpload, which also tells what has arrived.
   virtual absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
       const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
 
@@ -44,9 +46,10 @@ class ModelService {
   virtual absl::Status Delete(const std::string& id) = 0;
   // The whole model file.
   virtual absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) = 0;
-  // `count` bytes of the model file from `offset`, fewer at its end.
-  virtual absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                                uint64_t count) = 0;
+  // The file in pieces, from `offset_bytes` on. kOutOfRange when that is behind its end, kDataLoss
+  // when the file has changed.
+  virtual absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                        uint64_t offset_bytes) = 0;
 };
 
 }  // namespace pleat
