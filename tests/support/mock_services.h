@@ -21,6 +21,7 @@ namespace pleat {
 template <typename Info>
 class MockUpload : public ContentUpload<Info> {
  public:
+  MOCK_METHOD(bool, complete, (), (const, override));
   MOCK_METHOD(absl::Status, Append, (std::string_view bytes), (override));
   MOCK_METHOD(uint64_t, received_bytes, (), (const, override));
   MOCK_METHOD(absl::StatusOr<Info>, Finish, (), (override));
@@ -40,15 +41,19 @@ class MockSequenceService : public SequenceService {
  public:
   MockSequenceService();
   ~MockSequenceService() override;
-  MOCK_METHOD(absl::StatusOr<SequenceInfo>, Upload, (const MeshSequence&, const Progress&),
-              (override));
+  MOCK_METHOD(absl::StatusOr<SequenceInfo>, Upload,
+              (const MeshSequence&, const Progress&, absl::Duration ttl), (override));
   MOCK_METHOD(absl::StatusOr<SequenceInfo>, Get, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<Page<SequenceInfo>>, ListPage, (const PageRequest& request),
               (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
+  MOCK_METHOD(absl::Status, DeleteUpload, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<UploadStatus>, QueryUpload, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<SequenceUpload>>, BeginUpload,
-              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes), (override));
+              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+               absl::Duration ttl),
+              (override));
 };
 
 class MockJobSubscription : public JobSubscription {
@@ -82,6 +87,7 @@ class MockModelService : public ModelService {
   MOCK_METHOD(absl::StatusOr<ModelInfo>, Get, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<Page<ModelInfo>>, ListPage, (const PageRequest& request), (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
@@ -151,17 +157,20 @@ class MockCompressedSequenceService : public CompressedSequenceService {
   MockCompressedSequenceService();
   ~MockCompressedSequenceService() override;
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Upload,
-              (const std::string& file, const Progress&), (override));
+              (const std::string& file, const Progress&, absl::Duration ttl), (override));
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Get, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<Page<CompressedSequenceInfo>>, ListPage, (const PageRequest& request),
               (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
               (const std::string& id, uint64_t offset_bytes), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>>, BeginUpload,
-              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes), (override));
+              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+               absl::Duration ttl),
+              (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<DecodeSession>>, OpenDecode,
               (const std::string& id, FrameRange range), (override));
 };

@@ -19,7 +19,11 @@ inline ErrorSummary FullErrors() {
   return errors;
 }
 
-inline EntryLife FullLife() { return {.created = absl::FromUnixMillis(1'796'072'709'123)}; }
+inline EntryLife FullLife() {
+  return {.created = absl::FromUnixMillis(1'796'072'709'123),
+          .expires = absl::FromUnixMillis(1'796'072'719'123),
+          .pinned = true};
+}
 
 inline SequenceInfo FullSequence() { return {kId, "walk", 7, 8, 9, {30000, 1001}, 11, FullLife()}; }
 
@@ -49,6 +53,7 @@ inline JobInfo FullJob(JobOptions options) {
   job.created = absl::FromUnixMillis(1'796'072'709'123);
   job.started = *job.created + absl::Seconds(1);
   job.ended = *job.created + absl::Seconds(2);
+  job.result_ttl = absl::Seconds(90);
   return job;
 }
 

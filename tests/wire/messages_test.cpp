@@ -308,6 +308,23 @@ TEST(MessagesTest, TimesThatAreNoneAreRefused) {
   }
 }
 
+TEST(MessagesTest, TimesToLiveAreSecondsAndZeroIsForEver) {
+  EXPECT_EQ(TtlToSeconds(kKeepForEver), 0);
+  EXPECT_EQ(TtlToSeconds(absl::Milliseconds(1)), 1);  // never shorter than it was told
+  EXPECT_EQ(TtlToSeconds(absl::Milliseconds(1001)), 2);
+  EXPECT_EQ(TtlFromSeconds(0, "ttl").value(), kKeepForEver);
+  const int64_t century = int64_t{100} * 365 * 24 * 3600;
+  for (const int64_t seconds : {int64_t{1}, century}) {
+    EXPECT_EQ(TtlFromSeconds(seconds, "ttl").value(), absl::Seconds(seconds));
+    EXPECT_EQ(TtlToSeconds(absl::Seconds(seconds)), seconds);
+  }
+  EXPECT_EQ(TtlToSeconds(absl::Seconds(century + 1)), century);
+  for (const int64_t wrong : {int64_t{-1}, century + 1, std::numeric_limits<int64_t>::min()}) {
+    EXPECT_THAT(TtlFromSeconds(wrong, "ttl_seconds"),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("ttl_seconds")));
+  }
+}
+
 TEST(MessagesTest, NamesThatAreNoUtf8StillCrossTheWire) {
   SequenceInfo sequence{kId, "\xff\xfe", 1, 1, 1, {30, 1}, 1};
   EXPECT_EQ(FromProto(Reparse(ToProto(sequence)))->name, "\xef\xbf\xbd\xef\xbf\xbd");

@@ -27,11 +27,17 @@ void AddTime(const char* name, const std::optional<absl::Time>& time, ordered_js
   if (time) (*json)[name] = TimeForJson(*time);
 }
 
+void AddLife(const EntryLife& life, ordered_json* json) {
+  AddTime("created", life.created, json);
+  AddTime("expires", life.expires, json);
+  if (life.pinned) (*json)["pinned"] = true;
+}
+
 }  // namespace
 
 ordered_json SequenceJson(const SequenceInfo& info) {
   ordered_json json = StoredMeshesJson(info);
-  AddTime("created", info.life.created, &json);
+  AddLife(info.life, &json);
   return json;
 }
 
@@ -62,6 +68,9 @@ ordered_json JobJson(const JobInfo& info) {
   AddTime("created", info.created, &json);
   AddTime("started", info.started, &json);
   AddTime("ended", info.ended, &json);
+  if (info.result_ttl != kKeepForEver) {
+    json["result_ttl_seconds"] = absl::ToDoubleSeconds(info.result_ttl);
+  }
   return json;
 }
 
@@ -89,13 +98,13 @@ ordered_json ModelJson(const ModelInfo& info) {
                        {"joints", joints},
                        {"warnings", info.record.warnings},
                        {"options", OptionsJson(info.options)}};
-  AddTime("created", info.life.created, &json);
+  AddLife(info.life, &json);
   return json;
 }
 
 ordered_json CompressedSequenceJson(const CompressedSequenceInfo& info) {
   ordered_json json = StoredMeshesJson(info);
-  AddTime("created", info.life.created, &json);
+  AddLife(info.life, &json);
   if (info.record) {
     json["sequence_id"] = info.record->sequence_id;
     json["options"] = OptionsJson(info.record->options);

@@ -6,6 +6,10 @@ std::string TimeText(const std::optional<absl::Time>& time) {
   return time ? absl::FormatTime("%Y-%m-%d %H:%M:%S", *time, absl::UTCTimeZone()) : "";
 }
 
+std::string KeptUntilText(const EntryLife& life) {
+  return life.pinned ? "pinned" : TimeText(life.expires);
+}
+
 std::string DurationText(const std::optional<absl::Time>& begin,
                          const std::optional<absl::Time>& end) {
   if (!begin || !end) return "";

@@ -15,7 +15,8 @@ std::vector<std::string> ModelRow(const ModelInfo& model) {
           absl::StrCat(model.record.num_frames),
           absl::StrFormat("%.3f", model.record.reconstruction.mean_percent),
           FormatBytes(static_cast<double>(model.size_bytes)),
-          TimeText(model.life.created)};
+          TimeText(model.life.created),
+          KeptUntilText(model.life)};
 }
 
 }  // namespace
@@ -29,6 +30,8 @@ void AddModelsVerb(CLI::App& app, Session& session) {
        .list = [](CharacterService& service) { return service.models().List(); },
        .remove = [](CharacterService& service,
                     const std::string& id) { return service.models().Delete(id); },
+       .pin = [](CharacterService& service, const std::string& id,
+                 bool pinned) { return service.models().SetPinned(id, pinned); },
        .download = [](CharacterService& service, const std::string& id,
                       const Progress& progress) { return service.models().Download(id, progress); },
        .file_ending = ".pleat",

@@ -123,9 +123,10 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
  public:
   explicit RemoteCompressedSequences(RemoteState* state) : state_(state) {}
 
-  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
-                                                const Progress& progress) override {
-    return UploadFile(*state_, Calls(), ToHex(ComputeSha256(file)), file, progress);
+  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file, const Progress& progress,
+                                                absl::Duration ttl) override {
+    return UploadFile(*state_, Calls(), {ToHex(ComputeSha256(file)), file.size(), ttl}, file,
+                      progress);
   }
 
   absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) override {
@@ -155,6 +156,14 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
     return Call(&v1::CompressedSequenceService::Stub::DeleteCompressedSequence, request, &response);
   }
 
+  absl::Status SetPinned(const std::string& id, bool pinned) override {
+    v1::PinCompressedSequenceRequest request;
+    v1::PinCompressedSequenceResponse response;
+    request.set_id(id);
+    request.set_pinned(pinned);
+    return Call(&v1::CompressedSequenceService::Stub::PinCompressedSequence, request, &response);
+  }
+
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override {
     return DownloadFile(*state_, id, progress, Start());
   }
@@ -165,10 +174,11 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
   }
 
   absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
-      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) override {
+      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+      absl::Duration ttl) override {
     return std::make_unique<
         RemoteUpload<CompressedSequenceInfo, v1::UploadCompressedSequenceResponse>>(
-        Calls(), id, size_bytes, offset_bytes, Progress());
+        Calls(), UploadedFile{id, size_bytes, ttl}, offset_bytes, Progress());
   }
 
   absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,

@@ -31,6 +31,7 @@ class RemoteJobs final : public JobService {
     message.set_model_name(request.model_name);
     message.set_rig(request.rig);
     message.set_request_id(request.request_id.empty() ? MakeRequestId() : request.request_id);
+    message.set_model_ttl_seconds(TtlToSeconds(request.model_ttl));
     PLEAT_RETURN_IF_ERROR(Create(&v1::JobService::Stub::CreateTrainingJob, message, &response));
     return FromProto(response.job());
   }
@@ -41,6 +42,7 @@ class RemoteJobs final : public JobService {
     message.set_sequence_id(request.sequence_id);
     *message.mutable_options() = ToProto(request.options);
     message.set_request_id(request.request_id.empty() ? MakeRequestId() : request.request_id);
+    message.set_result_ttl_seconds(TtlToSeconds(request.result_ttl));
     PLEAT_RETURN_IF_ERROR(Create(&v1::JobService::Stub::CreateCompressionJob, message, &response));
     return FromProto(response.job());
   }

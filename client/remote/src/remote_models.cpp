@@ -38,6 +38,14 @@ class RemoteModels final : public ModelService {
     return Call(&v1::ModelService::Stub::DeleteModel, request, &response);
   }
 
+  absl::Status SetPinned(const std::string& id, bool pinned) override {
+    v1::PinModelRequest request;
+    v1::PinModelResponse response;
+    request.set_id(id);
+    request.set_pinned(pinned);
+    return Call(&v1::ModelService::Stub::PinModel, request, &response);
+  }
+
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override {
     return DownloadFile(*state_, id, progress, Start());
   }

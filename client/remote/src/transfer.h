@@ -19,6 +19,8 @@
 #include "pleat/base/status.h"
 #include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
+#include "pleat/wire/service_messages.h"
 #include "remote_state.h"
 
 namespace pleat {
@@ -34,22 +36,30 @@ struct UploadCalls {
   std::function<absl::StatusOr<Info>(const Response&)> info_of;
 };
 
+// What is uploaded, and how long the server keeps it at least.
+struct UploadedFile {
+  std::string id;
+  uint64_t size_bytes = 0;
+  absl::Duration ttl = kKeepForEver;
+};
+
 // One call of an upload. The server may end it early, when it has the file already or refuses it.
 // What is appended after that goes nowhere, and Finish says how the call ended.
 template <typename Info, typename Response>
 class RemoteUpload final : public ContentUpload<Info> {
  public:
   // progress: its cancellation cancels the call.
-  RemoteUpload(const UploadCalls<Info, Response>& calls, const std::string& id, uint64_t size_bytes,
+  RemoteUpload(const UploadCalls<Info, Response>& calls, const UploadedFile& file,
                uint64_t offset_bytes, const Progress& progress)
       : info_of_(calls.info_of),
         received_bytes_(offset_bytes),
         watcher_(&context_, progress),
         writer_(calls.start(&context_, &response_)) {
     v1::UploadSequenceRequest request;
-    request.mutable_header()->set_id(id);
-    request.mutable_header()->set_size_bytes(size_bytes);
+    request.mutable_header()->set_id(file.id);
+    request.mutable_header()->set_size_bytes(file.size_bytes);
     request.mutable_header()->set_offset_bytes(offset_bytes);
+    request.mutable_header()->set_ttl_seconds(TtlToSeconds(file.ttl));
     open_ = writer_->Write(request);
   }
   ~RemoteUpload() override {
@@ -94,9 +104,9 @@ class RemoteUpload final : public ContentUpload<Info> {
 
 // Makes one attempt to send the rest of `bytes` from `offset` on.
 template <typename Info, typename Response>
-absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const std::string& id,
+absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const UploadedFile& file,
                               std::string_view bytes, uint64_t offset, const Progress& progress) {
-  RemoteUpload<Info, Response> upload(calls, id, bytes.size(), offset, progress);
+  RemoteUpload<Info, Response> upload(calls, file, offset, progress);
   while (offset < bytes.size()) {
     const size_t count = std::min<size_t>(kUploadChunkBytes, bytes.size() - offset);
     if (!upload.Append(bytes.substr(offset, count)).ok()) break;  // Finish says why
@@ -107,17 +117,17 @@ absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const st
   return upload.Finish();
 }
 
-// Uploads `bytes`, whose content id is `id`. Before each attempt it asks the server how much is
+// Uploads `bytes`, the content of `file`. Before each attempt it asks the server how much is
 // there, because a call that broke off does not say what has arrived.
 template <typename Info, typename Response>
 absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info, Response>& calls,
-                                const std::string& id, const std::string& bytes,
+                                const UploadedFile& file, const std::string& bytes,
                                 const Progress& progress) {
   uint64_t farthest = 0;
   for (int attempt = 1;; ++attempt) {
     v1::QueryUploadRequest query;
     v1::QueryUploadResponse known;
-    query.set_id(id);
+    query.set_id(file.id);
     absl::StatusOr<Info> result = absl::UnknownError("not asked");
     if (const absl::Status asked = state.Call(
             state.sequences.get(), &v1::SequenceService::Stub::QueryUpload, query, &known);
@@ -127,7 +137,7 @@ absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info
       if (known.received_bytes() > farthest) attempt = 1;  // progress was made
       farthest = std::max<uint64_t>(farthest, known.received_bytes());
       const uint64_t offset = known.received_bytes() <= bytes.size() ? known.received_bytes() : 0;
-      result = SendRest(calls, id, bytes, offset, progress);
+      result = SendRest(calls, file, bytes, offset, progress);
     }
     PLEAT_RETURN_IF_ERROR(progress.Report(result.ok() ? 1 : 0));  // says that it was cancelled
     if (result.ok()) return result;

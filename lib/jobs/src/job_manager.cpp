@@ -132,10 +132,14 @@ absl::StatusOr<JobInfo> JobManager::Get(const std::string& id) const {
   return job->snapshot().info;
 }
 
-std::vector<JobInfo> JobManager::List() const {
+void JobManager::Visit(const std::function<void(const JobInfo&)>& visit) const {
   std::lock_guard lock(mutex_);
+  for (const auto& [number, id] : order_) visit(jobs_.at(id).job->snapshot().info);
+}
+
+std::vector<JobInfo> JobManager::List() const {
   std::vector<JobInfo> jobs;
-  for (const auto& [number, id] : order_) jobs.push_back(jobs_.at(id).job->snapshot().info);
+  Visit([&](const JobInfo& job) { jobs.push_back(job); });
   return jobs;
 }
 

@@ -19,6 +19,15 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
     service->scrubber_ =
         std::make_unique<Scrubber>(&service->files_.store(), options.scrub_seconds);
   }
+  if (options.sweep_seconds > 0) {
+    LocalModels* const models = &service->models_;
+    service->sweeper_ = std::make_unique<Sweeper>(
+        RetentionTarget{.files = &service->files_,
+                        .jobs = service->jobs_.retention(),
+                        .on_model_removed = [models](const std::string& id) { models->Forget(id); },
+                        .on_removed = options.on_removed},
+        options.retention, options.sweep_seconds);
+  }
   return service;
 }
 

@@ -128,6 +128,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
   draft.request_id = request.request_id;
+  draft.result_ttl = request.model_ttl;
   draft.name = request.model_name.empty() ? clips[0].name : request.model_name;
   if (!request.rig.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const RigFile rig, runner_.DecodeUserRig(request.rig));
@@ -146,6 +147,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& r
   draft.sequence_ids = {request.sequence_id};
   draft.options = request.options;
   draft.request_id = request.request_id;
+  draft.result_ttl = request.result_ttl;
   draft.name = std::move(info.name);
   return manager_.Create(std::move(draft));
 }
@@ -159,6 +161,24 @@ absl::StatusOr<Page<JobInfo>> LocalJobs::ListPage(const PageRequest& request) {
     if (absl::StatusOr<JobInfo> now = manager_.Get(info.id); now.ok()) info = *std::move(now);
   }
   return page;
+}
+
+JobsOfRetention LocalJobs::retention() {
+  return {.ended = [this]() -> absl::StatusOr<std::vector<EndedJob>> {
+            std::vector<EndedJob> ended;
+            manager_.Visit([&](const JobInfo& job) {
+              if (IsFinal(job.state)) ended.push_back({job.id, job.name, job.ended});
+            });
+            return ended;
+          },
+          .remove = [this](const std::string& id) { return manager_.Delete(id); },
+          .sequences_in_use = [this]() -> absl::StatusOr<std::set<std::string>> {
+            std::set<std::string> ids;
+            manager_.Visit([&](const JobInfo& job) {
+              if (!IsFinal(job.state)) ids.insert(job.sequence_ids.begin(), job.sequence_ids.end());
+            });
+            return ids;
+          }};
 }
 
 absl::Status LocalJobs::Cancel(const std::string& id) { return manager_.Cancel(id); }

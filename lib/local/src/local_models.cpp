@@ -22,6 +22,10 @@ absl::Status LocalModels::Delete(const std::string& id) {
   return absl::OkStatus();
 }
 
+absl::Status LocalModels::SetPinned(const std::string& id, bool pinned) {
+  return files_->catalog().SetPinned(EntryKind::kModel, id, pinned);
+}
+
 absl::StatusOr<std::string> LocalModels::Download(const std::string& id, const Progress& progress) {
   PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, Get(id));
   return files_->Download(EntryKind::kModel, id, info.size_bytes, progress);

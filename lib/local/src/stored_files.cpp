@@ -1,5 +1,6 @@
 #include "pleat/local/stored_files.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -26,6 +27,18 @@ class StoredDownload final : public ContentDownload {
 };
 
 }  // namespace
+
+int64_t StoredFiles::ExpiryOf(absl::Time now, absl::Duration ttl) {
+  if (ttl == kKeepForEver) return 0;
+  return std::max<int64_t>(1, absl::ToUnixMillis(now + ttl));
+}
+
+CatalogEntry StoredFiles::BornNow(CatalogEntry entry, absl::Duration ttl) const {
+  // Whole milliseconds, as they are kept: so the difference of the two is the time to live.
+  entry.created_unix_ms = absl::ToUnixMillis(clock_());
+  entry.expires_unix_ms = ExpiryOf(absl::FromUnixMillis(entry.created_unix_ms), ttl);
+  return entry;
+}
 
 void StoredFiles::ReportBadRow(EntryKind kind, const std::string& id, const absl::Status& why) {
   {

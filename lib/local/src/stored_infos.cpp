@@ -7,6 +7,8 @@ namespace pleat {
 EntryLife LifeOf(const CatalogEntry& entry) {
   EntryLife life;
   if (entry.created_unix_ms > 0) life.created = absl::FromUnixMillis(entry.created_unix_ms);
+  if (entry.expires_unix_ms > 0) life.expires = absl::FromUnixMillis(entry.expires_unix_ms);
+  life.pinned = entry.pinned;
   return life;
 }
 

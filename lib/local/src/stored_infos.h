@@ -1,6 +1,7 @@
 // Read rows of the catalog as the descriptions that they hold.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +52,21 @@ template <typename Info>
 absl::StatusOr<Info> GetStored(Catalog& catalog, const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(const CatalogEntry entry, catalog.Get(StoredKind<Info>::kind, id));
   return InfoOf<Info>(entry);
+}
+
+// Returns the upload of a file that is stored and intact, and keeps it for `ttl` from now on; null
+// when it has to be uploaded.
+template <typename Info>
+absl::StatusOr<std::unique_ptr<ContentUpload<Info>>> FindComplete(StoredFiles* files,
+                                                                  const std::string& id,
+                                                                  absl::Duration ttl) {
+  if (!GetStored<Info>(files->catalog(), id).ok() || !files->IsIntact(id)) return nullptr;
+  const absl::Status prolonged = files->Prolong(StoredKind<Info>::kind, id, ttl);
+  if (absl::IsNotFound(prolonged)) return nullptr;  // deleted in this moment
+  PLEAT_RETURN_IF_ERROR(prolonged);
+  absl::StatusOr<Info> info = GetStored<Info>(files->catalog(), id);
+  if (!info.ok()) return nullptr;
+  return std::make_unique<KnownUpload<Info>>(*std::move(info));
 }
 
 // The rows of one page, and the token of the next one.

@@ -11,8 +11,8 @@
 namespace pleat {
 namespace {
 
-// Version 1 had no tables but `entries`. Version 2 had neither the index nor the last three columns
-// of `entries`.
+// Version 1 had no tables but `entries`. Version 2 had neither the indexes nor the last three
+// columns of `entries`.
 constexpr int kSchemaVersion = 3;
 
 // The two triggers keep `removals` right whatever changes the rows: an entry that goes leaves the
@@ -29,6 +29,7 @@ constexpr char kSchema[] =
     "ALTER TABLE entries ADD COLUMN expires_ms INTEGER NOT NULL DEFAULT 0;"
     "ALTER TABLE entries ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0;"
     "CREATE INDEX entries_in_order ON entries (kind, position);"
+    "CREATE INDEX entries_that_expire ON entries (expires_ms) WHERE expires_ms > 0;"
     "CREATE TABLE IF NOT EXISTS properties (name TEXT PRIMARY KEY, value TEXT NOT NULL);"
     "CREATE TABLE IF NOT EXISTS removals (id TEXT PRIMARY KEY) WITHOUT ROWID;"
     "CREATE TRIGGER IF NOT EXISTS entry_removed AFTER DELETE ON entries WHEN OLD.kind <> 'job'"
@@ -210,14 +211,52 @@ absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListPage(EntryKind kind, int6
   return entries;
 }
 
-absl::Status Catalog::Delete(EntryKind kind, const std::string& id) {
+absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListExpired(EntryKind kind,
+                                                               int64_t now_unix_ms) {
+  if (!has_lives_) return std::vector<CatalogEntry>();
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(
+      reader_.get(),
+      Select("WHERE expires_ms>0 AND expires_ms<=?2 AND kind=?1 AND pinned=0 ORDER BY position")
+          .c_str());
+  statement.Bind(1, EntryKindName(kind));
+  statement.Bind(2, now_unix_ms);
+  return ReadEntries(&statement);
+}
+
+absl::Status Catalog::Change(const char* sql, EntryKind kind, const std::string& id,
+                             int64_t value) {
   std::lock_guard lock(writer_->mutex());
-  Statement statement(writer_.get(), "DELETE FROM entries WHERE kind=?1 AND id=?2");
+  Statement statement(writer_.get(), sql);
   statement.Bind(1, EntryKindName(kind));
   statement.Bind(2, id);
+  statement.Bind(3, value);
   PLEAT_RETURN_IF_ERROR(statement.Step("change").status());
   if (sqlite3_changes(writer_->handle()) > 0) return absl::OkStatus();
   return NotThere(kind, id);
+}
+
+absl::Status Catalog::Delete(EntryKind kind, const std::string& id) {
+  return Change("DELETE FROM entries WHERE kind=?1 AND id=?2 AND ?3=0", kind, id, 0);
+}
+
+absl::Status Catalog::DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms) {
+  return Change(
+      "DELETE FROM entries WHERE kind=?1 AND id=?2"
+      " AND pinned=0 AND expires_ms>0 AND expires_ms<=?3",
+      kind, id, now_unix_ms);
+}
+
+absl::Status Catalog::SetPinned(EntryKind kind, const std::string& id, bool pinned) {
+  return Change("UPDATE entries SET pinned=?3 WHERE kind=?1 AND id=?2", kind, id, pinned ? 1 : 0);
+}
+
+absl::Status Catalog::Prolong(EntryKind kind, const std::string& id, int64_t expires_unix_ms) {
+  return Change(
+      "UPDATE entries SET expires_ms="
+      "CASE WHEN expires_ms=0 OR ?3=0 THEN 0 WHEN expires_ms<?3 THEN ?3 ELSE expires_ms END"
+      " WHERE kind=?1 AND id=?2",
+      kind, id, expires_unix_ms);
 }
 
 absl::StatusOr<std::vector<std::string>> Catalog::Ids(const char* sql) {

@@ -85,6 +85,7 @@ v1::Job ToProto(const JobInfo& info) {
   if (info.created) *message.mutable_created() = ToProto(*info.created);
   if (info.started) *message.mutable_started() = ToProto(*info.started);
   if (info.ended) *message.mutable_ended() = ToProto(*info.ended);
+  message.set_result_ttl_seconds(TtlToSeconds(info.result_ttl));
   return message;
 }
 
@@ -100,6 +101,8 @@ absl::Status TimesFromProto(const v1::Job& message, JobInfo* info) {
   if (message.has_ended()) {
     PLEAT_ASSIGN_OR_RETURN(info->ended, FromProto(message.ended(), "job.ended"));
   }
+  PLEAT_ASSIGN_OR_RETURN(info->result_ttl,
+                         TtlFromSeconds(message.result_ttl_seconds(), "job.result_ttl_seconds"));
   return absl::OkStatus();
 }
 

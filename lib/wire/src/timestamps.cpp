@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/wire/service_messages.h"
 
 namespace pleat {
 namespace {
@@ -11,6 +12,8 @@ namespace {
 constexpr int64_t kMinSeconds = -62'135'596'800;
 constexpr int64_t kMaxSeconds = 253'402'300'799;
 constexpr int kNanosPerSecond = 1'000'000'000;
+
+constexpr int64_t kMaxTtlSeconds = int64_t{100} * 365 * 24 * 3600;
 
 }  // namespace
 
@@ -33,6 +36,20 @@ absl::StatusOr<absl::Time> FromProto(const google::protobuf::Timestamp& message,
                      " ns since 1970, which is no time of a calendar"));
   }
   return absl::FromUnixSeconds(message.seconds()) + absl::Nanoseconds(message.nanos());
+}
+
+int64_t TtlToSeconds(absl::Duration ttl) {
+  if (ttl == kKeepForEver) return 0;
+  const int64_t seconds = absl::ToInt64Seconds(absl::Ceil(ttl, absl::Seconds(1)));
+  return std::clamp<int64_t>(seconds, 1, kMaxTtlSeconds);
+}
+
+absl::StatusOr<absl::Duration> TtlFromSeconds(int64_t seconds, const std::string& what) {
+  if (seconds < 0 || seconds > kMaxTtlSeconds) {
+    return absl::InvalidArgumentError(absl::StrCat(what, " is ", seconds, " s, allowed are 1 to ",
+                                                   kMaxTtlSeconds, ", and 0 for ever"));
+  }
+  return seconds == 0 ? kKeepForEver : absl::Seconds(seconds);
 }
 
 }  // namespace pleat

@@ -22,6 +22,8 @@ absl::StatusOr<absl::Time> FromProto(const google::protobuf::Timestamp& message,
 template <typename Message>
 void LifeToProto(const EntryLife& life, Message* message) {
   if (life.created) *message->mutable_created() = ToProto(*life.created);
+  if (life.expires) *message->mutable_expires() = ToProto(*life.expires);
+  message->set_pinned(life.pinned);
 }
 
 // what: the name of the message in errors, such as "sequence".
@@ -31,6 +33,10 @@ absl::StatusOr<EntryLife> LifeFromProto(const Message& message, const std::strin
   if (message.has_created()) {
     PLEAT_ASSIGN_OR_RETURN(life.created, FromProto(message.created(), what + ".created"));
   }
+  if (message.has_expires()) {
+    PLEAT_ASSIGN_OR_RETURN(life.expires, FromProto(message.expires(), what + ".expires"));
+  }
+  life.pinned = message.pinned();
   return life;
 }
 

@@ -28,6 +28,8 @@ class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
   PLEAT_UNARY(GetSequence, storage_executor)
   PLEAT_UNARY(ListSequences, storage_executor)
   PLEAT_UNARY(DeleteSequence, storage_executor)
+  PLEAT_UNARY(PinSequence, storage_executor)
+  PLEAT_UNARY(DeleteUpload, storage_executor)
   grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
       grpc::CallbackServerContext*, v1::UploadSequenceResponse* response) override {
     return pleat::UploadSequence(context_, response);
@@ -61,6 +63,7 @@ class ModelServiceImpl final : public v1::ModelService::CallbackService {
   PLEAT_UNARY(GetModel, storage_executor)
   PLEAT_UNARY(ListModels, storage_executor)
   PLEAT_UNARY(DeleteModel, storage_executor)
+  PLEAT_UNARY(PinModel, storage_executor)
   grpc::ServerWriteReactor<v1::DownloadModelResponse>* DownloadModel(
       grpc::CallbackServerContext*, const v1::DownloadModelRequest* request) override {
     return pleat::DownloadModel(context_, *request);
@@ -76,6 +79,7 @@ class CompressedSequenceServiceImpl final : public v1::CompressedSequenceService
   PLEAT_UNARY(GetCompressedSequence, storage_executor)
   PLEAT_UNARY(ListCompressedSequences, storage_executor)
   PLEAT_UNARY(DeleteCompressedSequence, storage_executor)
+  PLEAT_UNARY(PinCompressedSequence, storage_executor)
   grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadCompressedSequence(
       grpc::CallbackServerContext*, v1::UploadCompressedSequenceResponse* response) override {
     return pleat::UploadCompressedSequence(context_, response);

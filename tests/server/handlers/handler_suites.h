@@ -98,6 +98,31 @@ REGISTER_TYPED_TEST_SUITE_P(GetHandlerTest, SaysWhatTheServiceKnows,
                             AnIdThatIsNoneNeverReachesTheService, PassesOnThatThereIsNone);
 
 template <typename Case>
+class PinHandlerTest : public HandlerTest<Case> {};
+TYPED_TEST_SUITE_P(PinHandlerTest);
+
+TYPED_TEST_P(PinHandlerTest, PassesOnWhatIsAskedAndHowItEnded) {
+  typename TypeParam::Request request;
+  request.set_id(kId);
+  for (const bool pinned : {true, false}) {
+    request.set_pinned(pinned);
+    EXPECT_CALL(this->service(), SetPinned(kId, pinned))
+        .WillOnce(testing::Return(absl::OkStatus()))
+        .WillOnce(testing::Return(absl::NotFoundError("none")));
+    EXPECT_THAT(TypeParam::Handle(this->mock_, request, &this->response_), IsOk());
+    EXPECT_THAT(TypeParam::Handle(this->mock_, request, &this->response_),
+                HasStatus(absl::StatusCode::kNotFound, "none"));
+  }
+}
+
+TYPED_TEST_P(PinHandlerTest, AnIdThatIsNoneNeverReachesTheService) {
+  this->ExpectIdsThatAreNoneAreRefused();
+}
+
+REGISTER_TYPED_TEST_SUITE_P(PinHandlerTest, PassesOnWhatIsAskedAndHowItEnded,
+                            AnIdThatIsNoneNeverReachesTheService);
+
+template <typename Case>
 class ListHandlerTest : public HandlerTest<Case> {
  protected:
   absl::Status List(int page_size, const std::string& page_token) {

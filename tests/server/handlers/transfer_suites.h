@@ -35,14 +35,12 @@ class UploadHandlerTest : public testing::Test {
     return info;
   }
   auto& service() { return Case::Mock(mock_.service); }
-  void ExpectNothingStored() {
-    EXPECT_CALL(service(), Get(kId)).WillOnce(testing::Return(absl::NotFoundError("none")));
-  }
   // What BeginUpload gives; the caller adds what is expected of it.
   MockUpload<Info>* ExpectUpload(uint64_t offset) {
     auto upload = std::make_unique<testing::StrictMock<MockUpload<Info>>>();
     MockUpload<Info>* result = upload.get();
-    EXPECT_CALL(service(), BeginUpload(kId, 6, offset))
+    EXPECT_CALL(*upload, complete).WillRepeatedly(testing::Return(false));
+    EXPECT_CALL(service(), BeginUpload(kId, 6, offset, kKeepForEver))
         .WillOnce(testing::Return(testing::ByMove(std::move(upload))));
     return result;
   }
@@ -60,7 +58,6 @@ class UploadHandlerTest : public testing::Test {
 TYPED_TEST_SUITE_P(UploadHandlerTest);
 
 TYPED_TEST_P(UploadHandlerTest, HandsOverThePiecesInOrder) {
-  this->ExpectNothingStored();
   auto* upload = this->ExpectUpload(0);
   testing::InSequence in_order;
   EXPECT_CALL(*upload, Append("abc")).WillOnce(testing::Return(absl::OkStatus()));
@@ -71,9 +68,26 @@ TYPED_TEST_P(UploadHandlerTest, HandsOverThePiecesInOrder) {
 }
 
 TYPED_TEST_P(UploadHandlerTest, ContentThatIsStoredEndsTheCallEarly) {
-  EXPECT_CALL(this->service(), Get(kId)).WillOnce(testing::Return(this->Stored()));
+  auto* upload = this->ExpectUpload(0);
+  EXPECT_CALL(*upload, complete).WillOnce(testing::Return(true));
+  EXPECT_CALL(*upload, Finish).WillOnce(testing::Return(this->Stored()));
   EXPECT_TRUE(this->Send({this->Header(kId)}).ok());
   EXPECT_EQ(TypeParam::Id(this->response_), kId);
+}
+
+TYPED_TEST_P(UploadHandlerTest, PassesOnHowLongItIsKept) {
+  v1::UploadSequenceRequest header = this->Header(kId);
+  header.mutable_header()->set_ttl_seconds(90);
+  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0, absl::Seconds(90)))
+      .WillOnce(testing::Return(testing::ByMove(absl::AbortedError("another writer"))));
+  EXPECT_THAT(this->Send({header}), HasGrpcStatus(grpc::StatusCode::ABORTED, testing::_));
+}
+
+TYPED_TEST_P(UploadHandlerTest, ATimeToLiveThatIsNoneIsRefused) {
+  v1::UploadSequenceRequest header = this->Header(kId);
+  header.mutable_header()->set_ttl_seconds(-1);
+  EXPECT_THAT(this->Send({header}),
+              HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr("ttl_seconds")));
 }
 
 TYPED_TEST_P(UploadHandlerTest, DataBeforeTheHeaderIsRefused) {
@@ -91,7 +105,6 @@ TYPED_TEST_P(UploadHandlerTest, NothingAtAllIsNoUpload) {
 }
 
 TYPED_TEST_P(UploadHandlerTest, AnEmptyPieceIsRefused) {
-  this->ExpectNothingStored();
   this->ExpectUpload(3);
   EXPECT_THAT(
       this->Send({this->Header(kId, 3), this->Data("")}),
@@ -99,15 +112,13 @@ TYPED_TEST_P(UploadHandlerTest, AnEmptyPieceIsRefused) {
 }
 
 TYPED_TEST_P(UploadHandlerTest, PassesOnThatAnotherWriterHoldsIt) {
-  this->ExpectNothingStored();
-  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0))
+  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0, kKeepForEver))
       .WillOnce(testing::Return(testing::ByMove(absl::AbortedError("another writer"))));
   EXPECT_THAT(this->Send({this->Header(kId)}),
               HasGrpcStatus(grpc::StatusCode::ABORTED, "another writer"));
 }
 
 TYPED_TEST_P(UploadHandlerTest, PassesOnThatTheFileIsBad) {
-  this->ExpectNothingStored();
   auto* upload = this->ExpectUpload(0);
   EXPECT_CALL(*upload, Append("abcdef")).WillOnce(testing::Return(absl::OkStatus()));
   EXPECT_CALL(*upload, Finish)
@@ -117,7 +128,8 @@ TYPED_TEST_P(UploadHandlerTest, PassesOnThatTheFileIsBad) {
 }
 
 REGISTER_TYPED_TEST_SUITE_P(UploadHandlerTest, HandsOverThePiecesInOrder,
-                            ContentThatIsStoredEndsTheCallEarly, DataBeforeTheHeaderIsRefused,
+                            ContentThatIsStoredEndsTheCallEarly, PassesOnHowLongItIsKept,
+                            ATimeToLiveThatIsNoneIsRefused, DataBeforeTheHeaderIsRefused,
                             AnIdThatIsNoneNeverReachesTheService, NothingAtAllIsNoUpload,
                             AnEmptyPieceIsRefused, PassesOnThatAnotherWriterHoldsIt,
                             PassesOnThatTheFileIsBad);

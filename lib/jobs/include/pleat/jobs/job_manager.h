@@ -81,6 +81,8 @@ class JobManager {
   absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
   std::vector<JobInfo> List() const;                         // oldest first
   size_t CountInState(JobState state) const;
+  // Shows every job in the order of creation. `visit` must be quick and must not call this object.
+  void Visit(const std::function<void(const JobInfo&)>& visit) const;
   // kNotFound, kFailedPrecondition when the job has ended, or the error of saving it.
   absl::Status Cancel(const std::string& id);
   // Forgets a job that has ended. kNotFound, kFailedPrecondition when it has not ended, or the

@@ -20,6 +20,7 @@ class LocalModels final : public ModelService {
   absl::StatusOr<ModelInfo> Get(const std::string& id) override;
   absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
+  absl::Status SetPinned(const std::string& id, bool pinned) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
   absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
                                                                 uint64_t offset_bytes) override;
@@ -27,6 +28,8 @@ class LocalModels final : public ModelService {
   // Returns the model, from the cache or loaded from the store. It stays in memory as long as the
   // handle lives. kNotFound when there is none, kDataLoss when its file is damaged.
   absl::StatusOr<std::shared_ptr<const CharacterModel>> Acquire(const std::string& id);
+  // Lets go of a model whose entry was deleted elsewhere; who uses it keeps it.
+  void Forget(const std::string& id) { cache_.Erase(id); }
   ByteCacheStats cache_stats() const { return cache_.stats(); }
 
  private:

@@ -17,6 +17,7 @@
 #include "pleat/base/wall_clock.h"
 #include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
 #include "pleat/service/limits.h"
 #include "pleat/store/store.h"
 
@@ -38,14 +39,18 @@ class StoredFiles {
   const WallClock& clock() const { return clock_; }
 
   // A file and its row appear and disappear together (see Store). An entry that is new is created
-  // now.
-  absl::Status Add(EntryKind kind, CatalogEntry entry, std::string_view bytes) {
-    entry.created_unix_ms = absl::ToUnixMillis(clock_());
-    return store_->Add(kind, entry, bytes);
+  // now. ttl: how long it is kept at least; the longest life of an entry counts.
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes,
+                   absl::Duration ttl = kKeepForEver) {
+    return store_->Add(kind, BornNow(entry, ttl), bytes);
   }
-  absl::Status Add(EntryKind kind, CatalogEntry entry, Upload* upload) {
-    entry.created_unix_ms = absl::ToUnixMillis(clock_());
-    return store_->Add(kind, entry, upload);
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload,
+                   absl::Duration ttl = kKeepForEver) {
+    return store_->Add(kind, BornNow(entry, ttl), upload);
+  }
+  // Keeps an entry so long from now on, if not longer. kNotFound when there is none.
+  absl::Status Prolong(EntryKind kind, const std::string& id, absl::Duration ttl) {
+    return catalog().Prolong(kind, id, ExpiryOf(clock_(), ttl));
   }
   absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
   // Returns the content of a stored file, verified (see Store).
@@ -70,6 +75,9 @@ class StoredFiles {
                                                       uint64_t offset_bytes);
 
  private:
+  static int64_t ExpiryOf(absl::Time now, absl::Duration ttl);  // as the catalog writes it
+  CatalogEntry BornNow(CatalogEntry entry, absl::Duration ttl) const;
+
   const std::unique_ptr<Store> store_;
   const ServiceLimits limits_;
   const WallClock clock_;
@@ -92,6 +100,21 @@ class StoredUpload final : public ContentUpload<Info> {
  private:
   const std::unique_ptr<Upload> upload_;
   const FinishUpload finish_;
+};
+
+// The upload of a file that is stored already.
+template <typename Info>
+class KnownUpload final : public ContentUpload<Info> {
+ public:
+  explicit KnownUpload(Info info) : info_(std::move(info)) {}
+
+  bool complete() const override { return true; }
+  absl::Status Append(std::string_view) override { return absl::OkStatus(); }
+  uint64_t received_bytes() const override { return info_.size_bytes; }
+  absl::StatusOr<Info> Finish() override { return info_; }
+
+ private:
+  const Info info_;
 };
 
 }  // namespace pleat

@@ -14,6 +14,7 @@
 #include "absl/time/time.h"
 #include "pleat/character/train_character.h"
 #include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
 
 namespace pleat {
@@ -36,12 +37,14 @@ struct TrainingRequest {
   // Chosen by the caller at random; a call with the id of an earlier one makes no second job and
   // returns the first as it is now. Empty: every call makes a job.
   std::string request_id{};
+  absl::Duration model_ttl = kKeepForEver;  // how long the service keeps the model at least
 };
 
 struct CompressionRequest {
   std::string sequence_id{};
   CompressOptions options{};
-  std::string request_id{};  // as above
+  std::string request_id{};                  // as above
+  absl::Duration result_ttl = kKeepForEver;  // of the compressed sequence
 };
 
 struct JobInfo {
@@ -49,9 +52,10 @@ struct JobInfo {
   JobState state = JobState::kQueued;
   std::vector<std::string> sequence_ids;
   JobOptions options;
-  std::string name;                 // of the result
-  std::string rig_id;               // hex SHA-256 of TrainingRequest::rig, or empty
-  std::string request_id;           // of the call that made it; services do not show it
+  std::string name;                          // of the result
+  std::string rig_id;                        // hex SHA-256 of TrainingRequest::rig, or empty
+  std::string request_id;                    // of the call that made it; services do not show it
+  absl::Duration result_ttl = kKeepForEver;  // from the moment when the result is stored
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1
   std::optional<double> objective;  // of the running optimizer

@@ -44,6 +44,8 @@ class ModelService {
   }
   // Whoever uses the model at the moment keeps it until the end.
   virtual absl::Status Delete(const std::string& id) = 0;
+  // A pinned one is never removed by retention, only by Delete.
+  virtual absl::Status SetPinned(const std::string& id, bool pinned) = 0;
   // The whole model file.
   virtual absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) = 0;
   // The file in pieces, from `offset_bytes` on. kOutOfRange when that is behind its end, kDataLoss

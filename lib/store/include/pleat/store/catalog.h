@@ -85,6 +85,15 @@ class Catalog {
   // removal.
   absl::Status Delete(EntryKind kind, const std::string& id);
 
+  // The three below are kNotFound when there is no such entry.
+  absl::Status SetPinned(EntryKind kind, const std::string& id, bool pinned);
+  // The longer of the two lives counts. expires_unix_ms: 0 = never.
+  absl::Status Prolong(EntryKind kind, const std::string& id, int64_t expires_unix_ms);
+  // Deletes the entry if it is not pinned and its life was over at `now_unix_ms`.
+  absl::Status DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms);
+  // The entries that DeleteExpired would delete, oldest first. The cost depends on their number.
+  absl::StatusOr<std::vector<CatalogEntry>> ListExpired(EntryKind kind, int64_t now_unix_ms);
+
   // The content ids that the rows name, sorted.
   absl::StatusOr<std::vector<std::string>> FileIds();
   // Says whether any row names the file `id`.
@@ -110,6 +119,8 @@ class Catalog {
   absl::StatusOr<std::vector<std::string>> Ids(const char* sql);
   // Selects the rows of entries that `conditions`, the rest of the statement, is about.
   std::string Select(const char* conditions) const;
+  // Runs a statement that changes the entry ?1, ?2; kNotFound when it changes none. `value`: ?3.
+  absl::Status Change(const char* sql, EntryKind kind, const std::string& id, int64_t value);
 
   std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections
   std::unique_ptr<Database> writer_;
