@@ -55,6 +55,33 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
       ->capture_default_str();
 }
 
+constexpr double kSweepSeconds = 60;
+
+struct RetentionFlags {
+  double job_days = 0, upload_hours = 7 * 24;
+};
+
+void AddRetentionFlags(CLI::App* app, LocalServiceOptions* service, RetentionFlags* flags) {
+  app->add_option("--keep-jobs", service->retention.max_ended_jobs,
+                  "Jobs that have ended and stay in the list, the newest; 0 = all")
+      ->check(CLI::Range(int64_t{0}, int64_t{1'000'000'000}))
+      ->capture_default_str();
+  app->add_option("--keep-jobs-days", flags->job_days,
+                  "Days that a job stays in the list after its end; 0 = for ever")
+      ->check(CLI::Range(0., 36'500.))
+      ->capture_default_str();
+  app->add_option("--keep-uploads-hours", flags->upload_hours,
+                  "Hours that what has arrived of an upload stays after its last byte")
+      ->check(CLI::Range(1., 876'000.))
+      ->capture_default_str();
+}
+
+void SetRetention(const RetentionFlags& flags, LocalServiceOptions* service) {
+  service->sweep_seconds = kSweepSeconds;
+  service->retention.max_upload_age = absl::Hours(flags.upload_hours);
+  if (flags.job_days > 0) service->retention.max_job_age = absl::Hours(24 * flags.job_days);
+}
+
 void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
   app->add_option("--listen", grpc->listen,
                   "HOST:PORT or unix:PATH; port 0 = any free one, printed at the start")
@@ -128,6 +155,8 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   AddNetworkFlags(&app, &line.options.grpc);
   double scrub_hours = kScrubHours;
   AddServiceFlags(&app, &line.options.service, &scrub_hours);
+  RetentionFlags retention;
+  AddRetentionFlags(&app, &line.options.service, &retention);
   std::string job_priority = "idle";
   app.add_option("--job-priority", job_priority,
                  "idle: jobs take the processor time that live sessions and other programs leave; "
@@ -159,6 +188,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
     return line;
   }
   line.options.service.scrub_seconds = 3600 * scrub_hours;
+  SetRetention(retention, &line.options.service);
   line.options.service.jobs_in_idle_time = job_priority == "idle";
   if (line.options.token_file.empty()) {
     line.options.token_file = TokenPath(line.options.service.data_dir);

@@ -74,9 +74,9 @@ absl::StatusOr<std::string> FindModel(ModelService& models, const std::string& p
 
 absl::StatusOr<SequenceInfo> UploadWithProgress(SequenceService& sequences,
                                                 const MeshSequence& sequence,
-                                                const Session& session) {
+                                                const Session& session, absl::Duration ttl) {
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  return sequences.Upload(sequence, InterruptibleProgress(&display).Stage("upload", 0, 1));
+  return sequences.Upload(sequence, InterruptibleProgress(&display).Stage("upload", 0, 1), ttl);
 }
 
 }  // namespace pleat

@@ -40,10 +40,11 @@ absl::StatusOr<std::string> CompleteId(const std::vector<Info>& infos, const std
 // Returns the id of the only model whose id begins with `prefix`.
 absl::StatusOr<std::string> FindModel(ModelService& models, const std::string& prefix);
 
-// Uploads a sequence, shows the progress and stops on Ctrl-C.
+// Uploads a sequence, shows the progress and stops on Ctrl-C. ttl: how long it is kept at least.
 absl::StatusOr<SequenceInfo> UploadWithProgress(SequenceService& sequences,
                                                 const MeshSequence& sequence,
-                                                const Session& session);
+                                                const Session& session,
+                                                absl::Duration ttl = kKeepForEver);
 
 // Watches a job until its state is final and shows its progress. On Ctrl-C it cancels the job if
 // `cancel_on_interrupt` says so. A job that failed gives its own error. stage_seconds receives the

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -41,6 +42,25 @@ TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
   EXPECT_EQ(journal.at(ids[0]).info.state, JobState::kSucceeded);
   EXPECT_THAT(journal.at(ids[0]).info.warnings, testing::ElementsAre("careful"));
   EXPECT_EQ(journal.at(ids[0]).attempts, 1);
+}
+
+TEST(JobManagerTest, TimesThatAreSeenAreThoseThatAreSaved) {
+  Journal journal;
+  std::atomic<int64_t> seconds = 1'800'000'000;  // later at every look
+  JobManager jobs({.wall_clock = [&] { return absl::FromUnixSeconds(++seconds); }}, Succeeds(),
+                  journal.save());
+  const JobInfo created = jobs.Create(Named("a")).value();
+  EXPECT_EQ(created.created, absl::FromUnixSeconds(1'800'000'001));
+  EXPECT_TRUE(!created.started && !created.ended);
+  jobs.Start();
+  const JobInfo ended = WaitForEnd(jobs, created.id);
+  EXPECT_EQ(ended.created, created.created);
+  ASSERT_TRUE(ended.started && ended.ended);
+  EXPECT_LT(*ended.created, *ended.started);
+  EXPECT_LT(*ended.started, *ended.ended);
+  const JobInfo saved = journal.at(created.id).info;
+  EXPECT_EQ(saved.started, ended.started);
+  EXPECT_EQ(saved.ended, ended.ended);
 }
 
 TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {

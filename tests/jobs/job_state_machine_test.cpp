@@ -11,6 +11,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
+const absl::Time kNow = absl::FromUnixSeconds(1'800'000'000);
+
 JobInfo Draft(JobState state = JobState::kQueued) {
   JobInfo info;
   info.id = "job-1";
@@ -21,14 +23,14 @@ JobInfo Draft(JobState state = JobState::kQueued) {
 TEST(JobStateMachineTest, GoesTheDocumentedWay) {
   double now = 0;
   JobStateMachine job(Draft(), 0, [&] { return now; });
-  EXPECT_FALSE(job.Succeed("m", {}));
-  EXPECT_FALSE(job.Fail(absl::InternalError("x")));
-  EXPECT_FALSE(job.Cancelled());
+  EXPECT_FALSE(job.Succeed("m", {}, kNow));
+  EXPECT_FALSE(job.Fail(absl::InternalError("x"), kNow));
+  EXPECT_FALSE(job.Cancelled(kNow));
   EXPECT_FALSE(job.Requeue());
-  ASSERT_TRUE(job.Start());
-  EXPECT_FALSE(job.Start());
+  ASSERT_TRUE(job.Start(kNow));
+  EXPECT_FALSE(job.Start(kNow));
   EXPECT_EQ(job.snapshot().attempts, 1);
-  ASSERT_TRUE(job.Succeed("model", {"look here"}));
+  ASSERT_TRUE(job.Succeed("model", {"look here"}, kNow));
   const JobInfo info = job.snapshot().info;
   EXPECT_EQ(info.state, JobState::kSucceeded);
   EXPECT_EQ(info.result_id, "model");
@@ -39,9 +41,9 @@ TEST(JobStateMachineTest, GoesTheDocumentedWay) {
 TEST(JobStateMachineTest, FinalStatesStay) {
   for (const JobState state : {JobState::kSucceeded, JobState::kFailed, JobState::kCancelled}) {
     JobStateMachine job(Draft(state), 1);
-    EXPECT_FALSE(job.Start() || job.Succeed("m", {}) || job.Fail(absl::InternalError("x")) ||
-                 job.Cancelled() || job.Requeue());
-    EXPECT_THAT(job.RequestCancel(),
+    EXPECT_FALSE(job.Start(kNow) || job.Succeed("m", {}, kNow) ||
+                 job.Fail(absl::InternalError("x"), kNow) || job.Cancelled(kNow) || job.Requeue());
+    EXPECT_THAT(job.RequestCancel(kNow),
                 HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr(JobStateName(state))));
     EXPECT_EQ(job.snapshot().info.state, state);
   }
@@ -52,7 +54,7 @@ TEST(JobStateMachineTest, EstimatesTheEndAndNeverGoesBack) {
   JobStateMachine job(Draft(), 0, [&] { return now; });
   job.Report({"early", .5, {}});
   EXPECT_EQ(job.snapshot().info.fraction, 0);
-  ASSERT_TRUE(job.Start());
+  ASSERT_TRUE(job.Start(kNow));
   now = 110;
   job.Report({"learn", .25, 7.5});
   JobInfo info = job.snapshot().info;
@@ -67,25 +69,42 @@ TEST(JobStateMachineTest, EstimatesTheEndAndNeverGoesBack) {
 
 TEST(JobStateMachineTest, CancelsAtOnceWhileQueued) {
   JobStateMachine job(Draft(), 0);
-  EXPECT_THAT(job.RequestCancel(), IsOk());
+  EXPECT_THAT(job.RequestCancel(kNow), IsOk());
   EXPECT_EQ(job.snapshot().info.state, JobState::kCancelled);
-  EXPECT_FALSE(job.Start());
+  EXPECT_FALSE(job.Start(kNow));
 }
 
 TEST(JobStateMachineTest, AsksARunningJobToStop) {
   JobStateMachine job(Draft(), 0);
-  ASSERT_TRUE(job.Start());
+  ASSERT_TRUE(job.Start(kNow));
   EXPECT_FALSE(job.cancel_requested());
-  EXPECT_THAT(job.RequestCancel(), IsOk());
+  EXPECT_THAT(job.RequestCancel(kNow), IsOk());
   EXPECT_TRUE(job.cancel_requested());
   EXPECT_EQ(job.snapshot().info.state, JobState::kRunning);
-  ASSERT_TRUE(job.Cancelled());
+  ASSERT_TRUE(job.Cancelled(kNow));
   EXPECT_THAT(job.snapshot().info.error, HasStatus(absl::StatusCode::kCancelled, testing::_));
+}
+
+TEST(JobStateMachineTest, KeepsTheTimesOfItsStartAndEnd) {
+  JobStateMachine job(Draft(), 0);
+  ASSERT_TRUE(job.Start(kNow));
+  ASSERT_TRUE(job.Requeue());
+  EXPECT_EQ(job.snapshot().info.started, std::nullopt);
+  ASSERT_TRUE(job.Start(kNow + absl::Seconds(1)));
+  EXPECT_EQ(job.snapshot().info.ended, std::nullopt);
+  ASSERT_TRUE(job.Fail(absl::InternalError("x"), kNow + absl::Seconds(3)));
+  EXPECT_FALSE(job.Fail(absl::InternalError("x"), kNow + absl::Seconds(9)));
+  EXPECT_EQ(job.snapshot().info.started, kNow + absl::Seconds(1));
+  EXPECT_EQ(job.snapshot().info.ended, kNow + absl::Seconds(3));
+  JobStateMachine waiting(Draft(), 0);
+  ASSERT_THAT(waiting.RequestCancel(kNow), IsOk());
+  EXPECT_EQ(waiting.snapshot().info.started, std::nullopt);
+  EXPECT_EQ(waiting.snapshot().info.ended, kNow);
 }
 
 TEST(JobStateMachineTest, RequeueForgetsTheAttempt) {
   JobStateMachine job(Draft(), 1);
-  ASSERT_TRUE(job.Start());
+  ASSERT_TRUE(job.Start(kNow));
   job.Report({"fit", .5, 1.0});
   ASSERT_TRUE(job.Requeue());
   const JobSnapshot snapshot = job.snapshot();
@@ -99,9 +118,9 @@ TEST(JobStateMachineTest, WaitersAndListenersHearEveryChange) {
   std::atomic<int> calls = 0;
   const int token = job.AddListener([&] { ++calls; });
   std::thread worker([&] {
-    job.Start();
+    job.Start(kNow);
     for (int i = 0; i < 100; ++i) job.Report({"learn", i / 100.0, {}});
-    job.Succeed("m", {});
+    job.Succeed("m", {}, kNow);
   });
   JobSnapshot snapshot = job.snapshot();
   while (!IsFinal(snapshot.info.state)) {
@@ -125,11 +144,11 @@ TEST(JobStateMachineTest, WaitingEndsWithoutChange) {
 TEST(JobStateMachineTest, OneEndUnderConcurrency) {
   for (int round = 0; round < 200; ++round) {
     JobStateMachine job(Draft(), 0);
-    ASSERT_TRUE(job.Start());
+    ASSERT_TRUE(job.Start(kNow));
     std::atomic<int> ends = 0;
-    std::thread a([&] { ends += job.Succeed("m", {}); });
-    std::thread b([&] { ends += job.Fail(absl::InternalError("x")); });
-    std::thread c([&] { ends += job.Cancelled(); });
+    std::thread a([&] { ends += job.Succeed("m", {}, kNow); });
+    std::thread b([&] { ends += job.Fail(absl::InternalError("x"), kNow); });
+    std::thread c([&] { ends += job.Cancelled(kNow); });
     a.join();
     b.join();
     c.join();

@@ -23,6 +23,14 @@ class Journal {
       return absl::OkStatus();
     };
   }
+  EraseJob erase() {
+    return [this](const std::string& id) {
+      std::lock_guard lock(mutex_);
+      if (fail_) return absl::ResourceExhaustedError("disk full");
+      saved_.erase(id);
+      return absl::OkStatus();
+    };
+  }
   StoredJob at(const std::string& id) {
     std::lock_guard lock(mutex_);
     return saved_.at(id);

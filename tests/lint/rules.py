@@ -90,7 +90,7 @@ RULES = (
     Rule("clock", "library code never reads the clock: it takes a clock as an argument", "code",
          r"\b\w*[cC]lock::now\b|\babsl::Now\b|\bclock_gettime\b|\bgettimeofday\b|\btime\s*\((?:nullptr|NULL|0|&)",
          where=("lib/",),
-         files=(("lib/store/src/upload_area.cpp", "the age of its file tells what is left of old uploads"),
+         files=(("lib/base/src/wall_clock.cpp", "the default of the wall clocks that others take as an argument"),
                 ("lib/store/src/quarantine.cpp", "it writes down for an operator when a file came"),
                 ("lib/jobs/src/job_state_machine.cpp", "the default of the clock that jobs take as an argument"),
                 ("lib/service/src/compression.cpp", "it reports how long coding took; no bytes depend on it"),

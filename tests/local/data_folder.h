@@ -25,9 +25,12 @@ class DataFolder {
                      .reserve_bytes = 0,
                      .on_problem = [this](const std::string& text) { problems_.push_back(text); }})
             .value(),
-        limits);
+        limits, [this] { return now_; });
     sequences_ = std::make_unique<LocalSequences>(files_.get());
   }
+  // The time of day of the folder, which stands still.
+  absl::Time now() const { return now_; }
+  void Pass(absl::Duration duration) { now_ += duration; }
   StoredFiles& files() { return *files_; }
   LocalSequences& sequences() { return *sequences_; }
   const std::string& path() const { return folder_.path(); }
@@ -50,6 +53,7 @@ class DataFolder {
  private:
   TemporaryFolder folder_;
   std::vector<std::string> problems_;
+  absl::Time now_ = absl::FromUnixSeconds(1'800'000'000);
   std::unique_ptr<StoredFiles> files_;
   std::unique_ptr<LocalSequences> sequences_;
 };

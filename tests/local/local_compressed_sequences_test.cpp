@@ -40,7 +40,7 @@ TEST_F(LocalCompressedSequencesTest, AFileIsDescribedByWhatItHolds) {
   EXPECT_EQ(info.size_bytes, file_.size());
   EXPECT_FALSE(info.record.has_value());
   EXPECT_TRUE(compressed_->Download(id_, {}).value() == file_);
-  EXPECT_TRUE(compressed_->ReadBytes(id_, 7, 100).value() == file_.substr(7, 100));
+  EXPECT_TRUE(compressed_->OpenDownload(id_, 7).value()->Next().value() == file_.substr(7));
   EXPECT_EQ(compressed_->decoder_bytes(), 0u);
   EXPECT_THAT(compressed_->Delete(id_), IsOk());
   EXPECT_THAT(compressed_->Download(id_, {}), HasStatus(absl::StatusCode::kNotFound, _));

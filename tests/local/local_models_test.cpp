@@ -81,7 +81,7 @@ TEST_F(LocalModelsTest, ADeletedModelLeavesTheMemoryAsWell) {
     EXPECT_THAT(models.Acquire(id), HasStatus(absl::StatusCode::kNotFound, _));
     EXPECT_THAT(models.Get(id), HasStatus(absl::StatusCode::kNotFound, _));
     EXPECT_THAT(models.Download(id, {}), HasStatus(absl::StatusCode::kNotFound, _));
-    EXPECT_THAT(models.ReadBytes(id, 0, 1), HasStatus(absl::StatusCode::kNotFound, _));
+    EXPECT_THAT(models.OpenDownload(id, 0), HasStatus(absl::StatusCode::kNotFound, _));
     EXPECT_THAT(models.Delete(id), HasStatus(absl::StatusCode::kNotFound, _));
   }
 }
@@ -90,9 +90,12 @@ TEST_F(LocalModelsTest, PiecesAreThoseOfTheWholeFile) {
   LocalModels models(&folder_.files(), 10 * bytes_);
   const std::string whole = models.Download(ids_[1], {}).value();
   EXPECT_EQ(whole.size(), models.Get(ids_[1])->size_bytes);
+  const auto download = models.OpenDownload(ids_[1], 0).value();
   std::string joined;
   while (joined.size() < whole.size()) {
-    joined += models.ReadBytes(ids_[1], joined.size(), 1000).value();
+    const std::string part = download->Next().value();
+    ASSERT_FALSE(part.empty());
+    joined += part;
   }
   EXPECT_TRUE(joined == whole);
 }

@@ -67,6 +67,18 @@ TEST_F(LocalSequencesTest, AnUploadThatIsNotWholeIsNoSequence) {
   EXPECT_THAT(UploadBytes(id_, bytes_), IsOk());  // starts again
 }
 
+TEST_F(LocalSequencesTest, ASequenceIsCreatedWhenItFirstComes) {
+  const absl::Time first = folder_.now();
+  EXPECT_EQ(sequences().Upload(tube_, {})->life.created, first);
+  folder_.Pass(absl::Hours(1));
+  EXPECT_EQ(sequences().Upload(tube_, {})->life.created, first);
+  ASSERT_THAT(UploadBytes(id_, bytes_), IsOk());
+  EXPECT_EQ(sequences().Get(id_)->life.created, first);
+  EXPECT_EQ(sequences().List()->at(0).life.created, first);
+  ASSERT_THAT(sequences().Delete(id_), IsOk());
+  EXPECT_EQ(sequences().Upload(tube_, {})->life.created, folder_.now());
+}
+
 TEST_F(LocalSequencesTest, ACancelledUploadStoresNothing) {
   EXPECT_THAT(sequences().Upload(tube_, Progress({}, [] { return true; })),
               HasStatus(absl::StatusCode::kCancelled, _));

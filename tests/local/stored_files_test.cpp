@@ -27,22 +27,25 @@ class StoredFilesTest : public testing::Test {
 };
 
 TEST_F(StoredFilesTest, PiecesOfAFileEndWithIt) {
-  EXPECT_EQ(files().ReadBytes(EntryKind::kModel, id_, 0, 4).value(), "0123");
-  EXPECT_EQ(files().ReadBytes(EntryKind::kModel, id_, 8, 4).value(), "89");
-  EXPECT_EQ(files().ReadBytes(EntryKind::kModel, id_, 10, 4).value(), "");
-  EXPECT_EQ(files().ReadBytes(EntryKind::kModel, id_, 3, ~uint64_t{0}).value(), "3456789");
-  EXPECT_THAT(files().ReadBytes(EntryKind::kModel, id_, 11, 1),
+  for (const uint64_t offset : {0, 3, 10}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto download,
+                               files().OpenDownload(EntryKind::kModel, id_, offset));
+    EXPECT_EQ(download->size_bytes(), 10u);
+    EXPECT_EQ(download->Next().value(), content_.substr(offset));
+    EXPECT_EQ(download->Next().value(), "");
+  }
+  EXPECT_THAT(files().OpenDownload(EntryKind::kModel, id_, 11),
               HasStatus(absl::StatusCode::kOutOfRange, HasSubstr("11")));
 }
 
 // A file is there for the kind it was stored as: an id of another kind does not open it.
 TEST_F(StoredFilesTest, AFileIsOfItsKindOnly) {
-  EXPECT_THAT(files().ReadBytes(EntryKind::kSequence, id_, 0, 4),
+  EXPECT_THAT(files().OpenDownload(EntryKind::kSequence, id_, 0),
               HasStatus(absl::StatusCode::kNotFound, _));
   EXPECT_THAT(files().Delete(EntryKind::kSequence, id_), HasStatus(absl::StatusCode::kNotFound, _));
-  EXPECT_THAT(files().ReadBytes(EntryKind::kModel, other_id_, 0, 4),
+  EXPECT_THAT(files().OpenDownload(EntryKind::kModel, other_id_, 0),
               HasStatus(absl::StatusCode::kNotFound, _));
-  EXPECT_EQ(files().ReadBytes(EntryKind::kModel, id_, 0, 10).value(), content_);
+  EXPECT_EQ(files().Download(EntryKind::kModel, id_, 10, {}).value(), content_);
 }
 
 TEST_F(StoredFilesTest, ADownloadReportsAndCanBeCancelled) {
@@ -63,13 +66,25 @@ TEST_F(StoredFilesTest, AFileThatIsShorterThanItsRowSaysIsNoticed) {
 
 TEST_F(StoredFilesTest, NoByteOfADamagedFileIsGivenOut) {
   std::filesystem::resize_file(folder_.PathOf(id_), 7);
-  EXPECT_THAT(files().ReadBytes(EntryKind::kModel, id_, 0, 4),
+  EXPECT_THAT(files().OpenDownload(EntryKind::kModel, id_, 0),
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr(id_)));
   EXPECT_FALSE(std::filesystem::exists(folder_.PathOf(id_)));  // it is in quarantine
   EXPECT_EQ(folder_.problems().size(), 1u);
   EXPECT_THAT(files().Add(EntryKind::kModel, {id_, "a record"}, content_), IsOk());
   EXPECT_TRUE(files().IsIntact(id_));
   EXPECT_EQ(files().Read(id_).value(), content_);
+}
+
+TEST_F(StoredFilesTest, ADownloadThatHasBegunOutlivesItsFile) {
+  const std::string content(3 * kDownloadPieceBytes + 1, 'x'), id = ToHex(ComputeSha256(content));
+  ASSERT_THAT(files().Add(EntryKind::kModel, {id, ""}, content), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto download, files().OpenDownload(EntryKind::kModel, id, 0));
+  std::string bytes = download->Next().value();
+  EXPECT_EQ(bytes.size(), static_cast<size_t>(kDownloadPieceBytes));
+  ASSERT_THAT(files().Delete(EntryKind::kModel, id), IsOk());
+  EXPECT_FALSE(std::filesystem::exists(folder_.PathOf(id)));
+  for (int i = 0; i < 3; ++i) bytes += download->Next().value();
+  EXPECT_TRUE(bytes == content);
 }
 
 TEST_F(StoredFilesTest, UploadsAreCheckedBeforeTheFirstByte) {
@@ -108,7 +123,7 @@ TEST_F(StoredFilesTest, WhatTheDiskCannotTakeIsRefused) {
   folder_.Block(id);
   const absl::Status status = files().Add(EntryKind::kModel, {id, ""}, bytes);
   EXPECT_THAT(status.message(), HasSubstr("cannot create"));
-  EXPECT_THAT(files().ReadBytes(EntryKind::kModel, id, 0, 1),
+  EXPECT_THAT(files().OpenDownload(EntryKind::kModel, id, 0),
               HasStatus(absl::StatusCode::kNotFound, _));
   // What is there can still be read, and be added again.
   EXPECT_EQ(files().Download(EntryKind::kModel, id_, 10, {}).value(), content_);

@@ -64,6 +64,23 @@ TEST_P(ContractTest, AnUploadCanBeCancelled) {
   EXPECT_TRUE(service_.sequences().List()->empty());
 }
 
+TEST_P(ContractTest, AJobThatHasEndedCanBeForgotten) {
+  const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
+  running_.trainer().Hold();
+  const std::string job = service_.jobs().CreateTraining({.sequence_ids = {id}})->id;
+  EXPECT_THAT(service_.jobs().Delete(job),
+              HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("cancel it first")));
+  running_.trainer().Release();
+  const std::string model = WatchToEnd(job).result_id;
+  EXPECT_THAT(service_.jobs().Delete(job), IsOk());
+  for (const absl::Status& status : {service_.jobs().Delete(job), service_.jobs().Get(job).status(),
+                                     service_.jobs().Cancel(job)}) {
+    EXPECT_THAT(status, HasStatus(absl::StatusCode::kNotFound, HasSubstr(job)));
+  }
+  EXPECT_TRUE(service_.jobs().List()->empty());
+  EXPECT_THAT(service_.models().Get(model), IsOk());
+}
+
 TEST_P(ContractTest, AJobRunsToItsModel) {
   const std::string id = service_.sequences().Upload(MakeSwayingTube(5), {})->id;
   TrainOptions options;

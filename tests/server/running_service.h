@@ -46,6 +46,7 @@ class RunningService {
   RemoteCharacterService& remote() { return *remote_; }
   LocalCharacterService& local() { return *local_; }
   GrpcServer& server() { return *server_; }
+  const std::string& data_dir() const { return folder_.path(); }
   FakeTrainer& trainer() { return trainer_; }
   std::string address() const { return "127.0.0.1:" + std::to_string(server_->port()); }
 

@@ -18,6 +18,17 @@ using ::testing::HasSubstr;
 
 class StreamDoorsContractTest : public testing::TestWithParam<Reach> {
  protected:
+  static std::string ReadRest(absl::StatusOr<std::unique_ptr<ContentDownload>> download) {
+    EXPECT_THAT(download, IsOk());
+    std::string bytes;
+    while (download.ok()) {
+      const std::string part = (*download)->Next().value();
+      if (part.empty()) break;
+      bytes += part;
+    }
+    return bytes;
+  }
+
   RunningService running_{GetParam()};
   CharacterService& service_ = running_.service();
   const std::string unknown_ = std::string(64, '0');
@@ -64,19 +75,40 @@ TEST_P(StreamDoorsContractTest, ACompressedSequenceArrivesInPiecesAndLeavesInPie
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, compressed.BeginUpload(id, file.size(), 0));
   ASSERT_THAT(upload->Append(file), IsOk());
   EXPECT_EQ(upload->Finish()->num_frames, 20);
-  EXPECT_EQ(compressed.ReadBytes(id, 0, 10).value(), file.substr(0, 10));
-  EXPECT_EQ(compressed.ReadBytes(id, file.size() - 4, 10).value(), file.substr(file.size() - 4));
-  EXPECT_THAT(compressed.ReadBytes(unknown_, 0, 10), HasStatus(absl::StatusCode::kNotFound, _));
+  EXPECT_TRUE(ReadRest(compressed.OpenDownload(id, 0)) == file);
+  EXPECT_EQ(ReadRest(compressed.OpenDownload(id, file.size() - 4)), file.substr(file.size() - 4));
+  EXPECT_THAT(compressed.OpenDownload(unknown_, 0), HasStatus(absl::StatusCode::kNotFound, _));
 }
 
 TEST_P(StreamDoorsContractTest, AModelLeavesInPieces) {
   const std::string id = running_.TrainModel(MakeSwayingTube(5, "tube", 40, 30));
   const std::string bytes = service_.models().Download(id, {}).value();
   ASSERT_GT(bytes.size(), 1000u);
-  EXPECT_EQ(service_.models().ReadBytes(id, 0, 1000).value(), bytes.substr(0, 1000));
-  EXPECT_TRUE(service_.models().ReadBytes(id, 100, bytes.size()).value() == bytes.substr(100));
-  EXPECT_THAT(service_.models().ReadBytes(id, bytes.size() + 1, 1),
+  EXPECT_EQ(service_.models().OpenDownload(id, 0).value()->size_bytes(), bytes.size());
+  EXPECT_TRUE(ReadRest(service_.models().OpenDownload(id, 100)) == bytes.substr(100));
+  EXPECT_EQ(ReadRest(service_.models().OpenDownload(id, bytes.size())), "");
+  EXPECT_THAT(service_.models().OpenDownload(id, bytes.size() + 1),
               HasStatus(absl::StatusCode::kOutOfRange, _));
+}
+
+TEST_P(StreamDoorsContractTest, ADownloadThatHasBegunEndsWhateverIsDeleted) {
+  // More than a server sends before anybody reads.
+  const CompressOptions exact{.goal = CompressionGoal::kGrid, .grid_bits = 21};
+  const std::string file =
+      CompressSequence(MakeSwayingTube(400, "long", 100, 40), exact, nullptr).value();
+  ASSERT_GT(file.size(), 3u * kDownloadPieceBytes);
+  CompressedSequenceService& compressed = service_.compressed_sequences();
+  const std::string id = compressed.Upload(file, {})->id;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto download, compressed.OpenDownload(id, 0));
+  std::string bytes = download->Next().value();
+  ASSERT_THAT(compressed.Delete(id), IsOk());
+  while (bytes.size() < file.size()) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const std::string part, download->Next());
+    ASSERT_FALSE(part.empty());
+    bytes += part;
+  }
+  EXPECT_TRUE(bytes == file);
+  EXPECT_THAT(compressed.OpenDownload(id, 0), HasStatus(absl::StatusCode::kNotFound, _));
 }
 
 TEST_P(StreamDoorsContractTest, ASubscriptionShowsAJobUntilItIsFinal) {

@@ -158,6 +158,23 @@ TEST(RecordsTest, EqualContentGivesTheBytesOfTheFirstVersion) {
   EXPECT_EQ(EncodeRecord(SampleCompressedSequence()), Golden("compressed_sequence"));
 }
 
+TEST(RecordsTest, JobsKeepTheirTimesToTheMillisecond) {
+  JobInfo job = SampleTrainingJob();
+  job.created = absl::FromUnixMillis(1'796'072'709'123);
+  job.started = *job.created + absl::Milliseconds(1);
+  job.ended = *job.created + absl::Hours(30);
+  job.result_ttl = absl::Hours(1);
+  const JobInfo read = DecodeJobRecord(EncodeRecord(job)).value();
+  EXPECT_EQ(read.created, job.created);
+  EXPECT_EQ(read.started, job.started);
+  EXPECT_EQ(read.ended, job.ended);
+  EXPECT_EQ(read.result_ttl, job.result_ttl);
+  // Rows of 0.1.0 have none.
+  const JobInfo old = DecodeJobRecord(Golden("training_job")).value();
+  EXPECT_TRUE(!old.created && !old.started && !old.ended);
+  EXPECT_EQ(old.result_ttl, kKeepForEver);
+}
+
 // A whole catalog of 0.1.0, not only its rows.
 TEST(RecordsTest, ACatalogOfTheFirstVersionIsRead) {
   TemporaryFolder folder;

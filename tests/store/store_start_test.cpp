@@ -209,6 +209,38 @@ TEST(StoreStartTest, AStoreOfTheFirstVersionGetsAnId) {
             store->catalog().StoreId().value() + "\n");
 }
 
+// The second version had no index for pages and knew no times.
+TEST(StoreStartTest, AStoreOfTheSecondVersionIsReadAndUpgraded) {
+  TemporaryFolder folder;
+  const std::string path = folder.File("catalogue.db");
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string golden,
+                             ReadFile(InSourceFolder("tests/golden/records/catalog_v2.db")));
+  ASSERT_THAT(WriteFile(path, golden), IsOk());
+  std::vector<CatalogEntry> before;
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::OpenReadOnly(path));
+    PLEAT_ASSERT_OK_AND_ASSIGN(before, catalog->List(EntryKind::kJob));
+    EXPECT_EQ(catalog->StoreId().value(), "0123456789abcdef0123456789abcdef");
+  }
+  for (int start = 0; start < 2; ++start) {  // the second finds the new version
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(path));
+    EXPECT_EQ(catalog->StoreId().value(), "0123456789abcdef0123456789abcdef");
+    EXPECT_EQ(catalog->PendingRemovals()->size(), 1u);
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto after, catalog->ListPage(EntryKind::kJob, 0, 10));
+    ASSERT_EQ(after.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(after[i].id, before[i].id);
+      EXPECT_EQ(after[i].record, before[i].record);
+      EXPECT_EQ(after[i].attempts, before[i].attempts);
+      EXPECT_EQ(after[i].position, before[i].position);
+      EXPECT_EQ(after[i].created_unix_ms, 0);
+      EXPECT_EQ(after[i].expires_unix_ms, 0);
+      EXPECT_FALSE(after[i].pinned);
+    }
+    EXPECT_EQ(catalog->ListPage(EntryKind::kModel, 0, 10)->size(), 1u);
+  }
+}
+
 TEST(StoreStartTest, AFullDiskRefusesUploadsAndNothingElse) {
   TemporaryFolder folder;
   MakeStoreOfThree(folder.path());

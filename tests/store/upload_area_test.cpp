@@ -1,5 +1,6 @@
 #include "pleat/store/upload_area.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,6 +12,7 @@
 #include "pleat/base/file.h"
 #include "pleat/base/random.h"
 #include "pleat/base/sha256.h"
+#include "pleat/base/wall_clock.h"
 #include "pleat/store/blob_store.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -95,14 +97,35 @@ TEST_F(UploadAreaTest, RefusesIdsThatAreNoHash) {
   }
 }
 
-TEST_F(UploadAreaTest, ForgetsOldUploads) {
-  { ASSERT_THAT((*area_->Begin(id_, 10, 0))->Append("abc"), IsOk()); }
-  const std::string path = folder_.File("uploads/" + id_ + ".part");
-  std::filesystem::last_write_time(
-      path, std::filesystem::file_time_type::clock::now() - std::chrono::hours(100));
-  area_ = UploadArea::Open(folder_.File("uploads"), 200).value();
-  EXPECT_EQ(area_->ReceivedBytes(id_), 3u);
-  area_ = UploadArea::Open(folder_.File("uploads"), 50).value();
+TEST_F(UploadAreaTest, ForgetsOldUploadsThatNobodyWrites) {
+  const std::string old(64, 'b'), held(64, 'a'), young(64, 'c');
+  for (const std::string& id : {old, held, young}) {
+    ASSERT_THAT((*area_->Begin(id, 10, 0))->Append("abc"), IsOk());
+    if (id == young) continue;
+    std::filesystem::last_write_time(
+        folder_.File("uploads/" + id + ".part"),
+        std::filesystem::file_time_type::clock::now() - std::chrono::hours(100));
+  }
+  ASSERT_THAT(WriteFile(folder_.File("uploads/notes.txt"), "not an upload"), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, area_->Begin(held, 10, 3));
+  const absl::Time now = SystemTime();
+  EXPECT_THAT(area_->RemoveUntouchedSince(now - absl::Hours(101)), testing::IsEmpty());
+  EXPECT_THAT(area_->RemoveUntouchedSince(now - absl::Hours(99)), testing::ElementsAre(old));
+  EXPECT_EQ(area_->ReceivedBytes(old), 0u);
+  EXPECT_EQ(area_->ReceivedBytes(held), 3u);
+  EXPECT_EQ(area_->ReceivedBytes(young), 3u);
+  EXPECT_TRUE(std::filesystem::exists(folder_.File("uploads/notes.txt")));
+}
+
+TEST_F(UploadAreaTest, AnUploadIsRemovedUnlessSomebodyWritesIt) {
+  EXPECT_THAT(area_->Remove(id_), HasStatus(absl::StatusCode::kNotFound, HasSubstr(id_)));
+  EXPECT_THAT(area_->Remove("../x"), HasStatus(absl::StatusCode::kInvalidArgument, testing::_));
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, area_->Begin(id_, 10, 0));
+    ASSERT_THAT(upload->Append("abc"), IsOk());
+    EXPECT_THAT(area_->Remove(id_), HasStatus(absl::StatusCode::kAborted, testing::_));
+  }
+  EXPECT_THAT(area_->Remove(id_), IsOk());
   EXPECT_EQ(area_->ReceivedBytes(id_), 0u);
 }
 

@@ -5,6 +5,8 @@ namespace pleat {
 template class MockUpload<SequenceInfo>;
 template class MockUpload<CompressedSequenceInfo>;
 
+MockDownload::MockDownload() = default;
+MockDownload::~MockDownload() = default;
 MockSequenceService::MockSequenceService() = default;
 MockSequenceService::~MockSequenceService() = default;
 MockJobSubscription::MockJobSubscription() = default;

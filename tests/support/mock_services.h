@@ -21,6 +21,7 @@ namespace pleat {
 template <typename Info>
 class MockUpload : public ContentUpload<Info> {
  public:
+  MOCK_METHOD(bool, complete, (), (const, override));
   MOCK_METHOD(absl::Status, Append, (std::string_view bytes), (override));
   MOCK_METHOD(uint64_t, received_bytes, (), (const, override));
   MOCK_METHOD(absl::StatusOr<Info>, Finish, (), (override));
@@ -28,18 +29,31 @@ class MockUpload : public ContentUpload<Info> {
 extern template class MockUpload<SequenceInfo>;
 extern template class MockUpload<CompressedSequenceInfo>;
 
+class MockDownload : public ContentDownload {
+ public:
+  MockDownload();
+  ~MockDownload() override;
+  MOCK_METHOD(uint64_t, size_bytes, (), (const, override));
+  MOCK_METHOD(absl::StatusOr<std::string>, Next, (), (override));
+};
+
 class MockSequenceService : public SequenceService {
  public:
   MockSequenceService();
   ~MockSequenceService() override;
-  MOCK_METHOD(absl::StatusOr<SequenceInfo>, Upload, (const MeshSequence&, const Progress&),
-              (override));
+  MOCK_METHOD(absl::StatusOr<SequenceInfo>, Upload,
+              (const MeshSequence&, const Progress&, absl::Duration ttl), (override));
   MOCK_METHOD(absl::StatusOr<SequenceInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<SequenceInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<SequenceInfo>>, ListPage, (const PageRequest& request),
+              (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
+  MOCK_METHOD(absl::Status, DeleteUpload, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<UploadStatus>, QueryUpload, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<SequenceUpload>>, BeginUpload,
-              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes), (override));
+              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+               absl::Duration ttl),
+              (override));
 };
 
 class MockJobSubscription : public JobSubscription {
@@ -59,8 +73,9 @@ class MockJobService : public JobService {
   MOCK_METHOD(absl::StatusOr<JobInfo>, CreateCompression, (const CompressionRequest& request),
               (override));
   MOCK_METHOD(absl::StatusOr<JobInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<JobInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<JobInfo>>, ListPage, (const PageRequest& request), (override));
   MOCK_METHOD(absl::Status, Cancel, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<JobSubscription>>, Subscribe,
               (const std::string& id, std::function<void()> listener), (override));
 };
@@ -70,12 +85,13 @@ class MockModelService : public ModelService {
   MockModelService();
   ~MockModelService() override;
   MOCK_METHOD(absl::StatusOr<ModelInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<ModelInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<ModelInfo>>, ListPage, (const PageRequest& request), (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
-  MOCK_METHOD(absl::StatusOr<std::string>, ReadBytes,
-              (const std::string& id, uint64_t offset, uint64_t count), (override));
+  MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
+              (const std::string& id, uint64_t offset_bytes), (override));
 };
 
 class MockPoseSession : public PoseSession {
@@ -141,16 +157,20 @@ class MockCompressedSequenceService : public CompressedSequenceService {
   MockCompressedSequenceService();
   ~MockCompressedSequenceService() override;
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Upload,
-              (const std::string& file, const Progress&), (override));
+              (const std::string& file, const Progress&, absl::Duration ttl), (override));
   MOCK_METHOD(absl::StatusOr<CompressedSequenceInfo>, Get, (const std::string& id), (override));
-  MOCK_METHOD(absl::StatusOr<std::vector<CompressedSequenceInfo>>, List, (), (override));
+  MOCK_METHOD(absl::StatusOr<Page<CompressedSequenceInfo>>, ListPage, (const PageRequest& request),
+              (override));
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
+  MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
   MOCK_METHOD(absl::StatusOr<std::string>, Download, (const std::string& id, const Progress&),
               (override));
-  MOCK_METHOD(absl::StatusOr<std::string>, ReadBytes,
-              (const std::string& id, uint64_t offset, uint64_t count), (override));
+  MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
+              (const std::string& id, uint64_t offset_bytes), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>>, BeginUpload,
-              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes), (override));
+              (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+               absl::Duration ttl),
+              (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<DecodeSession>>, OpenDecode,
               (const std::string& id, FrameRange range), (override));
 };

@@ -12,6 +12,7 @@ Exit code 77, with a word, where strace is missing or may not trace.
 import argparse
 import collections
 import json
+import os
 import random
 import re
 import shutil
@@ -36,8 +37,8 @@ class Crashes:
             command = ["strace", "-f", "-qq", *trace, *command]
         return subprocess.run(command, capture_output=True, text=True, timeout=120)
 
-    def listed(self, data):
-        answer = self.run("sequences", "list", "--local", "--data-dir", str(data), "--json")
+    def listed(self, data, verb="sequences"):
+        answer = self.run(verb, "list", "--local", "--data-dir", str(data), "--json")
         if answer.returncode != 0:
             return None
         return {entry["id"] for entry in json.loads(answer.stdout)}
@@ -85,74 +86,172 @@ def make_sequence(path, frames):
             f"v 0 {lift} 0\nv 1 {lift} 0\nv 0 {lift + 1} 0\nv 0 {lift} 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
 
 
-def all_problems(crashes, root, kills, chance):
-    for frames, name in ((3, "a"), (4, "b"), (5, "c")):
-        make_sequence(root / name, frames)
-    template, data, backup = root / "template", root / "data", root / "backup"
-    local = ["--local", "--data-dir"]
-    ids = {}
-    for name in ("a", "b"):
-        ids[name] = crashes.run("upload", str(root / name), *local, str(template), "-q").stdout.strip()
-    old_backup = root / "old-backup"
-    crashes.run("store", "backup", str(template), str(old_backup), "-q")
-    crashes.run("upload", str(root / "c"), *local, str(template), "-q")
-    ids["c"] = (crashes.listed(template) - {ids["a"], ids["b"]}).pop()
+class Template:
+    """A data folder with three sequences, the last of which is newer than a backup of the folder."""
 
-    def fresh(with_backup=False):
-        for folder in (data, backup):
+    def __init__(self, crashes, root):
+        self.crashes, self.root = crashes, root
+        self.data, self.backup = root / "data", root / "backup"
+        self.template, self.old_backup = root / "template", root / "old-backup"
+        for frames, name in ((3, "a"), (4, "b"), (5, "c")):
+            make_sequence(root / name, frames)
+        self.ids = {name: self.upload(name, self.template) for name in ("a", "b")}
+        crashes.run("store", "backup", str(self.template), str(self.old_backup), "-q")
+        self.ids["c"] = self.upload("c", self.template)
+
+    def upload(self, name, data, *flags):
+        """The id, as `pleat` prints it."""
+        answer = self.crashes.run("upload", str(self.root / name), *self.local(data), *flags, "-q")
+        return answer.stdout.strip()
+
+    def local(self, data=None):
+        return ["--local", "--data-dir", str(data or self.data)]
+
+    def fresh(self, with_backup=False, template=None):
+        for folder in (self.data, self.backup):
             shutil.rmtree(folder, ignore_errors=True)
-        shutil.copytree(template, data)
+        shutil.copytree(template or self.template, self.data)
         if with_backup:
-            shutil.copytree(old_backup, backup)
+            shutil.copytree(self.old_backup, self.backup)
 
+    def path_of(self, name):
+        return self.data / "blobs" / self.ids[name][:2] / self.ids[name]
+
+    def is_sound(self):
+        return self.crashes.is_sound(self.data)
+
+    def keeps_a_and_b(self):
+        found = self.crashes.listed(self.data)
+        return found is not None and {self.ids["a"], self.ids["b"]} <= found
+
+
+def upload_problems(it, kills, chance):
     def without_c():
-        fresh()
-        crashes.run("sequences", "delete", ids["c"], *local, str(data))
+        it.fresh()
+        it.crashes.run("sequences", "delete", it.ids["c"], *it.local())
 
-    def after_upload(result):
-        found = crashes.listed(data)
-        if found is None or not {ids["a"], ids["b"]} <= found:
+    def inspect(result):
+        if not it.keeps_a_and_b():
             return "an older sequence is lost"
-        if ids["c"] in result.stdout and ids["c"] not in found:
+        if it.ids["c"] in result.stdout and it.ids["c"] not in it.crashes.listed(it.data):
             return "an acknowledged upload is lost"
-        return None if crashes.is_sound(data) else "the store is not sound"
+        return None if it.is_sound() else "the store is not sound"
 
-    def after_delete(result):
-        found = crashes.listed(data)
-        if found is None or not {ids["a"], ids["b"]} <= found:
+    return it.crashes.matrix("upload", without_c, ["upload", str(it.root / "c"), *it.local()], inspect, kills, chance)
+
+
+def delete_problems(it, kills, chance):
+    def inspect(result):
+        if not it.keeps_a_and_b():
             return "another sequence is lost"
-        if result.returncode == 0 and ids["c"] in found:
+        if result.returncode == 0 and it.ids["c"] in it.crashes.listed(it.data):
             return "a deleted sequence is back"
-        return None if crashes.is_sound(data) else "the store is not sound"
+        return None if it.is_sound() else "the store is not sound"
 
-    def after_backup(_):
-        if not crashes.listed(data) == set(ids.values()):
+    return it.crashes.matrix("delete", it.fresh, ["sequences", "delete", it.ids["c"], *it.local()], inspect, kills,
+                             chance)
+
+
+def backup_problems(it, kills, chance):
+    command = ["store", "backup", str(it.data), str(it.backup)]
+
+    def inspect(_):
+        if it.crashes.listed(it.data) != set(it.ids.values()):
             return "the store itself has changed"
-        if crashes.run("store", "backup", str(data), str(backup), "-q").returncode != 0:
+        if it.crashes.run(*command, "-q").returncode != 0:
             return "the backup cannot be renewed"
-        return None if crashes.is_sound(backup) else "the backup is not sound"
+        return None if it.crashes.is_sound(it.backup) else "the backup is not sound"
+
+    return it.crashes.matrix("backup", lambda: it.fresh(True), command, inspect, kills, chance)
+
+
+def repair_problems(it, kills, chance):
+    command = ["store", "repair", str(it.data)]
 
     def lost_catalog():
-        fresh()
-        for path in data.glob("catalogue.db*"):
+        it.fresh()
+        for path in it.data.glob("catalogue.db*"):
             path.unlink()
 
-    def after_repair(_):
-        if crashes.run("store", "repair", str(data), "-q").returncode != 0:
+    def inspect(_):
+        if it.crashes.run(*command, "-q").returncode != 0:
             return "the repair cannot be done again"
-        if crashes.listed(data) != set(ids.values()):
+        if it.crashes.listed(it.data) != set(it.ids.values()):
             return "a sequence is lost"
-        return None if crashes.is_sound(data) else "the store is not sound"
+        return None if it.is_sound() else "the store is not sound"
 
+    return it.crashes.matrix("repair", lost_catalog, command, inspect, kills, chance)
+
+
+def sweep_problems(it, kills, chance):
+    """Retention: a sequence that has lived out its time, one that is pinned, the older of two jobs, an upload."""
+    template, upload_id = it.root / "sweep-template", "f" * 64
+    it.fresh(template=it.template)
+    for name, frames in (("brief", 6), ("pinned", 7)):
+        make_sequence(it.root / name, frames)
+        it.ids[name] = it.upload(name, it.data, "--ttl-hours", "1e-9")
+    it.crashes.run("sequences", "pin", it.ids["pinned"], *it.local())
+    for name in ("a", "b"):
+        it.crashes.run("compress", str(it.root / name), "-o", str(it.root / f"{name}.plt"), "--kg", "1", *it.local())
+    part = it.data / "uploads" / f"{upload_id}.part"
+    part.write_text("some bytes")
+    os.utime(part, (1, 1))
+    shutil.copytree(it.data, template)
+    command = ["store", "sweep", str(it.data), "--keep-jobs", "1"]
+    compressed = it.crashes.listed(it.data, "compressed")
+
+    def is_swept():
+        jobs = it.crashes.listed(it.data, "jobs")
+        return it.ids["brief"] not in it.crashes.listed(it.data) and len(jobs) == 1 and not part.exists()
+
+    def inspect(result):
+        found = it.crashes.listed(it.data)
+        if found is None or not {it.ids[name] for name in ("a", "b", "c", "pinned")} <= found:
+            return "a sequence that should stay is lost"
+        if it.crashes.listed(it.data, "compressed") != compressed:
+            return "what a deleted job has made is lost"
+        if result.returncode == 0 and not is_swept():
+            return "what was swept is back"
+        if not it.is_sound():
+            return "the store is not sound"
+        if it.crashes.run(*command).returncode != 0 or not is_swept():
+            return "the sweep cannot be done again"
+        return None if it.is_sound() else "the store is not sound after another sweep"
+
+    return it.crashes.matrix("sweep", lambda: it.fresh(template=template), command, inspect, kills, chance)
+
+
+def scrub_problems(it, kills, chance):
+    """A damaged file goes to the quarantine: it is there or in its place, and an upload mends its entry."""
+    command = ["store", "scrub", str(it.data)]
+
+    def damaged_c():
+        it.fresh()
+        it.path_of("c").write_text("damaged")
+
+    def inspect(_):
+        if it.crashes.listed(it.data) != {it.ids[name] for name in ("a", "b", "c")}:
+            return "an entry is lost"
+        quarantined = it.data / "quarantine" / it.ids["c"]
+        if quarantined.exists() == it.path_of("c").exists():
+            return "the damaged file is nowhere, or twice"
+        it.crashes.run(*command)
+        if it.path_of("c").exists() or quarantined.read_text() != "damaged":
+            return "another scrub does not move the damaged file"
+        if it.upload("c", it.data) != it.ids["c"]:
+            return "the damaged content cannot be uploaded again"
+        return None if it.is_sound() else "the store is not sound"
+
+    return it.crashes.matrix("scrub", damaged_c, command, inspect, kills, chance)
+
+
+def all_problems(crashes, root, kills, chance):
+    it = Template(crashes, root)
+    matrices = (upload_problems, delete_problems, backup_problems, repair_problems, sweep_problems, scrub_problems)
     print(f"{'command':<10} {'moments':>8} {'kills':>6} {'lost':>5}")
-    share = max(1, kills // 4)
-    problems = crashes.matrix("upload", without_c, ["upload", str(root / "c"), *local, str(data)], after_upload,
-                              share, chance)
-    problems += crashes.matrix("delete", fresh, ["sequences", "delete", ids["c"], *local, str(data)], after_delete,
-                               share, chance)
-    problems += crashes.matrix("backup", lambda: fresh(True), ["store", "backup", str(data), str(backup)],
-                               after_backup, share, chance)
-    problems += crashes.matrix("repair", lost_catalog, ["store", "repair", str(data)], after_repair, share, chance)
+    problems = []
+    for matrix in matrices:
+        problems += matrix(it, max(1, kills // len(matrices)), chance)
     return problems
 
 

@@ -19,13 +19,20 @@ inline ErrorSummary FullErrors() {
   return errors;
 }
 
-inline SequenceInfo FullSequence() { return {kId, "walk", 7, 8, 9, {30000, 1001}, 11}; }
+inline EntryLife FullLife() {
+  return {.created = absl::FromUnixMillis(1'796'072'709'123),
+          .expires = absl::FromUnixMillis(1'796'072'719'123),
+          .pinned = true};
+}
+
+inline SequenceInfo FullSequence() { return {kId, "walk", 7, 8, 9, {30000, 1001}, 11, FullLife()}; }
 
 inline CompressedSequenceInfo FullCompressedSequence() {
   const CompressOptions options{
       .goal = CompressionGoal::kKg, .kg_percent = 2.5, .keep_face_order = false};
-  return {kId, "walk",        7,  8,
-          9,   {30000, 1001}, 11, CompressionRecord{kId, options, {1, 2, 3, 4, 5, 6}, 7, 8}};
+  return {kId,       "walk",        7,  8,
+          9,         {30000, 1001}, 11, CompressionRecord{kId, options, {1, 2, 3, 4, 5, 6}, 7, 8},
+          FullLife()};
 }
 
 inline JobInfo FullJob(JobOptions options) {
@@ -43,6 +50,10 @@ inline JobInfo FullJob(JobOptions options) {
   job.warnings = {"one", "two"};
   job.error = absl::FailedPreconditionError("no rig fits");
   job.result_id = std::string(64, 'd');
+  job.created = absl::FromUnixMillis(1'796'072'709'123);
+  job.started = *job.created + absl::Seconds(1);
+  job.ended = *job.created + absl::Seconds(2);
+  job.result_ttl = absl::Seconds(90);
   return job;
 }
 
@@ -57,6 +68,7 @@ inline ModelInfo FullModel() {
   model.num_faces = 6;
   model.num_control_vertices = 3;
   model.num_components = 4;
+  model.life = FullLife();
   model.size_bytes = 7;
   model.memory_bytes = 8;
   model.options.seed = 9;

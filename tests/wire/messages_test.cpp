@@ -283,6 +283,48 @@ TEST(MessagesTest, HostileInfosAreRefused) {
   EXPECT_FALSE(FromProto(skeleton).ok());
 }
 
+TEST(MessagesTest, TimesThatAreNoneAreRefused) {
+  JobInfo info;
+  info.id = "job-1";
+  info.created = absl::FromUnixNanos(1'796'072'709'123'456'789);
+  EXPECT_EQ(FromProto(Reparse(ToProto(info)))->created, info.created);
+  for (const absl::Time time : {absl::UnixEpoch() - absl::Nanoseconds(1), absl::UnixEpoch()}) {
+    info.created = time;
+    EXPECT_EQ(FromProto(Reparse(ToProto(info)))->created, time);
+  }
+  info.created = absl::InfiniteFuture();  // no time of a calendar; the last one goes out
+  v1::Job message = ToProto(info);
+  ASSERT_THAT(FromProto(message), IsOk());
+  const std::pair<int64_t, int32_t> wrong[] = {{int64_t{1} << 62, 0},
+                                               {std::numeric_limits<int64_t>::min(), 0},
+                                               {message.created().seconds() + 1, 0},
+                                               {0, -1},
+                                               {0, 1'000'000'000}};
+  for (const auto& [seconds, nanos] : wrong) {
+    message.mutable_created()->set_seconds(seconds);
+    message.mutable_created()->set_nanos(nanos);
+    EXPECT_THAT(FromProto(message),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("job.created")));
+  }
+}
+
+TEST(MessagesTest, TimesToLiveAreSecondsAndZeroIsForEver) {
+  EXPECT_EQ(TtlToSeconds(kKeepForEver), 0);
+  EXPECT_EQ(TtlToSeconds(absl::Milliseconds(1)), 1);  // never shorter than it was told
+  EXPECT_EQ(TtlToSeconds(absl::Milliseconds(1001)), 2);
+  EXPECT_EQ(TtlFromSeconds(0, "ttl").value(), kKeepForEver);
+  const int64_t century = int64_t{100} * 365 * 24 * 3600;
+  for (const int64_t seconds : {int64_t{1}, century}) {
+    EXPECT_EQ(TtlFromSeconds(seconds, "ttl").value(), absl::Seconds(seconds));
+    EXPECT_EQ(TtlToSeconds(absl::Seconds(seconds)), seconds);
+  }
+  EXPECT_EQ(TtlToSeconds(absl::Seconds(century + 1)), century);
+  for (const int64_t wrong : {int64_t{-1}, century + 1, std::numeric_limits<int64_t>::min()}) {
+    EXPECT_THAT(TtlFromSeconds(wrong, "ttl_seconds"),
+                HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("ttl_seconds")));
+  }
+}
+
 TEST(MessagesTest, NamesThatAreNoUtf8StillCrossTheWire) {
   SequenceInfo sequence{kId, "\xff\xfe", 1, 1, 1, {30, 1}, 1};
   EXPECT_EQ(FromProto(Reparse(ToProto(sequence)))->name, "\xef\xbf\xbd\xef\xbf\xbd");

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/show/report_json.h"
+#include "cli/show/time_text.h"
 
 namespace pleat {
 
@@ -22,9 +23,23 @@ ordered_json StoredMeshesJson(const Info& info) {
           {"size_bytes", info.size_bytes}};
 }
 
+void AddTime(const char* name, const std::optional<absl::Time>& time, ordered_json* json) {
+  if (time) (*json)[name] = TimeForJson(*time);
+}
+
+void AddLife(const EntryLife& life, ordered_json* json) {
+  AddTime("created", life.created, json);
+  AddTime("expires", life.expires, json);
+  if (life.pinned) (*json)["pinned"] = true;
+}
+
 }  // namespace
 
-ordered_json SequenceJson(const SequenceInfo& info) { return StoredMeshesJson(info); }
+ordered_json SequenceJson(const SequenceInfo& info) {
+  ordered_json json = StoredMeshesJson(info);
+  AddLife(info.life, &json);
+  return json;
+}
 
 const char* JobKindName(const JobInfo& info) {
   return std::holds_alternative<TrainOptions>(info.options) ? "training" : "compression";
@@ -50,6 +65,12 @@ ordered_json JobJson(const JobInfo& info) {
   }
   if (!info.result_id.empty()) json["result_id"] = info.result_id;
   if (!info.rig_id.empty()) json["rig_id"] = info.rig_id;
+  AddTime("created", info.created, &json);
+  AddTime("started", info.started, &json);
+  AddTime("ended", info.ended, &json);
+  if (info.result_ttl != kKeepForEver) {
+    json["result_ttl_seconds"] = absl::ToDoubleSeconds(info.result_ttl);
+  }
   return json;
 }
 
@@ -60,27 +81,30 @@ ordered_json ModelJson(const ModelInfo& info) {
     joints.push_back(
         {{"name", joint.name}, {"parent", joint.parent}, {"position_m", {p.x(), p.y(), p.z()}}});
   }
-  return {{"id", info.id},
-          {"name", info.name},
-          {"learner", info.record.learner},
-          {"fps", info.frame_rate.fps()},
-          {"num_vertices", info.num_vertices},
-          {"num_faces", info.num_faces},
-          {"num_control_vertices", info.num_control_vertices},
-          {"num_components", info.num_components},
-          {"num_training_frames", info.record.num_frames},
-          {"size_bytes", info.size_bytes},
-          {"memory_bytes", info.memory_bytes},
-          {"diagonal_m", info.record.diagonal_m},
-          {"fit", ErrorJson(info.record.fit)},
-          {"reconstruction", ErrorJson(info.record.reconstruction)},
-          {"joints", joints},
-          {"warnings", info.record.warnings},
-          {"options", OptionsJson(info.options)}};
+  ordered_json json = {{"id", info.id},
+                       {"name", info.name},
+                       {"learner", info.record.learner},
+                       {"fps", info.frame_rate.fps()},
+                       {"num_vertices", info.num_vertices},
+                       {"num_faces", info.num_faces},
+                       {"num_control_vertices", info.num_control_vertices},
+                       {"num_components", info.num_components},
+                       {"num_training_frames", info.record.num_frames},
+                       {"size_bytes", info.size_bytes},
+                       {"memory_bytes", info.memory_bytes},
+                       {"diagonal_m", info.record.diagonal_m},
+                       {"fit", ErrorJson(info.record.fit)},
+                       {"reconstruction", ErrorJson(info.record.reconstruction)},
+                       {"joints", joints},
+                       {"warnings", info.record.warnings},
+                       {"options", OptionsJson(info.options)}};
+  AddLife(info.life, &json);
+  return json;
 }
 
 ordered_json CompressedSequenceJson(const CompressedSequenceInfo& info) {
   ordered_json json = StoredMeshesJson(info);
+  AddLife(info.life, &json);
   if (info.record) {
     json["sequence_id"] = info.record->sequence_id;
     json["options"] = OptionsJson(info.record->options);

@@ -1,4 +1,4 @@
-// The verbs for what a service stores: list, show, delete, download.
+// The verbs for what a service stores: list, show, delete, pin, unpin, download.
 #pragma once
 
 #include <functional>
@@ -28,6 +28,7 @@ struct StoredThings {
   std::string kind;  // what messages and --help call one of them, such as "model"
   absl::StatusOr<std::vector<Info>> (*list)(CharacterService& service);
   absl::Status (*remove)(CharacterService& service, const std::string& id);
+  absl::Status (*pin)(CharacterService& service, const std::string& id, bool pinned);
   // Null when they cannot be downloaded.
   absl::StatusOr<std::string> (*download)(CharacterService& service, const std::string& id,
                                           const Progress& progress);
@@ -65,6 +66,8 @@ absl::Status RunStoredVerb(const StoredThings<Info>& things, const StoredVerbOpt
   }
   PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(infos, options.id, things.kind));
   if (options.action == "delete") return things.remove(*service, id);
+  if (options.action == "pin") return things.pin(*service, id, true);
+  if (options.action == "unpin") return things.pin(*service, id, false);
   if (options.action == "download") {
     ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
     PLEAT_ASSIGN_OR_RETURN(
@@ -85,10 +88,11 @@ void AddStoredVerb(CLI::App& app, Session& session, StoredThings<Info> things) {
   CLI::App* verb =
       AddVerb(app, session, things.verb, things.description,
               [options, things, &session] { return RunStoredVerb(things, *options, session); });
-  std::vector<std::string> actions = {"list", "show", "delete"};
+  std::vector<std::string> actions = {"list", "show", "delete", "pin", "unpin"};
   if (can_download) actions.push_back("download");
   verb->add_option("ACTION", options->action,
-                   can_download ? "list, show, delete or download" : "list, show or delete")
+                   absl::StrCat("list, show, delete, pin, unpin", can_download ? ", download" : "",
+                                "; retention never removes what is pinned"))
       ->check(CLI::IsMember(actions))
       ->capture_default_str();
   verb->add_option("ID", options->id,

@@ -64,6 +64,17 @@ bool RunsOnService(const Session& session) {
   return !session.server.empty() || !session.data_dir.empty();
 }
 
+void AddTtlFlag(CLI::App* verb, const std::string& what, double* ttl_hours) {
+  verb->add_option("--ttl-hours", *ttl_hours,
+                   absl::StrCat("hours that the service keeps ", what, " at least; 0 = for ever"))
+      ->check(CLI::Range(0., 876'000.))
+      ->capture_default_str();
+}
+
+absl::Duration TtlOf(double ttl_hours) {
+  return ttl_hours == 0 ? absl::InfiniteDuration() : absl::Hours(ttl_hours);
+}
+
 void AddForceFlag(CLI::App* verb, Session& session) {
   verb->add_flag("--force", session.force, "replace files that exist");
 }

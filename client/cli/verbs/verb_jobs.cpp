@@ -10,6 +10,7 @@
 #include "cli/show/info_json.h"
 #include "cli/show/json_text.h"
 #include "cli/show/text_table.h"
+#include "cli/show/time_text.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
 
@@ -25,9 +26,11 @@ void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
   for (const JobInfo& job : jobs) {
     rows.push_back({job.id, JobStateName(job.state), job.stage,
                     absl::StrFormat("%.0f %%", 100 * job.fraction), JobKindName(job), job.name,
-                    job.result_id.substr(0, 12)});
+                    job.result_id.substr(0, 12), TimeText(job.created),
+                    DurationText(job.started, job.ended)});
   }
-  out << FormatTable({"id", "state", "stage", "done", "kind", "name", "result"}, rows);
+  out << FormatTable(
+      {"id", "state", "stage", "done", "kind", "name", "result", "created (UTC)", "took"}, rows);
 }
 
 absl::Status RunWatch(JobService& jobs, const std::string& id, const Session& session) {
@@ -52,6 +55,7 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
   if (options.id.empty()) return UsageError(absl::StrCat("'", options.action, "' needs an id"));
   PLEAT_ASSIGN_OR_RETURN(const std::string id, CompleteId(jobs, options.id, "job"));
   if (options.action == "cancel") return service->jobs().Cancel(id);
+  if (options.action == "delete") return service->jobs().Delete(id);
   if (options.action == "watch") return RunWatch(service->jobs(), id, session);
   PLEAT_ASSIGN_OR_RETURN(const JobInfo job, service->jobs().Get(id));
   *session.out << JsonText(JobJson(job));
@@ -62,11 +66,11 @@ absl::Status RunJobs(const JobsOptions& options, const Session& session) {
 
 void AddJobsVerb(CLI::App& app, Session& session) {
   auto options = std::make_shared<JobsOptions>();
-  CLI::App* verb =
-      AddVerb(app, session, "jobs", "list, show, cancel or watch training and compression jobs",
-              [options, &session] { return RunJobs(*options, session); });
-  verb->add_option("ACTION", options->action, "list, show, cancel or watch")
-      ->check(CLI::IsMember({"list", "show", "cancel", "watch"}))
+  CLI::App* verb = AddVerb(app, session, "jobs",
+                           "list, show, cancel, watch or delete training and compression jobs",
+                           [options, &session] { return RunJobs(*options, session); });
+  verb->add_option("ACTION", options->action, "list, show, cancel, watch or delete")
+      ->check(CLI::IsMember({"list", "show", "cancel", "watch", "delete"}))
       ->capture_default_str();
   verb->add_option("ID", options->id, "id of a job, or its first digits");
   AddServerFlags(verb, session);

@@ -1,6 +1,7 @@
 // models: the trained characters of a service.
 #include "absl/strings/str_format.h"
 #include "cli/show/info_json.h"
+#include "cli/show/time_text.h"
 #include "cli/verbs/stored_verb.h"
 
 namespace pleat {
@@ -13,7 +14,9 @@ std::vector<std::string> ModelRow(const ModelInfo& model) {
           absl::StrCat(model.num_vertices),
           absl::StrCat(model.record.num_frames),
           absl::StrFormat("%.3f", model.record.reconstruction.mean_percent),
-          FormatBytes(static_cast<double>(model.size_bytes))};
+          FormatBytes(static_cast<double>(model.size_bytes)),
+          TimeText(model.life.created),
+          KeptUntilText(model.life)};
 }
 
 }  // namespace
@@ -27,11 +30,14 @@ void AddModelsVerb(CLI::App& app, Session& session) {
        .list = [](CharacterService& service) { return service.models().List(); },
        .remove = [](CharacterService& service,
                     const std::string& id) { return service.models().Delete(id); },
+       .pin = [](CharacterService& service, const std::string& id,
+                 bool pinned) { return service.models().SetPinned(id, pinned); },
        .download = [](CharacterService& service, const std::string& id,
                       const Progress& progress) { return service.models().Download(id, progress); },
        .file_ending = ".pleat",
        .json = ModelJson,
-       .header = {"id", "name", "learner", "vertices", "frames", "error %", "size"},
+       .header = {"id", "name", "learner", "vertices", "frames", "error %", "size",
+                  "created (UTC)"},
        .row = ModelRow});
 }
 

@@ -1,7 +1,10 @@
-// store check | backup | restore | repair: data folders, on the machine where they are.
+// store check | backup | restore | repair | scrub | sweep: data folders, on the machine where they
+// are.
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -13,6 +16,8 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
 #include "pleat/local/describe_file.h"
+#include "pleat/local/retention.h"
+#include "pleat/local/scrubber.h"
 #include "pleat/store/store_backup.h"
 #include "pleat/store/store_check.h"
 #include "pleat/store/store_repair.h"
@@ -25,6 +30,8 @@ using nlohmann::ordered_json;
 struct StoreVerbOptions {
   std::string action, folder, target;
   bool fast = false;
+  RetentionRules retention;
+  double job_days = 0, upload_hours = 7 * 24;
 };
 
 ordered_json ProblemsJson(const std::vector<StoreProblem>& problems) {
@@ -146,6 +153,74 @@ absl::Status RunRepair(const StoreVerbOptions& options, const Session& session,
                        "upload the files of these entries again, restore them or delete them");
 }
 
+// Opens a data folder that is there, for itself alone. `problems` receives what is wrong with it.
+absl::StatusOr<std::unique_ptr<Store>> OpenStore(const std::string& folder,
+                                                 std::vector<std::string>* problems) {
+  std::error_code error;
+  if (!std::filesystem::exists(CatalogPath(folder), error)) {
+    return absl::NotFoundError(
+        absl::StrCat("'", folder, "' has no catalogue.db: it is no data folder"));
+  }
+  return Store::Open(
+      {.data_dir = folder, .reserve_bytes = 0, .on_problem = [problems](const std::string& text) {
+         problems->push_back(text);
+       }});
+}
+
+absl::Status PrintSentences(const StoreVerbOptions& options, const Session& session,
+                            const std::vector<std::string>& removed,
+                            const std::vector<std::string>& problems) {
+  if (session.json) {
+    *session.out << JsonText({{"removed", removed}, {"problems", problems}});
+  } else {
+    for (const std::string& sentence : removed) *session.out << sentence << "\n";
+    for (const std::string& problem : problems) *session.out << "problem: " << problem << "\n";
+  }
+  return ProblemStatus(options.folder, problems.size(),
+                       "'pleat store check' lists what is wrong now");
+}
+
+// What a server's scrubber does in its period, at once.
+absl::Status RunScrub(const StoreVerbOptions& options, const Session& session,
+                      const Progress& progress) {
+  std::vector<std::string> problems;
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<Store> store, OpenStore(options.folder, &problems));
+  if (!Scrubber::RunPass(store.get(), 0, [&](double) { return !progress.cancelled(); })) {
+    return absl::CancelledError("the scrub was cancelled");
+  }
+  return PrintSentences(options, session, {}, problems);
+}
+
+// What a server's retention does every minute.
+absl::Status RunSweep(const StoreVerbOptions& options, const Session& session) {
+  RetentionRules rules = options.retention;
+  rules.max_upload_age = absl::Hours(options.upload_hours);
+  if (options.job_days > 0) rules.max_job_age = absl::Hours(24 * options.job_days);
+  std::vector<std::string> removed, problems;
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<Store> store, OpenStore(options.folder, &problems));
+  StoredFiles files(std::move(store), {});
+  RunRetention({.files = &files,
+                .jobs = JobsInRows(&files),
+                .on_removed = [&](const std::string& text) { removed.push_back(text); }},
+               rules);
+  return PrintSentences(options, session, removed, problems);
+}
+
+void AddSweepFlags(CLI::App* verb, StoreVerbOptions* options) {
+  verb->add_option("--keep-jobs", options->retention.max_ended_jobs,
+                   "sweep: jobs that have ended and stay, the newest; 0 = all")
+      ->check(CLI::Range(int64_t{0}, int64_t{1'000'000'000}))
+      ->capture_default_str();
+  verb->add_option("--keep-jobs-days", options->job_days,
+                   "sweep: days that a job stays after its end; 0 = for ever")
+      ->check(CLI::Range(0., 36'500.))
+      ->capture_default_str();
+  verb->add_option("--keep-uploads-hours", options->upload_hours,
+                   "sweep: hours that what has arrived of an upload stays after its last byte")
+      ->check(CLI::Range(0., 876'000.))
+      ->capture_default_str();
+}
+
 absl::Status RunStore(const StoreVerbOptions& options, const Session& session) {
   const bool copies = options.action == "backup" || options.action == "restore";
   if (copies == options.target.empty()) {
@@ -155,6 +230,8 @@ absl::Status RunStore(const StoreVerbOptions& options, const Session& session) {
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   const Progress progress = InterruptibleProgress(&display);
   if (copies) return RunCopy(options, session, progress);
+  if (options.action == "sweep") return RunSweep(options, session);
+  if (options.action == "scrub") return RunScrub(options, session, progress);
   return options.action == "check" ? RunCheck(options, session, progress)
                                    : RunRepair(options, session, progress);
 }
@@ -164,17 +241,18 @@ absl::Status RunStore(const StoreVerbOptions& options, const Session& session) {
 void AddStoreVerb(CLI::App& app, Session& session) {
   auto options = std::make_shared<StoreVerbOptions>();
   CLI::App* verb = AddVerb(app, session, "store",
-                           "check, back up, restore or repair the data folder of a server",
+                           "check, back up, restore, repair, scrub or sweep the data folder of a "
+                           "server",
                            [options, &session] { return RunStore(*options, session); });
-  verb->add_option("ACTION", options->action, "check, backup, restore or repair")
-      ->check(CLI::IsMember({"check", "backup", "restore", "repair"}))
+  verb->add_option("ACTION", options->action, "check, backup, restore, repair, scrub or sweep")
+      ->check(CLI::IsMember({"check", "backup", "restore", "repair", "scrub", "sweep"}))
       ->required();
-  verb->add_option("FOLDER", options->folder,
-                   "the data folder (check, backup and repair), or the backup (restore)")
+  verb->add_option("FOLDER", options->folder, "the data folder, or the backup (restore)")
       ->required();
   verb->add_option("TARGET", options->target,
                    "where the backup is made or renewed, or the data folder to restore to");
   verb->add_flag("--fast", options->fast, "check: do not read the files, only look for them");
+  AddSweepFlags(verb, options.get());
 }
 
 }  // namespace pleat

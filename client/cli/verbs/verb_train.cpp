@@ -44,6 +44,7 @@ struct TrainVerbOptions {
   TrainFlags flags;
   TrainResources resources;
   bool detach = false;
+  double ttl_hours = 0;
 };
 
 struct TrainedModel {
@@ -83,15 +84,16 @@ absl::StatusOr<std::optional<UserRig>> ReadUserRig(const TrainVerbOptions& optio
 }
 
 // Uploads the clips and creates a job for them. Without `rig`, which may be null, it finds a rig.
+// ttl: how long the service keeps the clips and the model at least.
 absl::StatusOr<JobInfo> CreateJob(CharacterService& service, const std::vector<MeshSequence>& clips,
                                   const UserRig* rig, const TrainOptions& options,
-                                  const Session& session) {
+                                  absl::Duration ttl, const Session& session) {
   // A model without a name of its own is named after its first clip, as in TrainHere.
-  TrainingRequest request{.options = options};
+  TrainingRequest request{.options = options, .model_ttl = ttl};
   if (rig) request.rig = EncodeRig(*rig);
   for (const MeshSequence& clip : clips) {
     PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info,
-                           UploadWithProgress(service.sequences(), clip, session));
+                           UploadWithProgress(service.sequences(), clip, session, ttl));
     request.sequence_ids.push_back(info.id);
   }
   return service.jobs().CreateTraining(request);
@@ -233,7 +235,8 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
     const absl::StatusOr<std::unique_ptr<CharacterService>> opened = OpenService(session);
     if (!opened.ok()) return WithLocalHint(opened.status(), session);
     CharacterService& service = **opened;
-    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(service, clips, user_rig, train, session));
+    PLEAT_ASSIGN_OR_RETURN(const JobInfo job, CreateJob(service, clips, user_rig, train,
+                                                        TtlOf(options.ttl_hours), session));
     if (options.detach) return PrintDetached(job, session);
     PLEAT_ASSIGN_OR_RETURN(trained, TrainOnService(service, job, session));
   }
@@ -280,6 +283,7 @@ void AddTrainVerb(CLI::App& app, Session& session) {
   verb->add_option("--lock", options->locked,
                    "joints of --rig that refinement leaves where they are: NAME,NAME,...")
       ->delimiter(',');
+  AddTtlFlag(verb, "the clips and the model", &options->ttl_hours);
   AddTrainFlags(verb, &options->flags);
   AddForceFlag(verb, session);
   AddServerFlags(verb, session);

@@ -11,20 +11,27 @@
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
+#include "pleat/formats/sequence_file.h"
 
 namespace pleat {
 namespace {
 
 struct UploadOptions {
   std::string input, fps;
+  double ttl_hours = 0;
+  bool forget = false;
 };
 
 absl::Status RunUpload(const UploadOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
                          ReadInput(session, options.input, options.fps));
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CharacterService> service, OpenService(session));
-  PLEAT_ASSIGN_OR_RETURN(const SequenceInfo info,
-                         UploadWithProgress(service->sequences(), sequence, session));
+  if (options.forget) {
+    return service->sequences().DeleteUpload(SequenceId(EncodeSequence(sequence)));
+  }
+  PLEAT_ASSIGN_OR_RETURN(
+      const SequenceInfo info,
+      UploadWithProgress(service->sequences(), sequence, session, TtlOf(options.ttl_hours)));
   if (session.json) {
     *session.out << JsonText(SequenceJson(info));
   } else {
@@ -41,6 +48,9 @@ void AddUploadVerb(CLI::App& app, Session& session) {
                            [options, &session] { return RunUpload(*options, session); });
   verb->add_option("INPUT", options->input, "folder, glob, .pc2, .obj, .ply or .pseq")->required();
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
+  AddTtlFlag(verb, "the sequence", &options->ttl_hours);
+  verb->add_flag("--forget", options->forget,
+                 "do not upload: remove what has arrived of an upload that broke off");
   AddServerFlags(verb, session);
 }
 

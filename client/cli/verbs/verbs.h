@@ -7,6 +7,7 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
+#include "absl/time/time.h"
 #include "cli/session.h"
 
 namespace pleat {
@@ -26,6 +27,9 @@ void AddServerFlags(CLI::App* verb, Session& session);
 // RunsOnService says which of the two it is.
 void AddOptionalServerFlags(CLI::App* verb, Session& session);
 bool RunsOnService(const Session& session);
+// Adds --ttl-hours: how long a service keeps `what`. TtlOf gives its value; 0 hours are for ever.
+void AddTtlFlag(CLI::App* verb, const std::string& what, double* ttl_hours);
+absl::Duration TtlOf(double ttl_hours);
 // Adds --force, for verbs that write files.
 void AddForceFlag(CLI::App* verb, Session& session);
 // Adds --local alone, for verbs that always run in this process.

@@ -123,9 +123,10 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
  public:
   explicit RemoteCompressedSequences(RemoteState* state) : state_(state) {}
 
-  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
-                                                const Progress& progress) override {
-    return UploadFile(*state_, Calls(), ToHex(ComputeSha256(file)), file, progress);
+  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file, const Progress& progress,
+                                                absl::Duration ttl) override {
+    return UploadFile(*state_, Calls(), {ToHex(ComputeSha256(file)), file.size(), ttl}, file,
+                      progress);
   }
 
   absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) override {
@@ -137,9 +138,10 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
     return FromProto(response.compressed_sequence());
   }
 
-  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() override {
-    return ReadPages<CompressedSequenceInfo, v1::ListCompressedSequencesRequest,
-                     v1::ListCompressedSequencesResponse>(
+  absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<CompressedSequenceInfo, v1::ListCompressedSequencesRequest,
+                    v1::ListCompressedSequencesResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::CompressedSequenceService::Stub::ListCompressedSequences, request,
                       response);
@@ -154,20 +156,29 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
     return Call(&v1::CompressedSequenceService::Stub::DeleteCompressedSequence, request, &response);
   }
 
+  absl::Status SetPinned(const std::string& id, bool pinned) override {
+    v1::PinCompressedSequenceRequest request;
+    v1::PinCompressedSequenceResponse response;
+    request.set_id(id);
+    request.set_pinned(pinned);
+    return Call(&v1::CompressedSequenceService::Stub::PinCompressedSequence, request, &response);
+  }
+
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override {
     return DownloadFile(*state_, id, progress, Start());
   }
 
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override {
-    return ReadFileBytes(id, offset, count, Start());
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override {
+    return OpenRemoteDownload(Start(), id, offset_bytes);
   }
 
   absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
-      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) override {
+      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+      absl::Duration ttl) override {
     return std::make_unique<
         RemoteUpload<CompressedSequenceInfo, v1::UploadCompressedSequenceResponse>>(
-        Calls(), id, size_bytes, offset_bytes, Progress());
+        Calls(), UploadedFile{id, size_bytes, ttl}, offset_bytes, Progress());
   }
 
   absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,

@@ -31,6 +31,7 @@ class RemoteJobs final : public JobService {
     message.set_model_name(request.model_name);
     message.set_rig(request.rig);
     message.set_request_id(request.request_id.empty() ? MakeRequestId() : request.request_id);
+    message.set_model_ttl_seconds(TtlToSeconds(request.model_ttl));
     PLEAT_RETURN_IF_ERROR(Create(&v1::JobService::Stub::CreateTrainingJob, message, &response));
     return FromProto(response.job());
   }
@@ -41,6 +42,7 @@ class RemoteJobs final : public JobService {
     message.set_sequence_id(request.sequence_id);
     *message.mutable_options() = ToProto(request.options);
     message.set_request_id(request.request_id.empty() ? MakeRequestId() : request.request_id);
+    message.set_result_ttl_seconds(TtlToSeconds(request.result_ttl));
     PLEAT_RETURN_IF_ERROR(Create(&v1::JobService::Stub::CreateCompressionJob, message, &response));
     return FromProto(response.job());
   }
@@ -53,8 +55,9 @@ class RemoteJobs final : public JobService {
     return FromProto(response.job());
   }
 
-  absl::StatusOr<std::vector<JobInfo>> List() override {
-    return ReadPages<JobInfo, v1::ListJobsRequest, v1::ListJobsResponse>(
+  absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<JobInfo, v1::ListJobsRequest, v1::ListJobsResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::JobService::Stub::ListJobs, request, response);
         },
@@ -66,6 +69,13 @@ class RemoteJobs final : public JobService {
     v1::CancelJobResponse response;
     request.set_id(id);
     return Call(&v1::JobService::Stub::CancelJob, request, &response);
+  }
+
+  absl::Status Delete(const std::string& id) override {
+    v1::DeleteJobRequest request;
+    v1::DeleteJobResponse response;
+    request.set_id(id);
+    return Call(&v1::JobService::Stub::DeleteJob, request, &response);
   }
 
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(

@@ -22,8 +22,9 @@ class RemoteModels final : public ModelService {
     return FromProto(response.model());
   }
 
-  absl::StatusOr<std::vector<ModelInfo>> List() override {
-    return ReadPages<ModelInfo, v1::ListModelsRequest, v1::ListModelsResponse>(
+  absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<ModelInfo, v1::ListModelsRequest, v1::ListModelsResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::ModelService::Stub::ListModels, request, response);
         },
@@ -37,13 +38,21 @@ class RemoteModels final : public ModelService {
     return Call(&v1::ModelService::Stub::DeleteModel, request, &response);
   }
 
+  absl::Status SetPinned(const std::string& id, bool pinned) override {
+    v1::PinModelRequest request;
+    v1::PinModelResponse response;
+    request.set_id(id);
+    request.set_pinned(pinned);
+    return Call(&v1::ModelService::Stub::PinModel, request, &response);
+  }
+
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override {
     return DownloadFile(*state_, id, progress, Start());
   }
 
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override {
-    return ReadFileBytes(id, offset, count, Start());
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override {
+    return OpenRemoteDownload(Start(), id, offset_bytes);
   }
 
  private:

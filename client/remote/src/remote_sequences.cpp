@@ -15,10 +15,10 @@ class RemoteSequences final : public SequenceService {
  public:
   explicit RemoteSequences(RemoteState* state) : state_(state) {}
 
-  absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
-                                      const Progress& progress) override {
+  absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence, const Progress& progress,
+                                      absl::Duration ttl) override {
     const std::string bytes = EncodeSequence(sequence);
-    return UploadFile(*state_, Calls(), SequenceId(bytes), bytes, progress);
+    return UploadFile(*state_, Calls(), {SequenceId(bytes), bytes.size(), ttl}, bytes, progress);
   }
 
   absl::StatusOr<SequenceInfo> Get(const std::string& id) override {
@@ -29,8 +29,9 @@ class RemoteSequences final : public SequenceService {
     return FromProto(response.sequence());
   }
 
-  absl::StatusOr<std::vector<SequenceInfo>> List() override {
-    return ReadPages<SequenceInfo, v1::ListSequencesRequest, v1::ListSequencesResponse>(
+  absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& page) override {
+    return ReadPage<SequenceInfo, v1::ListSequencesRequest, v1::ListSequencesResponse>(
+        page,
         [this](const auto& request, auto* response) {
           return Call(&v1::SequenceService::Stub::ListSequences, request, response);
         },
@@ -44,6 +45,21 @@ class RemoteSequences final : public SequenceService {
     return Call(&v1::SequenceService::Stub::DeleteSequence, request, &response);
   }
 
+  absl::Status SetPinned(const std::string& id, bool pinned) override {
+    v1::PinSequenceRequest request;
+    v1::PinSequenceResponse response;
+    request.set_id(id);
+    request.set_pinned(pinned);
+    return Call(&v1::SequenceService::Stub::PinSequence, request, &response);
+  }
+
+  absl::Status DeleteUpload(const std::string& id) override {
+    v1::DeleteUploadRequest request;
+    v1::DeleteUploadResponse response;
+    request.set_id(id);
+    return Call(&v1::SequenceService::Stub::DeleteUpload, request, &response);
+  }
+
   absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) override {
     v1::QueryUploadRequest request;
     v1::QueryUploadResponse response;
@@ -54,9 +70,10 @@ class RemoteSequences final : public SequenceService {
 
   absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
                                                               uint64_t size_bytes,
-                                                              uint64_t offset_bytes) override {
+                                                              uint64_t offset_bytes,
+                                                              absl::Duration ttl) override {
     return std::make_unique<RemoteUpload<SequenceInfo, v1::UploadSequenceResponse>>(
-        Calls(), id, size_bytes, offset_bytes, Progress());
+        Calls(), UploadedFile{id, size_bytes, ttl}, offset_bytes, Progress());
   }
 
  private:

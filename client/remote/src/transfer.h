@@ -17,7 +17,10 @@
 #include "pleat/base/progress.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
+#include "pleat/wire/service_messages.h"
 #include "remote_state.h"
 
 namespace pleat {
@@ -33,22 +36,30 @@ struct UploadCalls {
   std::function<absl::StatusOr<Info>(const Response&)> info_of;
 };
 
+// What is uploaded, and how long the server keeps it at least.
+struct UploadedFile {
+  std::string id;
+  uint64_t size_bytes = 0;
+  absl::Duration ttl = kKeepForEver;
+};
+
 // One call of an upload. The server may end it early, when it has the file already or refuses it.
 // What is appended after that goes nowhere, and Finish says how the call ended.
 template <typename Info, typename Response>
 class RemoteUpload final : public ContentUpload<Info> {
  public:
   // progress: its cancellation cancels the call.
-  RemoteUpload(const UploadCalls<Info, Response>& calls, const std::string& id, uint64_t size_bytes,
+  RemoteUpload(const UploadCalls<Info, Response>& calls, const UploadedFile& file,
                uint64_t offset_bytes, const Progress& progress)
       : info_of_(calls.info_of),
         received_bytes_(offset_bytes),
         watcher_(&context_, progress),
         writer_(calls.start(&context_, &response_)) {
     v1::UploadSequenceRequest request;
-    request.mutable_header()->set_id(id);
-    request.mutable_header()->set_size_bytes(size_bytes);
+    request.mutable_header()->set_id(file.id);
+    request.mutable_header()->set_size_bytes(file.size_bytes);
     request.mutable_header()->set_offset_bytes(offset_bytes);
+    request.mutable_header()->set_ttl_seconds(TtlToSeconds(file.ttl));
     open_ = writer_->Write(request);
   }
   ~RemoteUpload() override {
@@ -93,9 +104,9 @@ class RemoteUpload final : public ContentUpload<Info> {
 
 // Makes one attempt to send the rest of `bytes` from `offset` on.
 template <typename Info, typename Response>
-absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const std::string& id,
+absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const UploadedFile& file,
                               std::string_view bytes, uint64_t offset, const Progress& progress) {
-  RemoteUpload<Info, Response> upload(calls, id, bytes.size(), offset, progress);
+  RemoteUpload<Info, Response> upload(calls, file, offset, progress);
   while (offset < bytes.size()) {
     const size_t count = std::min<size_t>(kUploadChunkBytes, bytes.size() - offset);
     if (!upload.Append(bytes.substr(offset, count)).ok()) break;  // Finish says why
@@ -106,17 +117,17 @@ absl::StatusOr<Info> SendRest(const UploadCalls<Info, Response>& calls, const st
   return upload.Finish();
 }
 
-// Uploads `bytes`, whose content id is `id`. Before each attempt it asks the server how much is
+// Uploads `bytes`, the content of `file`. Before each attempt it asks the server how much is
 // there, because a call that broke off does not say what has arrived.
 template <typename Info, typename Response>
 absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info, Response>& calls,
-                                const std::string& id, const std::string& bytes,
+                                const UploadedFile& file, const std::string& bytes,
                                 const Progress& progress) {
   uint64_t farthest = 0;
   for (int attempt = 1;; ++attempt) {
     v1::QueryUploadRequest query;
     v1::QueryUploadResponse known;
-    query.set_id(id);
+    query.set_id(file.id);
     absl::StatusOr<Info> result = absl::UnknownError("not asked");
     if (const absl::Status asked = state.Call(
             state.sequences.get(), &v1::SequenceService::Stub::QueryUpload, query, &known);
@@ -126,7 +137,7 @@ absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info
       if (known.received_bytes() > farthest) attempt = 1;  // progress was made
       farthest = std::max<uint64_t>(farthest, known.received_bytes());
       const uint64_t offset = known.received_bytes() <= bytes.size() ? known.received_bytes() : 0;
-      result = SendRest(calls, id, bytes, offset, progress);
+      result = SendRest(calls, file, bytes, offset, progress);
     }
     PLEAT_RETURN_IF_ERROR(progress.Report(result.ok() ? 1 : 0));  // says that it was cancelled
     if (result.ok()) return result;
@@ -143,37 +154,73 @@ template <typename Request, typename Response>
 using StartDownload = std::function<std::unique_ptr<grpc::ClientReader<Response>>(
     grpc::ClientContext*, const Request&)>;
 
-// Appends the file `id` to `bytes`, which hold the part from `offset` on that is there already. It
-// stops at the end of the file, or when `more`, which is asked after every part, says no or fails.
+// One call of a download. Its parts follow each other, or it ends with kDataLoss.
 template <typename Request, typename Response>
-absl::Status ReadParts(const StartDownload<Request, Response>& start, const std::string& id,
-                       uint64_t offset, const Progress& progress, std::string* bytes,
-                       const std::function<absl::StatusOr<bool>(uint64_t size_bytes)>& more) {
-  grpc::ClientContext context;
-  const CancelWatcher watcher(&context, progress);
-  Request request;
-  request.set_id(id);
-  request.set_offset_bytes(offset + bytes->size());
-  const auto reader = start(&context, request);
-  Response part;
-  absl::Status status;
-  bool wanted = true;
-  while (wanted && status.ok() && reader->Read(&part)) {
-    if (part.offset_bytes() != offset + bytes->size() || part.data().size() > part.size_bytes() ||
-        part.offset_bytes() > part.size_bytes() - part.data().size()) {
-      status = absl::DataLossError("the server sent a part of the file that does not follow");
-      break;
-    }
-    *bytes += part.data();
-    const absl::StatusOr<bool> goes_on = more(part.size_bytes());
-    status = goes_on.status();
-    wanted = status.ok() && *goes_on;
+class RemoteDownload final : public ContentDownload {
+ public:
+  // progress: its cancellation cancels the call.
+  RemoteDownload(const StartDownload<Request, Response>& start, const std::string& id,
+                 uint64_t offset_bytes, const Progress& progress)
+      : offset_bytes_(offset_bytes), watcher_(&context_, progress) {
+    Request request;
+    request.set_id(id);
+    request.set_offset_bytes(offset_bytes);
+    reader_ = start(&context_, request);
   }
-  if (!status.ok() || !wanted) context.TryCancel();
-  const absl::Status end = FromGrpcStatus(reader->Finish());
-  PLEAT_RETURN_IF_ERROR(status);
-  return wanted ? end : absl::OkStatus();
-}
+  ~RemoteDownload() override {
+    if (end_.has_value()) return;
+    context_.TryCancel();
+    reader_->Finish();
+  }
+
+  // Reads the first bytes, which tell the size, or why there are none.
+  absl::Status Open() {
+    PLEAT_ASSIGN_OR_RETURN(first_, ReadPart());
+    return absl::OkStatus();
+  }
+  uint64_t size_bytes() const override { return size_bytes_; }
+  absl::StatusOr<std::string> Next() override {
+    if (!first_.empty()) return std::exchange(first_, std::string());
+    return ReadPart();
+  }
+
+ private:
+  // The next bytes; empty when the call has ended well.
+  absl::StatusOr<std::string> ReadPart() {
+    Response part;
+    while (!end_.has_value() && part.data().empty()) {
+      if (!reader_->Read(&part)) {
+        end_ = FromGrpcStatus(reader_->Finish());
+        break;
+      }
+      if (!Follows(part)) {
+        context_.TryCancel();
+        reader_->Finish();
+        end_ = absl::DataLossError("the server sent a part of the file that does not follow");
+        break;
+      }
+      size_bytes_ = part.size_bytes();
+      offset_bytes_ += part.data().size();
+    }
+    if (end_.has_value()) {
+      PLEAT_RETURN_IF_ERROR(*end_);
+      return std::string();
+    }
+    return std::move(*part.mutable_data());
+  }
+  bool Follows(const Response& part) const {
+    return part.offset_bytes() == offset_bytes_ && part.data().size() <= part.size_bytes() &&
+           part.offset_bytes() <= part.size_bytes() - part.data().size();
+  }
+
+  uint64_t offset_bytes_;  // of the next part
+  uint64_t size_bytes_ = 0;
+  grpc::ClientContext context_;
+  const CancelWatcher watcher_;
+  std::unique_ptr<grpc::ClientReader<Response>> reader_;
+  std::string first_;                // read by Open and not yet given
+  std::optional<absl::Status> end_;  // how the call ended
+};
 
 // Downloads the whole file, whose SHA-256 is `id`. kDataLoss when the bytes do not have it.
 template <typename Request, typename Response>
@@ -181,17 +228,18 @@ absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::st
                                          const Progress& progress,
                                          const StartDownload<Request, Response>& start) {
   std::string bytes;
-  size_t farthest = 0;
   for (int attempt = 1;; ++attempt) {
-    const absl::Status status = ReadParts<Request, Response>(
-        start, id, 0, progress, &bytes, [&](uint64_t size_bytes) -> absl::StatusOr<bool> {
-          if (bytes.size() == farthest) return true;  // an empty part is no progress
-          farthest = bytes.size();
-          attempt = 1;
-          PLEAT_RETURN_IF_ERROR(
-              progress.Report(static_cast<double>(bytes.size()) / static_cast<double>(size_bytes)));
-          return true;
-        });
+    RemoteDownload<Request, Response> download(start, id, bytes.size(), progress);
+    absl::Status status;
+    while (status.ok()) {
+      const absl::StatusOr<std::string> part = download.Next();
+      status = part.status();
+      if (!status.ok() || part->empty()) break;
+      bytes += *part;
+      attempt = 1;
+      status = progress.Report(static_cast<double>(bytes.size()) /
+                               static_cast<double>(download.size_bytes()));
+    }
     if (status.ok()) break;
     PLEAT_RETURN_IF_ERROR(progress.Report(0));
     if (!IsTransient(status) || attempt >= state.options.max_attempts) return status;
@@ -204,17 +252,14 @@ absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::st
   return bytes;
 }
 
-// Downloads `count` bytes of the file from `offset` on, fewer at its end. Their hash is not
-// checked.
+// Opens a download in pieces.
 template <typename Request, typename Response>
-absl::StatusOr<std::string> ReadFileBytes(const std::string& id, uint64_t offset, uint64_t count,
-                                          const StartDownload<Request, Response>& start) {
-  std::string bytes;
-  PLEAT_RETURN_IF_ERROR((ReadParts<Request, Response>(
-      start, id, offset, {}, &bytes,
-      [&](uint64_t) -> absl::StatusOr<bool> { return bytes.size() < count; })));
-  if (bytes.size() > count) bytes.resize(count);
-  return bytes;
+absl::StatusOr<std::unique_ptr<ContentDownload>> OpenRemoteDownload(
+    const StartDownload<Request, Response>& start, const std::string& id, uint64_t offset_bytes) {
+  auto download =
+      std::make_unique<RemoteDownload<Request, Response>>(start, id, offset_bytes, Progress());
+  PLEAT_RETURN_IF_ERROR(download->Open());
+  return download;
 }
 
 }  // namespace pleat

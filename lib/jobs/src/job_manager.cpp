@@ -17,8 +17,11 @@ std::string MakeJobId() { return "job-" + RandomHexId(2); }
 
 }  // namespace
 
-JobManager::JobManager(JobManagerOptions options, RunJob run, SaveJob save)
-    : options_(std::move(options)), run_(std::move(run)), save_(std::move(save)) {}
+JobManager::JobManager(JobManagerOptions options, RunJob run, SaveJob save, EraseJob erase)
+    : options_(std::move(options)),
+      run_(std::move(run)),
+      save_(std::move(save)),
+      erase_(std::move(erase)) {}
 
 JobManager::~JobManager() { Shutdown(); }
 
@@ -42,12 +45,17 @@ void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
   if (!ran_alone && snapshot.attempts > 0) --snapshot.attempts;
   snapshot.info.fraction = 0;
   const bool is_hopeless = ran_alone && snapshot.attempts >= options_.max_attempts;
-  if (!is_hopeless) snapshot.info.state = JobState::kQueued;
+  if (!is_hopeless) {
+    snapshot.info.state = JobState::kQueued;
+    snapshot.info.started.reset();
+  }
   auto job = std::make_shared<JobStateMachine>(snapshot.info, snapshot.attempts, options_.clock);
   if (is_hopeless) {
-    job->Fail(absl::AbortedError(absl::StrCat(
-        "the server stopped ", snapshot.attempts,
-        " times while this job was running alone; it may need more memory than there is")));
+    job->Fail(
+        absl::AbortedError(absl::StrCat(
+            "the server stopped ", snapshot.attempts,
+            " times while this job was running alone; it may need more memory than there is")),
+        options_.wall_clock());
   }
   Save(job.get());
   std::lock_guard lock(mutex_);
@@ -57,10 +65,11 @@ void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
 
 void JobManager::Register(std::shared_ptr<JobStateMachine> job) {
   const JobInfo info = job->snapshot().info;
-  order_.push_back(info.id);
+  const uint64_t number = next_number_++;
+  order_.emplace(number, info.id);
   if (!info.request_id.empty()) ids_by_request_.emplace(info.request_id, info.id);
   if (info.state == JobState::kQueued) queue_.push_back(job);
-  jobs_.emplace(info.id, std::move(job));
+  jobs_.emplace(info.id, Registered{std::move(job), number});
 }
 
 void JobManager::Start() {
@@ -73,7 +82,7 @@ absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
     const JobInfo& draft) const {
   const auto id = ids_by_request_.find(draft.request_id);
   if (id == ids_by_request_.end()) return nullptr;
-  const std::shared_ptr<JobStateMachine>& job = jobs_.at(id->second);
+  const std::shared_ptr<JobStateMachine>& job = jobs_.at(id->second).job;
   const JobInfo info = job->snapshot().info;
   if (info.sequence_ids != draft.sequence_ids || info.options.index() != draft.options.index()) {
     return absl::AlreadyExistsError(absl::StrCat("the request_id of this call made job '", info.id,
@@ -86,6 +95,7 @@ absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
 absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   draft.id = MakeJobId();
   draft.state = JobState::kQueued;
+  draft.created = options_.wall_clock();
   auto job = std::make_shared<JobStateMachine>(draft, 0, options_.clock);
   std::lock_guard creating(create_mutex_);
   {
@@ -114,7 +124,7 @@ absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::Find(const std::str
   std::lock_guard lock(mutex_);
   const auto it = jobs_.find(id);
   if (it == jobs_.end()) return absl::NotFoundError(absl::StrCat("no job '", id, "'"));
-  return it->second;
+  return it->second.job;
 }
 
 absl::StatusOr<JobInfo> JobManager::Get(const std::string& id) const {
@@ -122,17 +132,21 @@ absl::StatusOr<JobInfo> JobManager::Get(const std::string& id) const {
   return job->snapshot().info;
 }
 
-std::vector<JobInfo> JobManager::List() const {
+void JobManager::Visit(const std::function<void(const JobInfo&)>& visit) const {
   std::lock_guard lock(mutex_);
+  for (const auto& [number, id] : order_) visit(jobs_.at(id).job->snapshot().info);
+}
+
+std::vector<JobInfo> JobManager::List() const {
   std::vector<JobInfo> jobs;
-  for (const std::string& id : order_) jobs.push_back(jobs_.at(id)->snapshot().info);
+  Visit([&](const JobInfo& job) { jobs.push_back(job); });
   return jobs;
 }
 
 size_t JobManager::CountInState(JobState state) const {
   std::lock_guard lock(mutex_);
   return static_cast<size_t>(std::ranges::count_if(
-      jobs_, [state](const auto& entry) { return entry.second->state() == state; }));
+      jobs_, [state](const auto& entry) { return entry.second.job->state() == state; }));
 }
 
 absl::Status JobManager::Cancel(const std::string& id) {
@@ -142,10 +156,11 @@ absl::Status JobManager::Cancel(const std::string& id) {
     std::lock_guard lock(mutex_);
     was_waiting = std::erase(queue_, job) > 0;
   }
-  if (!was_waiting) return job->RequestCancel();  // its worker saves how it ends
+  const absl::Time now = options_.wall_clock();
+  if (!was_waiting) return job->RequestCancel(now);  // its worker saves how it ends
   const JobSnapshot snapshot = job->snapshot();
   JobStateMachine draft(snapshot.info, snapshot.attempts, options_.clock);
-  absl::Status status = draft.RequestCancel();
+  absl::Status status = draft.RequestCancel(now);
   if (status.ok()) status = save_(draft.snapshot().info, snapshot.attempts);
   if (!status.ok()) {
     {
@@ -155,7 +170,26 @@ absl::Status JobManager::Cancel(const std::string& id) {
     changed_.notify_all();
     return status;
   }
-  return job->RequestCancel();
+  return job->RequestCancel(now);
+}
+
+absl::Status JobManager::Delete(const std::string& id) {
+  std::lock_guard erasing(erase_mutex_);
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
+  const JobInfo info = job->snapshot().info;
+  if (!IsFinal(info.state)) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("job '", id, "' is ", JobStateName(info.state),
+                     "; only jobs that have ended are deleted, so cancel it first"));
+  }
+  PLEAT_RETURN_IF_ERROR(erase_(id));
+  std::lock_guard lock(mutex_);
+  const auto registered = jobs_.find(id);
+  order_.erase(registered->second.number);
+  jobs_.erase(registered);
+  const auto request = ids_by_request_.find(info.request_id);
+  if (request != ids_by_request_.end() && request->second == id) ids_by_request_.erase(request);
+  return absl::OkStatus();
 }
 
 void JobManager::Shutdown() {
@@ -195,11 +229,11 @@ std::shared_ptr<JobStateMachine> JobManager::TakeNext() {
 void JobManager::Work() {
   if (options_.in_idle_time) RunInIdleTime();
   while (const std::shared_ptr<JobStateMachine> job = TakeNext()) {
-    if (job->Start()) {
+    if (job->Start(options_.wall_clock())) {
       Save(job.get());
       RunOne(job.get());
     } else {
-      Save(job.get());  // cancelled in this moment
+      SaveUnlessDeleted(job.get());  // cancelled in this moment
     }
     {
       std::lock_guard lock(mutex_);
@@ -223,16 +257,18 @@ void JobManager::RunOne(JobStateMachine* job) {
     // Its text is for programmers and may name anything.
     outcome = absl::InternalError("the job ended with an exception: a fault of Pleat");
   }
+  const absl::Time now = options_.wall_clock();
   if (outcome.ok()) {
-    End(job,
-        [&](JobStateMachine* it) { return it->Succeed(outcome->result_id, outcome->warnings); });
+    End(job, [&](JobStateMachine* it) {
+      return it->Succeed(outcome->result_id, outcome->warnings, now);
+    });
   } else if (outcome.status().code() != absl::StatusCode::kCancelled) {
-    End(job, [&](JobStateMachine* it) { return it->Fail(outcome.status()); });
+    End(job, [&](JobStateMachine* it) { return it->Fail(outcome.status(), now); });
   } else if (job->cancel_requested()) {
-    End(job, [](JobStateMachine* it) { return it->Cancelled(); });
+    End(job, [&](JobStateMachine* it) { return it->Cancelled(now); });
   } else {
-    job->Requeue();  // the server shuts down; the next process goes on
-    Save(job);
+    job->Requeue();          // the server shuts down; the next process goes on
+    SaveUnlessDeleted(job);  // it waits again, so it can be cancelled and deleted
   }
 }
 
@@ -259,6 +295,11 @@ bool JobManager::SaveUntilDone(JobStateMachine* job, const JobSnapshot& ended) {
     const std::chrono::duration<double> pause(options_.save_retry_seconds);
     if (stopped_.wait_for(lock, pause, [this] { return shutting_down(); })) return false;
   }
+}
+
+void JobManager::SaveUnlessDeleted(JobStateMachine* job) {
+  std::lock_guard erasing(erase_mutex_);
+  if (Find(job->id()).ok()) Save(job);
 }
 
 void JobManager::Save(JobStateMachine* job) {

@@ -35,7 +35,7 @@ JobState JobStateMachine::state() const {
   return state_.info.state;
 }
 
-bool JobStateMachine::Start() {
+bool JobStateMachine::Start(absl::Time now) {
   {
     std::lock_guard lock(mutex_);
     if (state_.info.state != JobState::kQueued) return false;
@@ -43,6 +43,7 @@ bool JobStateMachine::Start() {
     state_.info.stage = "start";
     ++state_.attempts;
     ++state_.revision;
+    state_.info.started = now;
     started_seconds_ = clock_();
   }
   Changed();
@@ -67,7 +68,7 @@ void JobStateMachine::Report(const ProgressUpdate& update) {
 }
 
 bool JobStateMachine::Succeed(const std::string& result_id,
-                              const std::vector<std::string>& warnings) {
+                              const std::vector<std::string>& warnings, absl::Time now) {
   {
     std::lock_guard lock(mutex_);
     if (state_.info.state != JobState::kRunning) return false;
@@ -75,21 +76,24 @@ bool JobStateMachine::Succeed(const std::string& result_id,
     state_.info.fraction = 1;
     state_.info.warnings.insert(state_.info.warnings.end(), warnings.begin(), warnings.end());
   }
-  return Finish(JobState::kSucceeded, absl::OkStatus());
+  return Finish(JobState::kSucceeded, absl::OkStatus(), now);
 }
 
-bool JobStateMachine::Fail(const absl::Status& error) { return Finish(JobState::kFailed, error); }
-
-bool JobStateMachine::Cancelled() {
-  return Finish(JobState::kCancelled, absl::CancelledError("the job was cancelled"));
+bool JobStateMachine::Fail(const absl::Status& error, absl::Time now) {
+  return Finish(JobState::kFailed, error, now);
 }
 
-bool JobStateMachine::Finish(JobState state, const absl::Status& error) {
+bool JobStateMachine::Cancelled(absl::Time now) {
+  return Finish(JobState::kCancelled, absl::CancelledError("the job was cancelled"), now);
+}
+
+bool JobStateMachine::Finish(JobState state, const absl::Status& error, absl::Time now) {
   {
     std::lock_guard lock(mutex_);
     if (state_.info.state != JobState::kRunning) return false;
     state_.info.state = state;
     state_.info.error = error;
+    state_.info.ended = now;
     state_.info.eta_seconds.reset();
     ++state_.revision;
   }
@@ -103,6 +107,7 @@ bool JobStateMachine::Requeue() {
     if (state_.info.state != JobState::kRunning) return false;
     state_.info.state = JobState::kQueued;
     state_.info.stage.clear();
+    state_.info.started.reset();
     state_.info.fraction = 0;
     state_.info.objective.reset();
     state_.info.eta_seconds.reset();
@@ -113,7 +118,7 @@ bool JobStateMachine::Requeue() {
   return true;
 }
 
-absl::Status JobStateMachine::RequestCancel() {
+absl::Status JobStateMachine::RequestCancel(absl::Time now) {
   {
     std::lock_guard lock(mutex_);
     JobInfo& info = state_.info;
@@ -125,6 +130,7 @@ absl::Status JobStateMachine::RequestCancel() {
     if (info.state != JobState::kQueued) return absl::OkStatus();
     info.state = JobState::kCancelled;
     info.error = absl::CancelledError("the job was cancelled before it started");
+    info.ended = now;
     ++state_.revision;
   }
   Changed();

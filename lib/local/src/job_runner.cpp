@@ -57,7 +57,8 @@ absl::StatusOr<JobOutcome> JobRunner::Train(const JobInfo& job, const TrainOptio
   PLEAT_RETURN_IF_ERROR(progress.Stage("store", .98, 1).Report(0));
   const std::string bytes = EncodeModel(*model);
   const ModelInfo info = MakeModelInfo(*model, ModelId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kModel, {info.id, EncodeRecord(info)}, bytes));
+  PLEAT_RETURN_IF_ERROR(
+      files_->Add(EntryKind::kModel, {info.id, EncodeRecord(info)}, bytes, job.result_ttl));
   return JobOutcome{info.id, model->record().warnings};
 }
 
@@ -79,8 +80,8 @@ absl::StatusOr<JobOutcome> JobRunner::Compress(const JobInfo& job, CompressOptio
                                  .size_bytes = compressed.bytes.size(),
                                  .record = std::move(compressed.record)};
   info.record->sequence_id = sequence_id;
-  PLEAT_RETURN_IF_ERROR(
-      files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, compressed.bytes));
+  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)},
+                                    compressed.bytes, job.result_ttl));
   return JobOutcome{info.id, {}};
 }
 

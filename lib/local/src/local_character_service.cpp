@@ -19,12 +19,21 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
     service->scrubber_ =
         std::make_unique<Scrubber>(&service->files_.store(), options.scrub_seconds);
   }
+  if (options.sweep_seconds > 0) {
+    LocalModels* const models = &service->models_;
+    service->sweeper_ = std::make_unique<Sweeper>(
+        RetentionTarget{.files = &service->files_,
+                        .jobs = service->jobs_.retention(),
+                        .on_model_removed = [models](const std::string& id) { models->Forget(id); },
+                        .on_removed = options.on_removed},
+        options.retention, options.sweep_seconds);
+  }
   return service;
 }
 
 LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                                              std::unique_ptr<Store> store)
-    : files_(std::move(store), options.limits),
+    : files_(std::move(store), options.limits, options.wall_clock),
       sequences_(&files_),
       models_(&files_, options.cache_bytes),
       compressed_sequences_(&files_, options.decode_bytes),

@@ -37,11 +37,12 @@ absl::StatusOr<SequenceDecoder> LocalCompressedSequences::OpenDecoder(std::strin
 }
 
 absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Upload(const std::string& file,
-                                                                        const Progress& progress) {
+                                                                        const Progress& progress,
+                                                                        absl::Duration ttl) {
   const std::string id = ToHex(ComputeSha256(file));
   PLEAT_RETURN_IF_ERROR(progress.Report(0));
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CompressedSequenceUpload> upload,
-                         BeginUpload(id, file.size(), 0));
+                         BeginUpload(id, file.size(), 0, ttl));
   PLEAT_RETURN_IF_ERROR(upload->Append(file));
   PLEAT_ASSIGN_OR_RETURN(CompressedSequenceInfo info, upload->Finish());
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
@@ -49,22 +50,28 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Upload(const st
 }
 
 absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> LocalCompressedSequences::BeginUpload(
-    const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
+    const std::string& id, uint64_t size_bytes, uint64_t offset_bytes, absl::Duration ttl) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<CompressedSequenceUpload> known,
+                         FindComplete<CompressedSequenceInfo>(files_, id, ttl));
+  if (known != nullptr) return known;
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
                          files_->BeginUpload(id, size_bytes, offset_bytes));
   return std::make_unique<StoredUpload<CompressedSequenceInfo>>(
-      std::move(upload), [this](pleat::Upload* complete) { return FinishUpload(complete); });
+      std::move(upload),
+      [this, ttl](pleat::Upload* complete) { return FinishUpload(complete, ttl); });
 }
 
-absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
-    pleat::Upload* upload) {
+absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(pleat::Upload* upload,
+                                                                              absl::Duration ttl) {
   // When a job has made the same file, its row has a record that an upload must not replace. The
   // bytes that came are checked all the same.
   absl::StatusOr<CompressedSequenceInfo> known = Get(upload->id());
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, upload->ReadComplete());
-  if (known.ok() && files_->IsIntact(upload->id())) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CompressedSequenceUpload> stored,
+                         FindComplete<CompressedSequenceInfo>(files_, upload->id(), ttl));
+  if (stored != nullptr) {  // a job was faster
     upload->Discard();
-    return known;
+    return stored->Finish();
   }
   PLEAT_ASSIGN_OR_RETURN(const Reservation memory,
                          decode_memory_.Reserve(bytes.size(), "checking the upload"));
@@ -74,20 +81,25 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(
     upload->Discard();  // these bytes will never be a compressed sequence
     return decoder.status();
   }
-  CompressedSequenceInfo info =
+  const CompressedSequenceInfo info =
       known.ok() ? *std::move(known)
                  : MakeCompressedSequenceInfo(*decoder, upload->id(), size_bytes);
   PLEAT_RETURN_IF_ERROR(
-      files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload));
-  return info;
+      files_->Add(EntryKind::kCompressedSequence, {info.id, EncodeRecord(info)}, upload, ttl));
+  return Get(info.id);
 }
 
 absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Get(const std::string& id) {
   return GetStored<CompressedSequenceInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<CompressedSequenceInfo>> LocalCompressedSequences::List() {
-  return ListStored<CompressedSequenceInfo>(files_);
+absl::StatusOr<Page<CompressedSequenceInfo>> LocalCompressedSequences::ListPage(
+    const PageRequest& request) {
+  return ListStoredPage<CompressedSequenceInfo>(files_, request);
+}
+
+absl::Status LocalCompressedSequences::SetPinned(const std::string& id, bool pinned) {
+  return files_->catalog().SetPinned(EntryKind::kCompressedSequence, id, pinned);
 }
 
 absl::Status LocalCompressedSequences::Delete(const std::string& id) {
@@ -100,9 +112,9 @@ absl::StatusOr<std::string> LocalCompressedSequences::Download(const std::string
   return files_->Download(EntryKind::kCompressedSequence, id, info.size_bytes, progress);
 }
 
-absl::StatusOr<std::string> LocalCompressedSequences::ReadBytes(const std::string& id,
-                                                                uint64_t offset, uint64_t count) {
-  return files_->ReadBytes(EntryKind::kCompressedSequence, id, offset, count);
+absl::StatusOr<std::unique_ptr<ContentDownload>> LocalCompressedSequences::OpenDownload(
+    const std::string& id, uint64_t offset_bytes) {
+  return files_->OpenDownload(EntryKind::kCompressedSequence, id, offset_bytes);
 }
 
 absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDecode(

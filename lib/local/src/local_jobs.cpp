@@ -7,6 +7,7 @@
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
 #include "pleat/store/records.h"
+#include "stored_infos.h"
 
 namespace pleat {
 namespace {
@@ -58,12 +59,18 @@ LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner ru
       sequences_(sequences),
       runner_(std::move(runner)),
       manager_(
-          JobManagerOptions{.num_workers = num_workers, .in_idle_time = in_idle_time},
+          JobManagerOptions{.num_workers = num_workers,
+                            .in_idle_time = in_idle_time,
+                            .wall_clock = files->clock()},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_.Run(job, progress);
           },
           [this](const JobInfo& info, int attempts) {
             return files_->catalog().Put(EntryKind::kJob, {info.id, EncodeRecord(info), attempts});
+          },
+          [this](const std::string& id) {
+            const absl::Status status = files_->catalog().Delete(EntryKind::kJob, id);
+            return absl::IsNotFound(status) ? absl::OkStatus() : status;
           }) {}
 
 absl::Status LocalJobs::Start() {
@@ -121,6 +128,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
   draft.request_id = request.request_id;
+  draft.result_ttl = request.model_ttl;
   draft.name = request.model_name.empty() ? clips[0].name : request.model_name;
   if (!request.rig.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const RigFile rig, runner_.DecodeUserRig(request.rig));
@@ -139,15 +147,43 @@ absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& r
   draft.sequence_ids = {request.sequence_id};
   draft.options = request.options;
   draft.request_id = request.request_id;
+  draft.result_ttl = request.result_ttl;
   draft.name = std::move(info.name);
   return manager_.Create(std::move(draft));
 }
 
 absl::StatusOr<JobInfo> LocalJobs::Get(const std::string& id) { return manager_.Get(id); }
 
-absl::StatusOr<std::vector<JobInfo>> LocalJobs::List() { return manager_.List(); }
+absl::StatusOr<Page<JobInfo>> LocalJobs::ListPage(const PageRequest& request) {
+  PLEAT_ASSIGN_OR_RETURN(Page<JobInfo> page, ListStoredPage<JobInfo>(files_, request));
+  // The rows give the order; how far a job is, the manager knows better.
+  for (JobInfo& info : page.items) {
+    if (absl::StatusOr<JobInfo> now = manager_.Get(info.id); now.ok()) info = *std::move(now);
+  }
+  return page;
+}
+
+JobsOfRetention LocalJobs::retention() {
+  return {.ended = [this]() -> absl::StatusOr<std::vector<EndedJob>> {
+            std::vector<EndedJob> ended;
+            manager_.Visit([&](const JobInfo& job) {
+              if (IsFinal(job.state)) ended.push_back({job.id, job.name, job.ended});
+            });
+            return ended;
+          },
+          .remove = [this](const std::string& id) { return manager_.Delete(id); },
+          .sequences_in_use = [this]() -> absl::StatusOr<std::set<std::string>> {
+            std::set<std::string> ids;
+            manager_.Visit([&](const JobInfo& job) {
+              if (!IsFinal(job.state)) ids.insert(job.sequence_ids.begin(), job.sequence_ids.end());
+            });
+            return ids;
+          }};
+}
 
 absl::Status LocalJobs::Cancel(const std::string& id) { return manager_.Cancel(id); }
+
+absl::Status LocalJobs::Delete(const std::string& id) { return manager_.Delete(id); }
 
 absl::StatusOr<std::unique_ptr<JobSubscription>> LocalJobs::Subscribe(
     const std::string& id, std::function<void()> listener) {

@@ -12,7 +12,9 @@ absl::StatusOr<ModelInfo> LocalModels::Get(const std::string& id) {
   return GetStored<ModelInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<ModelInfo>> LocalModels::List() { return ListStored<ModelInfo>(files_); }
+absl::StatusOr<Page<ModelInfo>> LocalModels::ListPage(const PageRequest& request) {
+  return ListStoredPage<ModelInfo>(files_, request);
+}
 
 absl::Status LocalModels::Delete(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));
@@ -20,14 +22,18 @@ absl::Status LocalModels::Delete(const std::string& id) {
   return absl::OkStatus();
 }
 
+absl::Status LocalModels::SetPinned(const std::string& id, bool pinned) {
+  return files_->catalog().SetPinned(EntryKind::kModel, id, pinned);
+}
+
 absl::StatusOr<std::string> LocalModels::Download(const std::string& id, const Progress& progress) {
   PLEAT_ASSIGN_OR_RETURN(const ModelInfo info, Get(id));
   return files_->Download(EntryKind::kModel, id, info.size_bytes, progress);
 }
 
-absl::StatusOr<std::string> LocalModels::ReadBytes(const std::string& id, uint64_t offset,
-                                                   uint64_t count) {
-  return files_->ReadBytes(EntryKind::kModel, id, offset, count);
+absl::StatusOr<std::unique_ptr<ContentDownload>> LocalModels::OpenDownload(const std::string& id,
+                                                                           uint64_t offset_bytes) {
+  return files_->OpenDownload(EntryKind::kModel, id, offset_bytes);
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const std::string& id) {

@@ -38,7 +38,7 @@ absl::Status LocalSequences::Check(const MeshSequence& sequence) const {
 }
 
 absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence,
-                                                    const Progress& progress) {
+                                                    const Progress& progress, absl::Duration ttl) {
   PLEAT_RETURN_IF_ERROR(Check(sequence));
   const std::string bytes = EncodeSequence(sequence);
   if (bytes.size() > static_cast<uint64_t>(files_->limits().max_upload_bytes)) {
@@ -47,22 +47,31 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
                                                      files_->limits().max_upload_bytes));
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
-  SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes));
+  const SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
+  PLEAT_RETURN_IF_ERROR(
+      files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes, ttl));
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
-  return info;
+  return Get(info.id);
 }
 
 absl::StatusOr<SequenceInfo> LocalSequences::Get(const std::string& id) {
   return GetStored<SequenceInfo>(files_->catalog(), id);
 }
 
-absl::StatusOr<std::vector<SequenceInfo>> LocalSequences::List() {
-  return ListStored<SequenceInfo>(files_);
+absl::StatusOr<Page<SequenceInfo>> LocalSequences::ListPage(const PageRequest& request) {
+  return ListStoredPage<SequenceInfo>(files_, request);
 }
 
 absl::Status LocalSequences::Delete(const std::string& id) {
   return files_->Delete(EntryKind::kSequence, id);
+}
+
+absl::Status LocalSequences::SetPinned(const std::string& id, bool pinned) {
+  return files_->catalog().SetPinned(EntryKind::kSequence, id, pinned);
+}
+
+absl::Status LocalSequences::DeleteUpload(const std::string& id) {
+  return files_->uploads().Remove(id);
 }
 
 absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) {
@@ -83,14 +92,20 @@ absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) 
 
 absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(const std::string& id,
                                                                             uint64_t size_bytes,
-                                                                            uint64_t offset_bytes) {
+                                                                            uint64_t offset_bytes,
+                                                                            absl::Duration ttl) {
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<SequenceUpload> known,
+                         FindComplete<SequenceInfo>(files_, id, ttl));
+  if (known != nullptr) return known;
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
                          files_->BeginUpload(id, size_bytes, offset_bytes));
   return std::make_unique<StoredUpload<SequenceInfo>>(
-      std::move(upload), [this](pleat::Upload* complete) { return FinishUpload(complete); });
+      std::move(upload),
+      [this, ttl](pleat::Upload* complete) { return FinishUpload(complete, ttl); });
 }
 
-absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload) {
+absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload,
+                                                          absl::Duration ttl) {
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, upload->ReadComplete());
   absl::StatusOr<MeshSequence> sequence = DecodeSequence(bytes, FileLimits(files_->limits()));
   absl::Status status = sequence.status();
@@ -99,9 +114,10 @@ absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload)
     upload->Discard();  // these bytes will never be a sequence
     return status;
   }
-  SequenceInfo info = MakeSequenceInfo(*sequence, upload->id(), bytes.size());
-  PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, upload));
-  return info;
+  const SequenceInfo info = MakeSequenceInfo(*sequence, upload->id(), bytes.size());
+  PLEAT_RETURN_IF_ERROR(
+      files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, upload, ttl));
+  return Get(info.id);
 }
 
 absl::StatusOr<MeshSequence> LocalSequences::Load(const std::string& id) {

@@ -1,14 +1,12 @@
 #include "pleat/local/scrubber.h"
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/thread_priority.h"
+#include "stop_signal.h"
 
 namespace pleat {
 namespace {
@@ -39,27 +37,6 @@ std::vector<FileToRead> FilesOf(Store* store) {
 
 }  // namespace
 
-class Scrubber::Stop {
- public:
-  void Set() {
-    {
-      std::lock_guard lock(mutex_);
-      stopped_ = true;
-    }
-    changed_.notify_all();
-  }
-  bool Pause(double seconds) {
-    std::unique_lock lock(mutex_);
-    return !changed_.wait_for(lock, std::chrono::duration<double>(seconds),
-                              [this] { return stopped_; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool stopped_ = false;  // guarded by mutex_
-};
-
 bool Scrubber::RunPass(Store* store, double period_seconds, const Pause& pause) {
   const std::vector<FileToRead> files = FilesOf(store);
   if (files.empty()) return pause(period_seconds);
@@ -75,7 +52,7 @@ bool Scrubber::RunPass(Store* store, double period_seconds, const Pause& pause) 
 }
 
 Scrubber::Scrubber(Store* store, double period_seconds)
-    : stop_(std::make_unique<Stop>()), thread_([this, store, period_seconds] {
+    : stop_(std::make_unique<StopSignal>()), thread_([this, store, period_seconds] {
         RunInIdleTime();
         const Pause pause = [this](double seconds) { return stop_->Pause(seconds); };
         while (RunPass(store, period_seconds, pause)) {

@@ -1,5 +1,6 @@
 #include "pleat/local/stored_files.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -8,9 +9,36 @@
 namespace pleat {
 namespace {
 
-constexpr uint64_t kDownloadStepBytes = 8 << 20;
+class StoredDownload final : public ContentDownload {
+ public:
+  StoredDownload(std::unique_ptr<OpenFile> file, uint64_t offset_bytes)
+      : file_(std::move(file)), offset_bytes_(offset_bytes) {}
+
+  uint64_t size_bytes() const override { return file_->size_bytes(); }
+  absl::StatusOr<std::string> Next() override {
+    PLEAT_ASSIGN_OR_RETURN(std::string bytes, file_->Read(offset_bytes_, kDownloadPieceBytes));
+    offset_bytes_ += bytes.size();
+    return bytes;
+  }
+
+ private:
+  const std::unique_ptr<OpenFile> file_;
+  uint64_t offset_bytes_;
+};
 
 }  // namespace
+
+int64_t StoredFiles::ExpiryOf(absl::Time now, absl::Duration ttl) {
+  if (ttl == kKeepForEver) return 0;
+  return std::max<int64_t>(1, absl::ToUnixMillis(now + ttl));
+}
+
+CatalogEntry StoredFiles::BornNow(CatalogEntry entry, absl::Duration ttl) const {
+  // Whole milliseconds, as they are kept: so the difference of the two is the time to live.
+  entry.created_unix_ms = absl::ToUnixMillis(clock_());
+  entry.expires_unix_ms = ExpiryOf(absl::FromUnixMillis(entry.created_unix_ms), ttl);
+  return entry;
+}
 
 void StoredFiles::ReportBadRow(EntryKind kind, const std::string& id, const absl::Status& why) {
   {
@@ -21,19 +49,23 @@ void StoredFiles::ReportBadRow(EntryKind kind, const std::string& id, const absl
                               "' cannot be read and is left out: ", std::string(why.message())));
 }
 
-absl::StatusOr<std::string> StoredFiles::ReadBytes(EntryKind kind, const std::string& id,
-                                                   uint64_t offset, uint64_t count) {
+absl::StatusOr<std::unique_ptr<ContentDownload>> StoredFiles::OpenDownload(EntryKind kind,
+                                                                           const std::string& id,
+                                                                           uint64_t offset_bytes) {
   PLEAT_RETURN_IF_ERROR(catalog().Get(kind, id).status());
-  if (offset == 0) PLEAT_RETURN_IF_ERROR(store_->Verify(id));
-  return store_->blobs().GetRange(id, offset, count);
+  if (offset_bytes == 0) PLEAT_RETURN_IF_ERROR(store_->Verify(id));
+  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<OpenFile> file, store_->blobs().OpenForReading(id));
+  PLEAT_RETURN_IF_ERROR(file->Read(offset_bytes, 0).status());  // the offset is within the file
+  return std::make_unique<StoredDownload>(std::move(file), offset_bytes);
 }
 
 absl::StatusOr<std::string> StoredFiles::Download(EntryKind kind, const std::string& id,
                                                   uint64_t size_bytes, const Progress& progress) {
+  PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<ContentDownload> download,
+                         OpenDownload(kind, id, 0));
   std::string bytes;
   while (bytes.size() < size_bytes) {
-    PLEAT_ASSIGN_OR_RETURN(const std::string part,
-                           ReadBytes(kind, id, bytes.size(), kDownloadStepBytes));
+    PLEAT_ASSIGN_OR_RETURN(const std::string part, download->Next());
     if (part.empty()) return absl::DataLossError(absl::StrCat("the file '", id, "' is cut off"));
     bytes += part;
     PLEAT_RETURN_IF_ERROR(progress.Report(static_cast<double>(bytes.size()) / size_bytes));

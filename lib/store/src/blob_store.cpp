@@ -167,19 +167,9 @@ absl::Status BlobStore::Verify(const std::string& id) const {
   return ToHex(hash.Finish()) == id ? absl::OkStatus() : HasChanged(id);
 }
 
-absl::StatusOr<std::string> BlobStore::GetRange(const std::string& id, uint64_t offset,
-                                                uint64_t count) const {
-  PLEAT_ASSIGN_OR_RETURN(const uint64_t size, Size(id));
-  if (offset > size) {
-    return absl::OutOfRangeError(
-        absl::StrCat("offset ", offset, " is behind the end of a file of ", size, " bytes"));
-  }
-  std::string bytes(std::min(count, size - offset), '\0');
-  std::ifstream file(PathOf(id), std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(offset));
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file) return CannotRead(id);
-  return bytes;
+absl::StatusOr<std::unique_ptr<OpenFile>> BlobStore::OpenForReading(const std::string& id) const {
+  if (!IsContentId(id)) return NoSuchBlob(id);
+  return OpenFile::Open(PathOf(id), id);
 }
 
 absl::StatusOr<uint64_t> BlobStore::Size(const std::string& id) const {

@@ -62,8 +62,8 @@ void Statement::BindBlob(int index, const std::string& bytes) {
   code_ = sqlite3_bind_blob64(statement_, index, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
 }
 
-void Statement::Bind(int index, int value) {
-  if (code_ == SQLITE_OK) code_ = sqlite3_bind_int(statement_, index, value);
+void Statement::Bind(int index, int64_t value) {
+  if (code_ == SQLITE_OK) code_ = sqlite3_bind_int64(statement_, index, value);
 }
 
 absl::StatusOr<bool> Statement::Step(absl::string_view action) {

@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -56,13 +57,17 @@ class Statement {
   // index: from 1, as in the text of the statement.
   void Bind(int index, const std::string& text);
   void BindBlob(int index, const std::string& bytes);
-  void Bind(int index, int value);
+  void Bind(int index, int64_t value);
 
   // True when there is a row.
   absl::StatusOr<bool> Step(absl::string_view action);
-  // These two read a column of the current row, counted from 0.
+  // These read a column of the current row, counted from 0.
   std::string Bytes(int column);
   int Int(int column) { return sqlite3_column_int(statement_, column); }
+  int64_t Int64(int column) { return sqlite3_column_int64(statement_, column); }
+
+  // The steps that SQLite's machine has taken for this statement: what it costs, without a clock.
+  int num_steps() const { return sqlite3_stmt_status(statement_, SQLITE_STMTSTATUS_VM_STEP, 0); }
 
  private:
   sqlite3* database_;

@@ -12,11 +12,6 @@
 #include "store_identity.h"
 
 namespace pleat {
-namespace {
-
-constexpr int kUploadAgeHours = 7 * 24;  // an upload that nobody has touched since is forgotten
-
-}  // namespace
 
 // Holds one id against other changes of the same id, as long as it lives.
 class Store::IdLock {
@@ -64,8 +59,8 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
   store->blobs_ = std::make_unique<BlobStore>(std::move(blobs));
   PLEAT_ASSIGN_OR_RETURN(store->catalog_,
                          Catalog::Open(CatalogPath(data_dir), options.before_sync));
-  PLEAT_ASSIGN_OR_RETURN(store->uploads_, UploadArea::Open(data_dir + "/uploads", kUploadAgeHours,
-                                                           options.before_sync));
+  PLEAT_ASSIGN_OR_RETURN(store->uploads_,
+                         UploadArea::Open(data_dir + "/uploads", options.before_sync));
   PLEAT_RETURN_IF_ERROR(store->Reconcile(data_dir));
   if (const auto room = store->blobs_->ReserveSpace(0); !room.ok()) {
     store->Report(absl::StrCat("nothing can be uploaded: ", std::string(room.status().message())));
@@ -121,6 +116,12 @@ absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, Upload* uploa
 absl::Status Store::Delete(EntryKind kind, const std::string& id) {
   const IdLock lock(this, id);
   PLEAT_RETURN_IF_ERROR(catalog_->Delete(kind, id));
+  return RemoveUnnamed(id);
+}
+
+absl::Status Store::DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms) {
+  const IdLock lock(this, id);
+  PLEAT_RETURN_IF_ERROR(catalog_->DeleteExpired(kind, id, now_unix_ms));
   return RemoveUnnamed(id);
 }
 

@@ -1,10 +1,11 @@
 #include "pleat/store/upload_area.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -88,21 +89,41 @@ void Upload::Discard() {
   received_bytes_ = 0;
 }
 
-absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder, int max_age_hours,
+absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder,
                                                              SyncHook before_sync) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
     return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", folder, "'"));
   }
-  const auto oldest = fs::file_time_type::clock::now() - std::chrono::hours(max_age_hours);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    std::error_code ignored;
-    if (IsUpload(entry.path()) && entry.last_write_time(ignored) < oldest) {
-      fs::remove(entry.path(), ignored);
-    }
-  }
   return std::unique_ptr<UploadArea>(new UploadArea(std::move(folder), std::move(before_sync)));
+}
+
+absl::Status UploadArea::Remove(const std::string& id) {
+  if (!IsContentId(id)) {
+    return absl::InvalidArgumentError("an upload id must be 64 lower-case hexadecimal digits");
+  }
+  std::lock_guard lock(mutex_);  // nobody begins it meanwhile
+  if (active_.contains(id)) {
+    return absl::AbortedError(absl::StrCat("upload ", id, " is being written by another call"));
+  }
+  std::error_code error;
+  if (fs::remove(PathOf(id), error)) return absl::OkStatus();
+  if (!error) return absl::NotFoundError(absl::StrCat("nothing has arrived of upload ", id));
+  return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot remove upload ", id));
+}
+
+std::vector<std::string> UploadArea::RemoveUntouchedSince(absl::Time time) {
+  std::vector<std::string> old;
+  std::error_code error;
+  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
+    struct stat file = {};
+    if (!IsUpload(it->path()) || stat(it->path().c_str(), &file) != 0) continue;
+    if (absl::TimeFromTimespec(file.st_mtim) < time) old.push_back(it->path().stem());
+  }
+  std::erase_if(old, [this](const std::string& id) { return !Remove(id).ok(); });
+  std::sort(old.begin(), old.end());
+  return old;
 }
 
 uint64_t UploadArea::ReceivedBytes(const std::string& id) const {

@@ -1,5 +1,5 @@
 // What the messages of stored sequences have in common, compressed or not: id, name, counts, frame
-// rate and size.
+// rate, size and life.
 #pragma once
 
 #include <string>
@@ -10,6 +10,7 @@
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
+#include "timestamps.h"
 
 namespace pleat {
 
@@ -22,6 +23,7 @@ void ClipInfoToProto(const Info& info, Message* message) {
   message->set_num_faces(info.num_faces);
   *message->mutable_frame_rate() = ToProto(info.frame_rate);
   message->set_size_bytes(info.size_bytes);
+  LifeToProto(info.life, message);
 }
 
 // what: the name of the message in errors, such as "sequence".
@@ -38,6 +40,7 @@ absl::Status ClipInfoFromProto(const Message& message, const std::string& what, 
   info->num_faces = message.num_faces();
   PLEAT_ASSIGN_OR_RETURN(info->frame_rate, FromProto(message.frame_rate()));
   info->size_bytes = message.size_bytes();
+  PLEAT_ASSIGN_OR_RETURN(info->life, LifeFromProto(message, what));
   return absl::OkStatus();
 }
 

@@ -11,6 +11,7 @@
 #include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/training_messages.h"
+#include "timestamps.h"
 
 namespace pleat {
 v1::Sequence ToProto(const SequenceInfo& info) {
@@ -81,8 +82,31 @@ v1::Job ToProto(const JobInfo& info) {
   }
   message.set_result_id(info.result_id);
   message.set_rig_id(info.rig_id);
+  if (info.created) *message.mutable_created() = ToProto(*info.created);
+  if (info.started) *message.mutable_started() = ToProto(*info.started);
+  if (info.ended) *message.mutable_ended() = ToProto(*info.ended);
+  message.set_result_ttl_seconds(TtlToSeconds(info.result_ttl));
   return message;
 }
+
+namespace {
+
+absl::Status TimesFromProto(const v1::Job& message, JobInfo* info) {
+  if (message.has_created()) {
+    PLEAT_ASSIGN_OR_RETURN(info->created, FromProto(message.created(), "job.created"));
+  }
+  if (message.has_started()) {
+    PLEAT_ASSIGN_OR_RETURN(info->started, FromProto(message.started(), "job.started"));
+  }
+  if (message.has_ended()) {
+    PLEAT_ASSIGN_OR_RETURN(info->ended, FromProto(message.ended(), "job.ended"));
+  }
+  PLEAT_ASSIGN_OR_RETURN(info->result_ttl,
+                         TtlFromSeconds(message.result_ttl_seconds(), "job.result_ttl_seconds"));
+  return absl::OkStatus();
+}
+
+}  // namespace
 
 absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
   if (message.id().empty() || message.id().size() > kContentIdLength) {
@@ -124,6 +148,7 @@ absl::StatusOr<JobInfo> FromProto(const v1::Job& message) {
   }
   info.rig_id = message.rig_id();
   if (!info.rig_id.empty()) PLEAT_RETURN_IF_ERROR(CheckContentId(info.rig_id, "job.rig_id"));
+  PLEAT_RETURN_IF_ERROR(TimesFromProto(message, &info));
   return info;
 }
 
@@ -141,6 +166,7 @@ v1::Model ToProto(const ModelInfo& info) {
   message.set_memory_bytes(info.memory_bytes);
   *message.mutable_options() = ToProto(info.options);
   *message.mutable_record() = ToProto(info.record);
+  LifeToProto(info.life, &message);
   return message;
 }
 
@@ -163,6 +189,7 @@ absl::StatusOr<ModelInfo> FromProto(const v1::Model& message) {
   info.memory_bytes = message.memory_bytes();
   PLEAT_ASSIGN_OR_RETURN(info.options, FromProto(message.options()));
   info.record = FromProto(message.record());
+  PLEAT_ASSIGN_OR_RETURN(info.life, LifeFromProto(message, "model"));
   return info;
 }
 

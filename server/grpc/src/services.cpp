@@ -37,6 +37,8 @@ class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
   PLEAT_UNARY(GetSequence, storage_executor)
   PLEAT_UNARY(ListSequences, storage_executor)
   PLEAT_UNARY(DeleteSequence, storage_executor)
+  PLEAT_UNARY(PinSequence, storage_executor)
+  PLEAT_UNARY(DeleteUpload, storage_executor)
   grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
       grpc::CallbackServerContext* call, v1::UploadSequenceResponse* response) override {
     return StartAdmitted<grpc::ServerReadReactor<v1::UploadSequenceRequest>>(
@@ -56,6 +58,7 @@ class JobServiceImpl final : public v1::JobService::CallbackService {
   PLEAT_UNARY(GetJob, storage_executor)
   PLEAT_UNARY(ListJobs, storage_executor)
   PLEAT_UNARY(CancelJob, storage_executor)
+  PLEAT_UNARY(DeleteJob, storage_executor)
   PLEAT_SERVER_STREAM(WatchJob)
 
  private:
@@ -68,6 +71,7 @@ class ModelServiceImpl final : public v1::ModelService::CallbackService {
   PLEAT_UNARY(GetModel, storage_executor)
   PLEAT_UNARY(ListModels, storage_executor)
   PLEAT_UNARY(DeleteModel, storage_executor)
+  PLEAT_UNARY(PinModel, storage_executor)
   PLEAT_SERVER_STREAM(DownloadModel)
 
  private:
@@ -80,6 +84,7 @@ class CompressedSequenceServiceImpl final : public v1::CompressedSequenceService
   PLEAT_UNARY(GetCompressedSequence, storage_executor)
   PLEAT_UNARY(ListCompressedSequences, storage_executor)
   PLEAT_UNARY(DeleteCompressedSequence, storage_executor)
+  PLEAT_UNARY(PinCompressedSequence, storage_executor)
   grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadCompressedSequence(
       grpc::CallbackServerContext* call, v1::UploadCompressedSequenceResponse* response) override {
     return StartAdmitted<grpc::ServerReadReactor<v1::UploadSequenceRequest>>(

@@ -15,6 +15,8 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
   PLEAT_RETURN_IF_ERROR(CheckName(request.model_name(), "model_name"));
   PLEAT_RETURN_IF_ERROR(CheckRequestId(request.request_id()));
   PLEAT_ASSIGN_OR_RETURN(const TrainOptions options, FromProto(request.options()));
+  PLEAT_ASSIGN_OR_RETURN(const absl::Duration ttl,
+                         TtlFromSeconds(request.model_ttl_seconds(), "model_ttl_seconds"));
   PLEAT_ASSIGN_OR_RETURN(
       const JobInfo info,
       context.jobs->CreateTraining(
@@ -22,7 +24,8 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
            .options = options,
            .model_name = request.model_name(),
            .rig = request.rig(),
-           .request_id = request.request_id()}));
+           .request_id = request.request_id(),
+           .model_ttl = ttl}));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();
 }

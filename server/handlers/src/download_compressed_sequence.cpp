@@ -1,4 +1,3 @@
-#include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/download_stream.h"
 
@@ -10,12 +9,9 @@ grpc::ServerWriteReactor<v1::DownloadCompressedSequenceResponse>* DownloadCompre
   return StartDownload<v1::DownloadCompressedSequenceResponse>(
       context, request.id(), request.offset_bytes(),
       {.rpc = "DownloadCompressedSequence",
-       .size_of = [compressed](const std::string& id) -> absl::StatusOr<uint64_t> {
-         PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info, compressed->Get(id));
-         return info.size_bytes;
-       },
-       .read = [compressed](const std::string& id, uint64_t offset,
-                            uint64_t count) { return compressed->ReadBytes(id, offset, count); }});
+       .open = [compressed](const std::string& id, uint64_t offset_bytes) {
+         return compressed->OpenDownload(id, offset_bytes);
+       }});
 }
 
 }  // namespace pleat

@@ -1,6 +1,5 @@
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
-#include "pleat/reactors/paging.h"
 #include "pleat/wire/service_messages.h"
 
 namespace pleat {
@@ -8,16 +7,12 @@ namespace pleat {
 absl::Status ListCompressedSequences(HandlerContext& context,
                                      const v1::ListCompressedSequencesRequest& request,
                                      v1::ListCompressedSequencesResponse* response) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CompressedSequenceInfo> infos,
-                         context.compressed_sequences->List());
-  PLEAT_ASSIGN_OR_RETURN(const PageRange page,
-                         FindPage(infos, request.page_size(), request.page_token()));
-  for (size_t i = page.begin; i < page.end; ++i) {
-    *response->add_compressed_sequences() = ToProto(infos[i]);
-  }
-  if (page.end < infos.size() && page.end > 0) {
-    response->set_next_page_token(infos[page.end - 1].id);
-  }
+  PLEAT_ASSIGN_OR_RETURN(
+      const Page<CompressedSequenceInfo> page,
+      context.compressed_sequences->ListPage({request.page_size(), request.page_token()}));
+  for (const CompressedSequenceInfo& info : page.items)
+    *response->add_compressed_sequences() = ToProto(info);
+  response->set_next_page_token(page.next_token);
   return absl::OkStatus();
 }
 

@@ -1,19 +1,15 @@
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
-#include "pleat/reactors/paging.h"
 #include "pleat/wire/service_messages.h"
 
 namespace pleat {
 
 absl::Status ListJobs(HandlerContext& context, const v1::ListJobsRequest& request,
                       v1::ListJobsResponse* response) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> infos, context.jobs->List());
-  PLEAT_ASSIGN_OR_RETURN(const PageRange page,
-                         FindPage(infos, request.page_size(), request.page_token()));
-  for (size_t i = page.begin; i < page.end; ++i) *response->add_jobs() = ToProto(infos[i]);
-  if (page.end < infos.size() && page.end > 0) {
-    response->set_next_page_token(infos[page.end - 1].id);
-  }
+  PLEAT_ASSIGN_OR_RETURN(const Page<JobInfo> page,
+                         context.jobs->ListPage({request.page_size(), request.page_token()}));
+  for (const JobInfo& info : page.items) *response->add_jobs() = ToProto(info);
+  response->set_next_page_token(page.next_token);
   return absl::OkStatus();
 }
 

@@ -1,19 +1,15 @@
 #include "pleat/base/status.h"
 #include "pleat/handlers/unary_handlers.h"
-#include "pleat/reactors/paging.h"
 #include "pleat/wire/service_messages.h"
 
 namespace pleat {
 
 absl::Status ListSequences(HandlerContext& context, const v1::ListSequencesRequest& request,
                            v1::ListSequencesResponse* response) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<SequenceInfo> infos, context.sequences->List());
-  PLEAT_ASSIGN_OR_RETURN(const PageRange page,
-                         FindPage(infos, request.page_size(), request.page_token()));
-  for (size_t i = page.begin; i < page.end; ++i) *response->add_sequences() = ToProto(infos[i]);
-  if (page.end < infos.size() && page.end > 0) {
-    response->set_next_page_token(infos[page.end - 1].id);
-  }
+  PLEAT_ASSIGN_OR_RETURN(const Page<SequenceInfo> page,
+                         context.sequences->ListPage({request.page_size(), request.page_token()}));
+  for (const SequenceInfo& info : page.items) *response->add_sequences() = ToProto(info);
+  response->set_next_page_token(page.next_token);
   return absl::OkStatus();
 }
 

@@ -1,3 +1,4 @@
+#include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/upload_stream.h"
 #include "pleat/wire/service_messages.h"
@@ -6,17 +7,19 @@ namespace pleat {
 
 grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
     HandlerContext* context, v1::UploadSequenceResponse* response) {
+  using Begun = absl::StatusOr<std::unique_ptr<ContentUpload<SequenceInfo>>>;
   using Response = v1::UploadSequenceResponse;
   SequenceService* sequences = context->sequences;
   return StartReactor<UploadStream<SequenceInfo, Response>>(
       context, response,
       UploadTarget<SequenceInfo, Response>{
           .rpc = "UploadSequence",
-          .find = [sequences](const std::string& id) { return sequences->Get(id); },
-          .begin =
-              [sequences](const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) {
-                return sequences->BeginUpload(id, size_bytes, offset_bytes);
-              },
+          .begin = [sequences](const v1::UploadSequenceRequest::Header& header) -> Begun {
+            PLEAT_ASSIGN_OR_RETURN(const absl::Duration ttl,
+                                   TtlFromSeconds(header.ttl_seconds(), "header.ttl_seconds"));
+            return sequences->BeginUpload(header.id(), header.size_bytes(), header.offset_bytes(),
+                                          ttl);
+          },
           .reply = [](const SequenceInfo& info,
                       Response* reply) { *reply->mutable_sequence() = ToProto(info); }});
 }

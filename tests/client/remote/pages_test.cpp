@@ -56,6 +56,19 @@ TEST_F(PagesTest, AServerThatRepeatsItselfIsNotAskedForEver) {
   EXPECT_THAT(Ids(), ElementsAre("a", "b"));
 }
 
+TEST_F(PagesTest, OnePageIsOneCall) {
+  EXPECT_CALL(server_.jobs, ListJobs)
+      .WillOnce([](auto*, const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
+        EXPECT_EQ(request->page_size(), 7);
+        EXPECT_EQ(request->page_token(), "here");
+        response->set_next_page_token("there");
+        return grpc::Status::OK;
+      });
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto page, server_.Open()->jobs().ListPage({7, "here"}));
+  EXPECT_TRUE(page.items.empty());
+  EXPECT_EQ(page.next_token, "there");
+}
+
 TEST_F(PagesTest, HalfAListIsNoList) {
   EXPECT_CALL(server_.jobs, ListJobs)
       .WillOnce(Page({"a"}, "next"))

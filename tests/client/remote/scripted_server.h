@@ -39,6 +39,8 @@ struct ScriptedSequences : v1::SequenceService::Service {
   PLEAT_SCRIPT_CALL(GetSequence);
   PLEAT_SCRIPT_CALL(ListSequences);
   PLEAT_SCRIPT_CALL(DeleteSequence);
+  PLEAT_SCRIPT_CALL(PinSequence);
+  PLEAT_SCRIPT_CALL(DeleteUpload);
 };
 
 struct ScriptedJobs : v1::JobService::Service {
@@ -47,6 +49,7 @@ struct ScriptedJobs : v1::JobService::Service {
   PLEAT_SCRIPT_CALL(GetJob);
   PLEAT_SCRIPT_CALL(ListJobs);
   PLEAT_SCRIPT_CALL(CancelJob);
+  PLEAT_SCRIPT_CALL(DeleteJob);
   PLEAT_SCRIPT_STREAM(WatchJob);
 };
 
@@ -54,6 +57,7 @@ struct ScriptedModels : v1::ModelService::Service {
   PLEAT_SCRIPT_CALL(GetModel);
   PLEAT_SCRIPT_CALL(ListModels);
   PLEAT_SCRIPT_CALL(DeleteModel);
+  PLEAT_SCRIPT_CALL(PinModel);
   PLEAT_SCRIPT_STREAM(DownloadModel);
 };
 
@@ -61,6 +65,7 @@ struct ScriptedCompressed : v1::CompressedSequenceService::Service {
   PLEAT_SCRIPT_CALL(GetCompressedSequence);
   PLEAT_SCRIPT_CALL(ListCompressedSequences);
   PLEAT_SCRIPT_CALL(DeleteCompressedSequence);
+  PLEAT_SCRIPT_CALL(PinCompressedSequence);
   PLEAT_SCRIPT_UPLOAD(UploadCompressedSequence);
   PLEAT_SCRIPT_STREAM(DownloadCompressedSequence);
   PLEAT_SCRIPT_STREAM(DecodeFrames);

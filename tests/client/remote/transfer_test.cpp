@@ -276,7 +276,33 @@ TEST_F(DownloadTest, SomeBytesAreReadAndTheRestIsNotSent) {
             while (out->Write(part)) part.set_offset_bytes(part.offset_bytes() + 1000);
             return grpc::Status::OK;
           });
-  EXPECT_EQ(server_.Open()->models().ReadBytes("m", 10, 1500).value_or(""), std::string(1500, 'x'));
+  const auto client = server_.Open();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto download, client->models().OpenDownload("m", 10));
+  EXPECT_EQ(download->size_bytes(), uint64_t{1} << 40);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(download->Next().value_or(""), std::string(1000, 'x'));
+}
+
+TEST_F(DownloadTest, InPiecesItEndsWithAnEmptyOneOrWithTheErrorOfTheCall) {
+  EXPECT_CALL(server_.models, DownloadModel)
+      .WillOnce(Send({{13, 0, ""}, {13, 0, "a small"}, {13, 7, " model"}}))
+      .WillOnce(Send({{13, 0, "a small"}}, Refusal()))
+      .WillOnce(Send({{13, 13, ""}}))  // nothing is left
+      .WillOnce(Send({}, Refusal()));
+  const auto client = server_.Open();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto whole, client->models().OpenDownload(id_, 0));
+  EXPECT_EQ(whole->Next().value_or(""), "a small");
+  EXPECT_EQ(whole->Next().value_or(""), " model");
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(whole->Next().value_or("error"), "");
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto broken, client->models().OpenDownload(id_, 0));
+  EXPECT_EQ(broken->Next().value_or(""), "a small");
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_THAT(broken->Next(), HasStatus(absl::StatusCode::kPermissionDenied, "not today"));
+  }
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto nothing, client->models().OpenDownload(id_, 13));
+  EXPECT_EQ(nothing->size_bytes(), 13u);
+  EXPECT_EQ(nothing->Next().value_or("error"), "");
+  EXPECT_THAT(client->models().OpenDownload(id_, 0),
+              HasStatus(absl::StatusCode::kPermissionDenied, "not today"));
 }
 
 }  // namespace

@@ -27,6 +27,9 @@ TEST(InfoJsonTest, SequencesSayWhatTheyHold) {
   EXPECT_EQ(json["num_faces"], 20000);
   EXPECT_DOUBLE_EQ(json["fps"].get<double>(), 30000 / 1001.);
   EXPECT_EQ(json["size_bytes"].get<uint64_t>(), 21'000'000'000u);
+  EXPECT_FALSE(json.contains("created"));
+  info.life.created = absl::FromUnixMillis(1'796'072'709'123);
+  EXPECT_EQ(SequenceJson(info)["created"], "2026-11-30T21:05:09.123Z");
 }
 
 TEST(InfoJsonTest, JobsSayTheirKindStateAndOptions) {
@@ -55,7 +58,8 @@ TEST(InfoJsonTest, JobsSayTheirKindStateAndOptions) {
 // A reader asks `contains`: what is not known is not there, rather than null or zero.
 TEST(InfoJsonTest, WhatAJobDoesNotKnowIsAbsent) {
   JobInfo job;
-  for (const char* member : {"objective", "eta_seconds", "error", "result_id", "rig_id"}) {
+  for (const char* member : {"objective", "eta_seconds", "error", "result_id", "rig_id", "created",
+                             "started", "ended"}) {
     EXPECT_FALSE(JobJson(job).contains(member)) << member;
   }
   job.objective = -3.5;
@@ -63,6 +67,9 @@ TEST(InfoJsonTest, WhatAJobDoesNotKnowIsAbsent) {
   job.error = absl::FailedPreconditionError("no human-like rig");
   job.result_id = "m1";
   job.rig_id = "r1";
+  job.created = absl::FromUnixMillis(1'796'072'709'123);
+  job.started = *job.created + absl::Seconds(1);
+  job.ended = *job.created + absl::Seconds(2);
   const ordered_json json = JobJson(job);
   EXPECT_EQ(json["objective"], -3.5);
   EXPECT_EQ(json["eta_seconds"], 12);
@@ -70,6 +77,9 @@ TEST(InfoJsonTest, WhatAJobDoesNotKnowIsAbsent) {
   EXPECT_EQ(json["error"]["message"], "no human-like rig");
   EXPECT_EQ(json["result_id"], "m1");
   EXPECT_EQ(json["rig_id"], "r1");
+  EXPECT_EQ(json["created"], "2026-11-30T21:05:09.123Z");
+  EXPECT_EQ(json["started"], "2026-11-30T21:05:10.123Z");
+  EXPECT_EQ(json["ended"], "2026-11-30T21:05:11.123Z");
 }
 
 TEST(InfoJsonTest, ModelsListTheirJointsInOrderWithParents) {

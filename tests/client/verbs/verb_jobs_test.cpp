@@ -35,6 +35,8 @@ TEST(JobsVerbTest, JobsOfBothKindsAreListedAndShown) {
     EXPECT_EQ(job["name"], "tube");
     EXPECT_EQ(job["sequence_ids"].size(), 1u);
     EXPECT_EQ(job["result_id"].get<std::string>().size(), 64u);
+    EXPECT_LE(job["created"].get<std::string>(), job["started"].get<std::string>());
+    EXPECT_LE(job["started"].get<std::string>(), job["ended"].get<std::string>());
     const Outcome shown = files.RunInStore({"jobs", "show", job["id"].get<std::string>()});
     EXPECT_EQ(nlohmann::json::parse(shown.out), job);
   }
@@ -53,9 +55,18 @@ TEST(JobsVerbTest, AJobThatIsOverCannotBeCancelled) {
   EXPECT_THAT(outcome.err, HasSubstr(id));
 }
 
+TEST(JobsVerbTest, ADeletedJobIsForgottenAndItsModelStays) {
+  const TubeFiles files;
+  ASSERT_EQ(files.TrainInStore({"-q"}).code, ExitCode::kOk);
+  const auto jobs = nlohmann::json::parse(files.RunInStore({"jobs", "--json"}).out);
+  ASSERT_EQ(files.RunInStore({"jobs", "delete", jobs[0]["id"]}).code, ExitCode::kOk);
+  EXPECT_EQ(files.RunInStore({"jobs", "--json"}).out, "[]\n");
+  EXPECT_EQ(nlohmann::json::parse(files.RunInStore({"models", "--json"}).out).size(), 1u);
+}
+
 TEST(JobsVerbTest, MissingIdsAreToldApart) {
   const TubeFiles files;
-  for (const char* action : {"show", "cancel", "watch"}) {
+  for (const char* action : {"show", "cancel", "watch", "delete"}) {
     const Outcome without = files.RunInStore({"jobs", action});
     EXPECT_EQ(without.code, ExitCode::kUsage) << action;
     EXPECT_THAT(without.err, HasSubstr(std::string("'") + action + "' needs an id"));

@@ -31,6 +31,25 @@ TEST(SequencesVerbTest, ListsShowsAndDeletes) {
   EXPECT_EQ(files.RunInStore({"sequences", "--json"}).out, "[]\n");
 }
 
+TEST(SequencesVerbTest, SaysHowLongASequenceIsKept) {
+  const TubeFiles files;
+  ASSERT_EQ(files.RunInStore({"upload", files.sequence_path(), "-q", "--ttl-hours", "1"}).code,
+            ExitCode::kOk);
+  const auto only = [&] {
+    return nlohmann::json::parse(files.RunInStore({"sequences", "--json"}).out).at(0);
+  };
+  const std::string id = only()["id"], expires = only()["expires"];
+  EXPECT_GT(expires, only()["created"].get<std::string>());
+  EXPECT_FALSE(only().contains("pinned"));
+  ASSERT_EQ(files.RunInStore({"sequences", "pin", id.substr(0, 5)}).code, ExitCode::kOk);
+  EXPECT_EQ(only()["pinned"], true);
+  EXPECT_THAT(files.RunInStore({"sequences"}).out, HasSubstr("pinned"));
+  ASSERT_EQ(files.RunInStore({"sequences", "unpin", id}).code, ExitCode::kOk);
+  EXPECT_FALSE(only().contains("pinned"));
+  ASSERT_EQ(files.RunInStore({"upload", files.sequence_path(), "-q"}).code, ExitCode::kOk);
+  EXPECT_FALSE(only().contains("expires"));  // for ever
+}
+
 TEST(SequencesVerbTest, SequencesAreNotDownloaded) {
   const TubeFiles files;
   const Outcome outcome = files.RunInStore({"sequences", "download", "5e"});
@@ -40,7 +59,7 @@ TEST(SequencesVerbTest, SequencesAreNotDownloaded) {
 
 TEST(SequencesVerbTest, UnknownIdsAreNotFound) {
   const TubeFiles files;
-  for (const char* action : {"show", "delete"}) {
+  for (const char* action : {"show", "delete", "pin", "unpin"}) {
     const Outcome outcome = files.RunInStore({"sequences", action, "5e"});
     EXPECT_EQ(outcome.code, ExitCode::kNotFound) << action;
     EXPECT_THAT(outcome.err, HasSubstr("there is no sequence 5e")) << action;

@@ -92,12 +92,42 @@ TEST_F(StoreVerbTest, ALostCatalogIsRepaired) {
   EXPECT_TRUE(RunJson({"repair", data_})["rows_made"].empty());
 }
 
+TEST_F(StoreVerbTest, AScrubMovesDamageToTheQuarantine) {
+  EXPECT_TRUE(RunJson({"scrub", data_})["problems"].empty());
+  const std::string id = std::filesystem::path(StoredFile()).filename();
+  ASSERT_THAT(WriteFile(StoredFile(), "damaged"), IsOk());
+  const Outcome outcome = Run({"scrub", data_, "-q"});
+  EXPECT_EQ(outcome.code, ExitCode::kRefused);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr(id), HasSubstr("quarantine")));
+  EXPECT_EQ(StoredFile(), "");
+  EXPECT_TRUE(std::filesystem::exists(data_ + "/quarantine/" + id));
+}
+
+TEST_F(StoreVerbTest, ASweepRemovesWhatHasLivedOutItsTime) {
+  EXPECT_TRUE(RunJson({"sweep", data_, "--keep-jobs", "1"})["removed"].empty());
+  const std::vector<std::string> local = {"--local", "--data-dir", data_};
+  EXPECT_THAT(WriteSequenceFile(folder_.File("brief.pseq"), MovingTetrahedron(4)), IsOk());
+  std::vector<std::string> upload = {"upload", folder_.File("brief.pseq"), "--ttl-hours", "1e-9"};
+  upload.insert(upload.end(), local.begin(), local.end());
+  ASSERT_EQ(RunPleat(upload).code, ExitCode::kOk);
+  const json swept = RunJson({"sweep", data_});
+  ASSERT_EQ(swept["removed"].size(), 1u);
+  EXPECT_THAT(swept["removed"][0].get<std::string>(), HasSubstr("time to live"));
+  const json check = RunJson({"check", data_});
+  EXPECT_EQ(check["entries"]["sequence"], 1);
+  EXPECT_EQ(check["files"], 1);
+  EXPECT_TRUE(check["problems"].empty());
+}
+
 TEST_F(StoreVerbTest, WhatIsMissingIsAMistakeOfTheCommandLine) {
   EXPECT_EQ(Run({"check"}).code, ExitCode::kUsage);
   EXPECT_EQ(Run({"polish", data_}).code, ExitCode::kUsage);
   EXPECT_EQ(Run({"backup", data_}).code, ExitCode::kUsage);
   EXPECT_EQ(Run({"check", data_, backup_}).code, ExitCode::kUsage);
-  EXPECT_EQ(Run({"check", folder_.File("missing"), "-q"}).code, ExitCode::kNotFound);
+  for (const char* action : {"check", "scrub", "sweep"}) {
+    EXPECT_EQ(Run({action, folder_.File("missing"), "-q"}).code, ExitCode::kNotFound) << action;
+    EXPECT_FALSE(std::filesystem::exists(folder_.File("missing"))) << action;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "client/tube_files.h"
@@ -26,6 +28,20 @@ TEST(UploadVerbTest, TheSameContentIsStoredOnce) {
   const Outcome first = files.RunInStore({"upload", files.sequence_path(), "--json"});
   const Outcome second = files.RunInStore({"upload", copy, "--json"});
   EXPECT_EQ(nlohmann::json::parse(first.out)["id"], nlohmann::json::parse(second.out)["id"]);
+  EXPECT_EQ(nlohmann::json::parse(files.RunInStore({"sequences", "--json"}).out).size(), 1u);
+}
+
+TEST(UploadVerbTest, ForgetsWhatHasArrived) {
+  const TubeFiles files;
+  const std::vector<std::string> forget = {"upload", files.sequence_path(), "--forget", "-q"};
+  EXPECT_EQ(files.RunInStore(forget).code, ExitCode::kNotFound);
+  ASSERT_EQ(files.RunInStore({"upload", files.sequence_path(), "-q"}).code, ExitCode::kOk);
+  const auto list = nlohmann::json::parse(files.RunInStore({"sequences", "--json"}).out);
+  const std::string path =
+      files.File("store/uploads/") + list[0]["id"].get<std::string>() + ".part";
+  std::ofstream(path) << "some bytes";
+  EXPECT_EQ(files.RunInStore(forget).code, ExitCode::kOk);
+  EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(nlohmann::json::parse(files.RunInStore({"sequences", "--json"}).out).size(), 1u);
 }
 

@@ -5,7 +5,6 @@ namespace pleat {
 namespace {
 
 struct DownloadCompressedSequenceCase {
-  using Info = CompressedSequenceInfo;
   using Request = v1::DownloadCompressedSequenceRequest;
   using Response = v1::DownloadCompressedSequenceResponse;
   static auto& Mock(MockService& service) { return service.mock_compressed_sequences; }

@@ -5,7 +5,6 @@ namespace pleat {
 namespace {
 
 struct DownloadModelCase {
-  using Info = ModelInfo;
   using Request = v1::DownloadModelRequest;
   using Response = v1::DownloadModelResponse;
   static auto& Mock(MockService& service) { return service.mock_models; }

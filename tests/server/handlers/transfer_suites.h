@@ -35,14 +35,12 @@ class UploadHandlerTest : public testing::Test {
     return info;
   }
   auto& service() { return Case::Mock(mock_.service); }
-  void ExpectNothingStored() {
-    EXPECT_CALL(service(), Get(kId)).WillOnce(testing::Return(absl::NotFoundError("none")));
-  }
   // What BeginUpload gives; the caller adds what is expected of it.
   MockUpload<Info>* ExpectUpload(uint64_t offset) {
     auto upload = std::make_unique<testing::StrictMock<MockUpload<Info>>>();
     MockUpload<Info>* result = upload.get();
-    EXPECT_CALL(service(), BeginUpload(kId, 6, offset))
+    EXPECT_CALL(*upload, complete).WillRepeatedly(testing::Return(false));
+    EXPECT_CALL(service(), BeginUpload(kId, 6, offset, kKeepForEver))
         .WillOnce(testing::Return(testing::ByMove(std::move(upload))));
     return result;
   }
@@ -60,7 +58,6 @@ class UploadHandlerTest : public testing::Test {
 TYPED_TEST_SUITE_P(UploadHandlerTest);
 
 TYPED_TEST_P(UploadHandlerTest, HandsOverThePiecesInOrder) {
-  this->ExpectNothingStored();
   auto* upload = this->ExpectUpload(0);
   testing::InSequence in_order;
   EXPECT_CALL(*upload, Append("abc")).WillOnce(testing::Return(absl::OkStatus()));
@@ -71,9 +68,26 @@ TYPED_TEST_P(UploadHandlerTest, HandsOverThePiecesInOrder) {
 }
 
 TYPED_TEST_P(UploadHandlerTest, ContentThatIsStoredEndsTheCallEarly) {
-  EXPECT_CALL(this->service(), Get(kId)).WillOnce(testing::Return(this->Stored()));
+  auto* upload = this->ExpectUpload(0);
+  EXPECT_CALL(*upload, complete).WillOnce(testing::Return(true));
+  EXPECT_CALL(*upload, Finish).WillOnce(testing::Return(this->Stored()));
   EXPECT_TRUE(this->Send({this->Header(kId)}).ok());
   EXPECT_EQ(TypeParam::Id(this->response_), kId);
+}
+
+TYPED_TEST_P(UploadHandlerTest, PassesOnHowLongItIsKept) {
+  v1::UploadSequenceRequest header = this->Header(kId);
+  header.mutable_header()->set_ttl_seconds(90);
+  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0, absl::Seconds(90)))
+      .WillOnce(testing::Return(testing::ByMove(absl::AbortedError("another writer"))));
+  EXPECT_THAT(this->Send({header}), HasGrpcStatus(grpc::StatusCode::ABORTED, testing::_));
+}
+
+TYPED_TEST_P(UploadHandlerTest, ATimeToLiveThatIsNoneIsRefused) {
+  v1::UploadSequenceRequest header = this->Header(kId);
+  header.mutable_header()->set_ttl_seconds(-1);
+  EXPECT_THAT(this->Send({header}),
+              HasGrpcStatus(grpc::StatusCode::INVALID_ARGUMENT, testing::HasSubstr("ttl_seconds")));
 }
 
 TYPED_TEST_P(UploadHandlerTest, DataBeforeTheHeaderIsRefused) {
@@ -91,7 +105,6 @@ TYPED_TEST_P(UploadHandlerTest, NothingAtAllIsNoUpload) {
 }
 
 TYPED_TEST_P(UploadHandlerTest, AnEmptyPieceIsRefused) {
-  this->ExpectNothingStored();
   this->ExpectUpload(3);
   EXPECT_THAT(
       this->Send({this->Header(kId, 3), this->Data("")}),
@@ -99,15 +112,13 @@ TYPED_TEST_P(UploadHandlerTest, AnEmptyPieceIsRefused) {
 }
 
 TYPED_TEST_P(UploadHandlerTest, PassesOnThatAnotherWriterHoldsIt) {
-  this->ExpectNothingStored();
-  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0))
+  EXPECT_CALL(this->service(), BeginUpload(kId, 6, 0, kKeepForEver))
       .WillOnce(testing::Return(testing::ByMove(absl::AbortedError("another writer"))));
   EXPECT_THAT(this->Send({this->Header(kId)}),
               HasGrpcStatus(grpc::StatusCode::ABORTED, "another writer"));
 }
 
 TYPED_TEST_P(UploadHandlerTest, PassesOnThatTheFileIsBad) {
-  this->ExpectNothingStored();
   auto* upload = this->ExpectUpload(0);
   EXPECT_CALL(*upload, Append("abcdef")).WillOnce(testing::Return(absl::OkStatus()));
   EXPECT_CALL(*upload, Finish)
@@ -117,12 +128,13 @@ TYPED_TEST_P(UploadHandlerTest, PassesOnThatTheFileIsBad) {
 }
 
 REGISTER_TYPED_TEST_SUITE_P(UploadHandlerTest, HandsOverThePiecesInOrder,
-                            ContentThatIsStoredEndsTheCallEarly, DataBeforeTheHeaderIsRefused,
+                            ContentThatIsStoredEndsTheCallEarly, PassesOnHowLongItIsKept,
+                            ATimeToLiveThatIsNoneIsRefused, DataBeforeTheHeaderIsRefused,
                             AnIdThatIsNoneNeverReachesTheService, NothingAtAllIsNoUpload,
                             AnEmptyPieceIsRefused, PassesOnThatAnotherWriterHoldsIt,
                             PassesOnThatTheFileIsBad);
 
-// Case: Info, Request, Response, Mock (of a MockService), Download (starts the call).
+// Case: Request, Response, Mock (of a MockService), Download (starts the call).
 template <typename Case>
 class DownloadHandlerTest : public testing::Test {
  protected:
@@ -130,14 +142,14 @@ class DownloadHandlerTest : public testing::Test {
   static constexpr uint64_t kSize = kChunk + 3;
 
   auto& service() { return Case::Mock(mock_.service); }
-  void ExpectInfo() {
-    typename Case::Info info;
-    info.id = kId;
-    info.size_bytes = kSize;
-    EXPECT_CALL(service(), Get(kId)).WillOnce(testing::Return(info));
-  }
-  void ExpectRead(uint64_t offset, const std::string& bytes) {
-    EXPECT_CALL(service(), ReadBytes(kId, offset, kChunk)).WillOnce(testing::Return(bytes));
+  // The file is opened at `offset` and gives `pieces`.
+  void ExpectDownload(uint64_t offset, const std::vector<std::string>& pieces) {
+    auto download = std::make_unique<testing::NiceMock<MockDownload>>();
+    ON_CALL(*download, size_bytes).WillByDefault(testing::Return(kSize));
+    auto& next = EXPECT_CALL(*download, Next).Times(static_cast<int>(pieces.size()));
+    for (const std::string& piece : pieces) next.WillOnce(testing::Return(piece));
+    EXPECT_CALL(service(), OpenDownload(kId, offset))
+        .WillOnce(testing::Return(testing::ByMove(std::move(download))));
   }
   grpc::Status Download(const std::string& id, uint64_t offset) {
     typename Case::Request request;
@@ -160,16 +172,13 @@ TYPED_TEST_SUITE_P(DownloadHandlerTest);
 
 TYPED_TEST_P(DownloadHandlerTest, SendsTheFileInPieces) {
   const std::string first(this->kChunk, 'x');
-  this->ExpectInfo();
-  this->ExpectRead(0, first);
-  this->ExpectRead(this->kChunk, "end");
+  this->ExpectDownload(0, {first, "end"});
   EXPECT_TRUE(this->Download(kId, 0).ok());
   EXPECT_TRUE(this->bytes_ == first + "end");
 }
 
 TYPED_TEST_P(DownloadHandlerTest, GoesOnWhereTheClientSays) {
-  this->ExpectInfo();
-  this->ExpectRead(this->kChunk, "end");
+  this->ExpectDownload(this->kChunk, {"end"});
   EXPECT_TRUE(this->Download(kId, this->kChunk).ok());
   EXPECT_EQ(this->bytes_, "end");
 }
@@ -180,14 +189,19 @@ TYPED_TEST_P(DownloadHandlerTest, AnIdThatIsNoneNeverReachesTheService) {
 }
 
 TYPED_TEST_P(DownloadHandlerTest, AFileThatIsCutOffIsNotTheWholeFile) {
-  this->ExpectInfo();
-  this->ExpectRead(0, "");
+  this->ExpectDownload(0, {""});
   EXPECT_THAT(this->Download(kId, 0),
               HasGrpcStatus(grpc::StatusCode::DATA_LOSS, testing::HasSubstr("cut off")));
 }
 
+TYPED_TEST_P(DownloadHandlerTest, PassesOnThatThereIsNone) {
+  EXPECT_CALL(this->service(), OpenDownload(kId, 0))
+      .WillOnce(testing::Return(testing::ByMove(absl::NotFoundError("none"))));
+  EXPECT_THAT(this->Download(kId, 0), HasGrpcStatus(grpc::StatusCode::NOT_FOUND, "none"));
+}
+
 REGISTER_TYPED_TEST_SUITE_P(DownloadHandlerTest, SendsTheFileInPieces, GoesOnWhereTheClientSays,
                             AnIdThatIsNoneNeverReachesTheService,
-                            AFileThatIsCutOffIsNotTheWholeFile);
+                            AFileThatIsCutOffIsNotTheWholeFile, PassesOnThatThereIsNone);
 
 }  // namespace pleat

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "pleat/service/limits.h"
 #include "pleat/v1/model_service.pb.h"
 #include "server/reactors/fake_call.h"
 #include "support/checkpoint.h"
@@ -26,17 +28,30 @@ class DownloadStreamTest : public testing::Test {
     for (size_t i = 0; i < file_.size(); ++i) file_[i] = static_cast<char>(i * 7);
     executor_.Release();
   }
+  class Download final : public ContentDownload {
+   public:
+    Download(DownloadStreamTest* test, uint64_t offset) : test_(test), offset_(offset) {}
+    uint64_t size_bytes() const override { return test_->file_.size(); }
+    absl::StatusOr<std::string> Next() override {
+      test_->on_read_();
+      ++test_->num_reads_;
+      std::string bytes = test_->file_.substr(offset_, kDownloadPieceBytes);
+      offset_ += bytes.size();
+      return bytes;
+    }
+
+   private:
+    DownloadStreamTest* const test_;
+    uint64_t offset_;
+  };
+
   void Start(uint64_t offset = 0) {
-    call_.emplace(StartDownload<Response>(
-        &context_, std::string(64, 'a'), offset,
-        {.rpc = "Test",
-         .size_of = [this](const std::string&) -> absl::StatusOr<uint64_t> { return file_.size(); },
-         .read = [this](const std::string&, uint64_t begin,
-                        uint64_t count) -> absl::StatusOr<std::string> {
-           on_read_();
-           ++num_reads_;
-           return file_.substr(begin, count);
-         }}));
+    call_.emplace(StartDownload<Response>(&context_, std::string(64, 'a'), offset,
+                                          {.rpc = "Test",
+                                           .open = [this](const std::string&, uint64_t offset_bytes)
+                                               -> absl::StatusOr<std::unique_ptr<ContentDownload>> {
+                                             return std::make_unique<Download>(this, offset_bytes);
+                                           }}));
   }
   void ExpectEnd(grpc::StatusCode code) {
     EXPECT_EQ(call_->WaitForEnd().error_code(), code);
@@ -44,7 +59,7 @@ class DownloadStreamTest : public testing::Test {
   }
 
   HandlerContext context_;
-  std::string file_ = std::string(2 * kDownloadChunkBytes + 5, '\0');
+  std::string file_ = std::string(2 * kDownloadPieceBytes + 5, '\0');
   std::function<void()> on_read_ = [] {};
   int num_reads_ = 0;
   HeldExecutor executor_;
@@ -52,7 +67,8 @@ class DownloadStreamTest : public testing::Test {
 };
 
 TEST_F(DownloadStreamTest, SendsTheRestOfTheFileFromAnyOffset) {
-  for (const uint64_t offset : {uint64_t{0}, uint64_t{3}, kDownloadChunkBytes, uint64_t{1048580}}) {
+  for (const uint64_t offset :
+       {uint64_t{0}, uint64_t{3}, uint64_t{kDownloadPieceBytes}, uint64_t{1048580}}) {
     Start(offset);
     std::string bytes;
     while (offset + bytes.size() < file_.size()) {

@@ -54,9 +54,8 @@ class UploadStreamTest : public testing::Test {
   void Start() {
     UploadTarget<std::string, std::string> target{
         .rpc = "Test",
-        .find = [](const std::string&) { return absl::NotFoundError("none"); },
-        .begin = [this](const std::string&, uint64_t,
-                        uint64_t) -> absl::StatusOr<std::unique_ptr<ContentUpload<std::string>>> {
+        .begin = [this](const v1::UploadSequenceRequest::Header&)
+            -> absl::StatusOr<std::unique_ptr<ContentUpload<std::string>>> {
           ++num_begun_;
           return std::make_unique<TextUpload>(on_append_, &is_held_);
         },

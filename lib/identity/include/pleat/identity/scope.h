@@ -10,7 +10,7 @@
 namespace pleat {
 
 // kRead: see and download what is stored. kPose: ask models for frames and decode compressed
-// sequences. kTrain: upload, create jobs and cancel them. kAdmin: delete.
+// sequences. kTrain: upload, create jobs and cancel them. kAdmin: delete, pin.
 enum class Scope : uint8_t { kRead, kPose, kTrain, kAdmin };
 inline constexpr Scope kScopes[] = {Scope::kRead, Scope::kPose, Scope::kTrain, Scope::kAdmin};
 const char* ScopeName(Scope scope);  // "read", "pose", "train", "admin"

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
@@ -15,6 +16,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/base/wall_clock.h"
 #include "pleat/jobs/job_state_machine.h"
 
 namespace pleat {
@@ -28,6 +30,9 @@ struct JobOutcome {
 using RunJob = std::function<absl::StatusOr<JobOutcome>(const JobInfo&, const Progress&)>;
 // Writes the job down, durably; called at every change of state.
 using SaveJob = std::function<absl::Status(const JobInfo& info, int attempts)>;
+// Removes what SaveJob wrote, durably.
+using EraseJob = std::function<absl::Status(const std::string& id)>;
+inline absl::Status EraseNothing(const std::string&) { return absl::OkStatus(); }
 
 struct JobManagerOptions {
   int num_workers = 1;            // jobs that run at the same time
@@ -38,6 +43,7 @@ struct JobManagerOptions {
   // the same process keep their pace.
   bool in_idle_time = false;
   MonotonicClock clock = SteadySeconds;
+  WallClock wall_clock = SystemTime;  // for the times that jobs keep
 };
 
 struct StoredJob {
@@ -57,7 +63,8 @@ struct StoredJob {
 // Thread-safe.
 class JobManager {
  public:
-  JobManager(JobManagerOptions options, RunJob run, SaveJob save);
+  // erase: for a manager whose jobs are written down somewhere.
+  JobManager(JobManagerOptions options, RunJob run, SaveJob save, EraseJob erase = EraseNothing);
   ~JobManager();  // Shutdown
   JobManager(const JobManager&) = delete;
   JobManager& operator=(const JobManager&) = delete;
@@ -74,8 +81,13 @@ class JobManager {
   absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
   std::vector<JobInfo> List() const;                         // oldest first
   size_t CountInState(JobState state) const;
+  // Shows every job in the order of creation. `visit` must be quick and must not call this object.
+  void Visit(const std::function<void(const JobInfo&)>& visit) const;
   // kNotFound, kFailedPrecondition when the job has ended, or the error of saving it.
   absl::Status Cancel(const std::string& id);
+  // Forgets a job that has ended. kNotFound, kFailedPrecondition when it has not ended, or the
+  // error of removing what was saved: then the job stays.
+  absl::Status Delete(const std::string& id);
   absl::StatusOr<std::shared_ptr<JobStateMachine>> Find(const std::string& id) const;
 
   // Stops the workers; what was running is queued again, for the next process. Returns when the
@@ -95,15 +107,20 @@ class JobManager {
   void End(JobStateMachine* job, const EndJob& end);
   bool SaveUntilDone(JobStateMachine* job, const JobSnapshot& ended);  // false at shutdown
   void Save(JobStateMachine* job);
+  void SaveUnlessDeleted(JobStateMachine* job);
 
   const JobManagerOptions options_;
   const RunJob run_;
   const SaveJob save_;
+  const EraseJob erase_;
   std::atomic<bool> shutting_down_ = false;
 
   // Taken before mutex_ and held while a new job is saved: one after the other, so the order in the
   // store is the order in the queue.
   std::mutex create_mutex_;
+  // Taken before mutex_ and held while a job is erased, or a job that was seen to have ended is
+  // saved: so that no save brings back what was erased.
+  std::mutex erase_mutex_;
   mutable std::mutex mutex_;         // never held while a job is saved
   std::condition_variable changed_;  // a worker may have something to do
   std::condition_variable stopped_;  // shutting_down_
@@ -112,10 +129,15 @@ class JobManager {
   // Makes the job known, and lets it wait if it is queued. Call with mutex_ held.
   void Register(std::shared_ptr<JobStateMachine> job);
 
-  std::map<std::string, std::shared_ptr<JobStateMachine>> jobs_;  // guarded by mutex_
-  std::map<std::string, std::string> ids_by_request_;             // guarded by mutex_
-  std::vector<std::string> order_;                                // guarded by mutex_
-  std::deque<std::shared_ptr<JobStateMachine>> queue_;            // guarded by mutex_
+  struct Registered {
+    std::shared_ptr<JobStateMachine> job;
+    uint64_t number = 0;  // in the order of creation
+  };
+  std::map<std::string, Registered> jobs_;              // by id; guarded by mutex_
+  std::map<std::string, std::string> ids_by_request_;   // guarded by mutex_
+  std::map<uint64_t, std::string> order_;               // ids by number; guarded by mutex_
+  uint64_t next_number_ = 0;                            // guarded by mutex_
+  std::deque<std::shared_ptr<JobStateMachine>> queue_;  // guarded by mutex_
   std::set<std::string> suspects_;  // ids of jobs that run alone; guarded by mutex_
   int num_running_ = 0;             // guarded by mutex_
   bool runs_suspect_ = false;       // guarded by mutex_

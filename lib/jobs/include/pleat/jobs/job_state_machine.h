@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/time/time.h"
 #include "pleat/base/progress.h"
 #include "pleat/service/job_service.h"
 
@@ -45,16 +46,18 @@ class JobStateMachine {
   const std::string& id() const { return state_.info.id; }  // never changes
 
   // Each returns false, and does nothing, when the job is not in the state that it starts from.
-  bool Start();
+  // now: the time of day, which the job keeps as that of its start or end.
+  bool Start(absl::Time now);
   void Report(const ProgressUpdate& update);  // ignored unless running; fractions never fall
-  bool Succeed(const std::string& result_id, const std::vector<std::string>& warnings);
-  bool Fail(const absl::Status& error);
-  bool Cancelled();
+  bool Succeed(const std::string& result_id, const std::vector<std::string>& warnings,
+               absl::Time now);
+  bool Fail(const absl::Status& error, absl::Time now);
+  bool Cancelled(absl::Time now);
   bool Requeue();  // the attempt that ends here does not count
 
   // A queued job is cancelled, a running one asked to stop (cancel_requested). kFailedPrecondition
   // when the job is final.
-  absl::Status RequestCancel();
+  absl::Status RequestCancel(absl::Time now);
   bool cancel_requested() const { return cancel_requested_.load(std::memory_order_relaxed); }
 
   void AddWarning(const std::string& warning);
@@ -69,7 +72,7 @@ class JobStateMachine {
   void Wake();  // calls the listeners although nothing has changed
 
  private:
-  bool Finish(JobState state, const absl::Status& error);
+  bool Finish(JobState state, const absl::Status& error, absl::Time now);
   void Changed();
 
   const MonotonicClock clock_;

@@ -14,6 +14,7 @@
 #include "pleat/local/local_poses.h"
 #include "pleat/local/local_sequences.h"
 #include "pleat/local/scrubber.h"
+#include "pleat/local/sweeper.h"
 #include "pleat/service/character_service.h"
 
 namespace pleat {
@@ -30,10 +31,15 @@ struct LocalServiceOptions {
   uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences together
   uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
   double scrub_seconds = 0;  // in which every stored file is read once and verified; 0 = never
+  double sweep_seconds = 0;  // between two runs of retention; 0 = never
+  RetentionRules retention{};
   ServiceLimits limits{};
+  WallClock wall_clock = SystemTime;  // for the times that entries and jobs keep
   TrainFunction train = TrainCharacter;
   // Receives sentences for the operator (StoreOptions::on_problem).
   std::function<void(const std::string& problem)> on_problem{};
+  // Receives one sentence about each thing that retention removed.
+  std::function<void(const std::string& sentence)> on_removed{};
 };
 
 // Owns the data folder, the five services over it, and their threads. Thread-safe.
@@ -74,6 +80,7 @@ class LocalCharacterService final : public CharacterService {
   LocalPoses poses_;
   LocalJobs jobs_;
   std::unique_ptr<Scrubber> scrubber_;  // null: never
+  std::unique_ptr<Sweeper> sweeper_;    // null: never
 };
 
 }  // namespace pleat

@@ -22,16 +22,20 @@ class LocalCompressedSequences final : public CompressedSequenceService {
         decode_bytes_(decode_bytes),
         decode_memory_(decode_bytes, "--decode-bytes") {}
 
-  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
-                                                const Progress& progress) override;
+  using CompressedSequenceService::BeginUpload;
+  using CompressedSequenceService::Upload;
+  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file, const Progress& progress,
+                                                absl::Duration ttl) override;
   absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() override;
+  absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
+  absl::Status SetPinned(const std::string& id, bool pinned) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override;
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override;
   absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
-      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) override;
+      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,
+      absl::Duration ttl) override;
   absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,
                                                             FrameRange range) override;
 
@@ -40,7 +44,7 @@ class LocalCompressedSequences final : public CompressedSequenceService {
 
  private:
   absl::StatusOr<SequenceDecoder> OpenDecoder(std::string bytes) const;
-  absl::StatusOr<CompressedSequenceInfo> FinishUpload(pleat::Upload* upload);
+  absl::StatusOr<CompressedSequenceInfo> FinishUpload(pleat::Upload* upload, absl::Duration ttl);
 
   StoredFiles* const files_;
   const uint64_t decode_bytes_;

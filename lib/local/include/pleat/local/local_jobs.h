@@ -9,6 +9,7 @@
 #include "pleat/jobs/job_manager.h"
 #include "pleat/local/job_runner.h"
 #include "pleat/local/local_sequences.h"
+#include "pleat/local/retention.h"
 #include "pleat/local/stored_files.h"
 #include "pleat/service/job_service.h"
 
@@ -24,10 +25,14 @@ class LocalJobs final : public JobService {
   absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
   absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) override;
   absl::StatusOr<JobInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<JobInfo>> List() override;
+  absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& request) override;
   absl::Status Cancel(const std::string& id) override;
+  absl::Status Delete(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<JobSubscription>> Subscribe(
       const std::string& id, std::function<void()> listener) override;
+
+  // For retention; this object must outlive it.
+  JobsOfRetention retention();
 
   size_t CountInState(JobState state) const { return manager_.CountInState(state); }
 

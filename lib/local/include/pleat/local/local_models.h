@@ -18,15 +18,18 @@ class LocalModels final : public ModelService {
   LocalModels(StoredFiles* files, uint64_t cache_bytes) : files_(files), cache_(cache_bytes) {}
 
   absl::StatusOr<ModelInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<ModelInfo>> List() override;
+  absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
+  absl::Status SetPinned(const std::string& id, bool pinned) override;
   absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) override;
-  absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                        uint64_t count) override;
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override;
 
   // Returns the model, from the cache or loaded from the store. It stays in memory as long as the
   // handle lives. kNotFound when there is none, kDataLoss when its file is damaged.
   absl::StatusOr<std::shared_ptr<const CharacterModel>> Acquire(const std::string& id);
+  // Lets go of a model whose entry was deleted elsewhere; who uses it keeps it.
+  void Forget(const std::string& id) { cache_.Erase(id); }
   ByteCacheStats cache_stats() const { return cache_.stats(); }
 
  private:

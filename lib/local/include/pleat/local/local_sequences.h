@@ -15,22 +15,27 @@ class LocalSequences final : public SequenceService {
  public:
   explicit LocalSequences(StoredFiles* files) : files_(files) {}
 
-  absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
-                                      const Progress& progress) override;
+  using SequenceService::BeginUpload;
+  using SequenceService::Upload;
+  absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence, const Progress& progress,
+                                      absl::Duration ttl) override;
   absl::StatusOr<SequenceInfo> Get(const std::string& id) override;
-  absl::StatusOr<std::vector<SequenceInfo>> List() override;
+  absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
+  absl::Status SetPinned(const std::string& id, bool pinned) override;
   absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
                                                               uint64_t size_bytes,
-                                                              uint64_t offset_bytes) override;
+                                                              uint64_t offset_bytes,
+                                                              absl::Duration ttl) override;
+  absl::Status DeleteUpload(const std::string& id) override;
 
   // Reads and decodes the sequence itself, for jobs. kNotFound when there is none.
   absl::StatusOr<MeshSequence> Load(const std::string& id);
 
  private:
   absl::Status Check(const MeshSequence& sequence) const;
-  absl::StatusOr<SequenceInfo> FinishUpload(pleat::Upload* upload);
+  absl::StatusOr<SequenceInfo> FinishUpload(pleat::Upload* upload, absl::Duration ttl);
 
   StoredFiles* const files_;
 };

@@ -10,6 +10,8 @@
 
 namespace pleat {
 
+class StopSignal;
+
 // Verifies the files of `store` one after the other and spreads their reading evenly over a period.
 // The verification puts damaged files in quarantine and tells the operator (Store::Verify); files
 // that an entry names and that cannot be read are reported in every pass. `store` must outlive it.
@@ -28,8 +30,7 @@ class Scrubber {
   static bool RunPass(Store* store, double period_seconds, const Pause& pause);
 
  private:
-  class Stop;
-  const std::unique_ptr<Stop> stop_;
+  const std::unique_ptr<StopSignal> stop_;
   std::thread thread_;
 };
 

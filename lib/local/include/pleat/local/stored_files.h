@@ -14,7 +14,10 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
+#include "pleat/base/wall_clock.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
 #include "pleat/service/limits.h"
 #include "pleat/store/store.h"
 
@@ -23,8 +26,9 @@ namespace pleat {
 // The store together with the limits of the service. Thread-safe.
 class StoredFiles {
  public:
-  StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits)
-      : store_(std::move(store)), limits_(limits) {}
+  StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits,
+              WallClock clock = SystemTime)
+      : store_(std::move(store)), limits_(limits), clock_(std::move(clock)) {}
 
   Catalog& catalog() { return store_->catalog(); }
   UploadArea& uploads() { return store_->uploads(); }
@@ -32,12 +36,21 @@ class StoredFiles {
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
   const ServiceLimits& limits() const { return limits_; }
 
-  // A file and its row appear and disappear together (see Store).
-  absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {
-    return store_->Add(kind, entry, bytes);
+  const WallClock& clock() const { return clock_; }
+
+  // A file and its row appear and disappear together (see Store). An entry that is new is created
+  // now. ttl: how long it is kept at least; the longest life of an entry counts.
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes,
+                   absl::Duration ttl = kKeepForEver) {
+    return store_->Add(kind, BornNow(entry, ttl), bytes);
   }
-  absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload) {
-    return store_->Add(kind, entry, upload);
+  absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload,
+                   absl::Duration ttl = kKeepForEver) {
+    return store_->Add(kind, BornNow(entry, ttl), upload);
+  }
+  // Keeps an entry so long from now on, if not longer. kNotFound when there is none.
+  absl::Status Prolong(EntryKind kind, const std::string& id, absl::Duration ttl) {
+    return catalog().Prolong(kind, id, ExpiryOf(clock_(), ttl));
   }
   absl::Status Delete(EntryKind kind, const std::string& id) { return store_->Delete(kind, id); }
   // Returns the content of a stored file, verified (see Store).
@@ -47,11 +60,12 @@ class StoredFiles {
   // Tells the operator about an entry whose row cannot be read, once for each.
   void ReportBadRow(EntryKind kind, const std::string& id, const absl::Status& why);
 
-  // Returns `count` bytes of the file of an entry from `offset` on, fewer at its end. A read from
-  // the start verifies the whole file first. kNotFound when there is no such entry, kDataLoss when
-  // its file has changed.
-  absl::StatusOr<std::string> ReadBytes(EntryKind kind, const std::string& id, uint64_t offset,
-                                        uint64_t count);
+  // Opens the file of an entry from `offset_bytes` on. A download from the start verifies the whole
+  // file first. kNotFound when there is no such entry, kDataLoss when its file has changed,
+  // kOutOfRange when the offset is behind its end.
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(EntryKind kind,
+                                                                const std::string& id,
+                                                                uint64_t offset_bytes);
   // Returns the whole file, which has `size_bytes`. kDataLoss when the file is shorter.
   absl::StatusOr<std::string> Download(EntryKind kind, const std::string& id, uint64_t size_bytes,
                                        const Progress& progress);
@@ -61,8 +75,12 @@ class StoredFiles {
                                                       uint64_t offset_bytes);
 
  private:
+  static int64_t ExpiryOf(absl::Time now, absl::Duration ttl);  // as the catalog writes it
+  CatalogEntry BornNow(CatalogEntry entry, absl::Duration ttl) const;
+
   const std::unique_ptr<Store> store_;
   const ServiceLimits limits_;
+  const WallClock clock_;
   std::mutex mutex_;
   std::set<std::string> bad_rows_;  // that were reported; guarded by mutex_
 };
@@ -82,6 +100,21 @@ class StoredUpload final : public ContentUpload<Info> {
  private:
   const std::unique_ptr<Upload> upload_;
   const FinishUpload finish_;
+};
+
+// The upload of a file that is stored already.
+template <typename Info>
+class KnownUpload final : public ContentUpload<Info> {
+ public:
+  explicit KnownUpload(Info info) : info_(std::move(info)) {}
+
+  bool complete() const override { return true; }
+  absl::Status Append(std::string_view) override { return absl::OkStatus(); }
+  uint64_t received_bytes() const override { return info_.size_bytes; }
+  absl::StatusOr<Info> Finish() override { return info_; }
+
+ private:
+  const Info info_;
 };
 
 }  // namespace pleat

@@ -14,7 +14,10 @@
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -34,6 +37,7 @@ struct CompressedSequenceInfo {
   FrameRate frame_rate;
   uint64_t size_bytes = 0;
   std::optional<CompressionRecord> record;  // none of files that were uploaded
+  EntryLife life{};
 };
 
 // Frames [begin, end) of a sequence; end 0: to its end.
@@ -69,20 +73,38 @@ class CompressedSequenceService {
   virtual ~CompressedSequenceService() = default;
 
   // file: the bytes of a .plt. Uploading the same content twice gives the same id and stores it
-  // once; a record that a job has made stays.
+  // once; a record that a job has made stays. ttl: how long the service keeps it at least, above 0.
   virtual absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file,
-                                                        const Progress& progress) = 0;
+                                                        const Progress& progress,
+                                                        absl::Duration ttl) = 0;
+  absl::StatusOr<CompressedSequenceInfo> Upload(const std::string& file, const Progress& progress) {
+    return Upload(file, progress, kKeepForEver);
+  }
   virtual absl::StatusOr<CompressedSequenceInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<CompressedSequenceInfo>> List() = 0;
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<CompressedSequenceInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<CompressedSequenceInfo>> List() {
+    return ReadAllPages<CompressedSequenceInfo>(
+        [this](const PageRequest& request) { return ListPage(request); });
+  }
   virtual absl::Status Delete(const std::string& id) = 0;
+  // A pinned one is never removed by retention, only by Delete.
+  virtual absl::Status SetPinned(const std::string& id, bool pinned) = 0;
   // The whole file.
   virtual absl::StatusOr<std::string> Download(const std::string& id, const Progress& progress) = 0;
-  // `count` bytes of the file from `offset`, fewer at its end.
-  virtual absl::StatusOr<std::string> ReadBytes(const std::string& id, uint64_t offset,
-                                                uint64_t count) = 0;
+  // The file in pieces, from `offset_bytes` on. kOutOfRange when that is behind its end, kDataLoss
+  // when the file has changed.
+  virtual absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                        uint64_t offset_bytes) = 0;
   // As SequenceService::BeginUpload, which also tells what has arrived.
   virtual absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
-      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes) = 0;
+      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes, absl::Duration ttl) = 0;
+  absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(const std::string& id,
+                                                                        uint64_t size_bytes,
+                                                                        uint64_t offset_bytes) {
+    return BeginUpload(id, size_bytes, offset_bytes, kKeepForEver);
+  }
   // kInvalidArgument when the range is not inside the sequence, kResourceExhausted when all
   // decoders together would take more memory than the service allows.
   virtual absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,

@@ -22,6 +22,9 @@ class ContentUpload {
  public:
   virtual ~ContentUpload() = default;
 
+  // True: the service has the whole file already. Then nothing needs to be appended, nobody looks
+  // at what is, and Finish says what the service knows.
+  virtual bool complete() const { return false; }
   // kOutOfRange when more than the declared size would arrive.
   virtual absl::Status Append(std::string_view bytes) = 0;
   virtual uint64_t received_bytes() const = 0;

@@ -11,8 +11,11 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "pleat/character/train_character.h"
 #include "pleat/sequence_codec/compress_sequence.h"
+#include "pleat/service/entry_life.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -34,12 +37,14 @@ struct TrainingRequest {
   // Chosen by the caller at random; a call with the id of an earlier one makes no second job and
   // returns the first as it is now. Empty: every call makes a job.
   std::string request_id{};
+  absl::Duration model_ttl = kKeepForEver;  // how long the service keeps the model at least
 };
 
 struct CompressionRequest {
   std::string sequence_id{};
   CompressOptions options{};
-  std::string request_id{};  // as above
+  std::string request_id{};                  // as above
+  absl::Duration result_ttl = kKeepForEver;  // of the compressed sequence
 };
 
 struct JobInfo {
@@ -47,9 +52,10 @@ struct JobInfo {
   JobState state = JobState::kQueued;
   std::vector<std::string> sequence_ids;
   JobOptions options;
-  std::string name;                 // of the result
-  std::string rig_id;               // hex SHA-256 of TrainingRequest::rig, or empty
-  std::string request_id;           // of the call that made it; services do not show it
+  std::string name;                          // of the result
+  std::string rig_id;                        // hex SHA-256 of TrainingRequest::rig, or empty
+  std::string request_id;                    // of the call that made it; services do not show it
+  absl::Duration result_ttl = kKeepForEver;  // from the moment when the result is stored
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1
   std::optional<double> objective;  // of the running optimizer
@@ -57,6 +63,9 @@ struct JobInfo {
   std::vector<std::string> warnings;
   absl::Status error;     // why it failed or was cancelled
   std::string result_id;  // when it succeeded: the id of the model or the compressed sequence
+  // When it was created, was started the last time, and ended. None: it has not come to that, or an
+  // older version that wrote no times made the job.
+  std::optional<absl::Time> created, started, ended;
 };
 
 // A job at one moment.
@@ -85,9 +94,17 @@ class JobService {
   virtual absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) = 0;
   virtual absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) = 0;
   virtual absl::StatusOr<JobInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<JobInfo>> List() = 0;  // oldest first
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<JobInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<JobInfo>> List() {
+    return ReadAllPages<JobInfo>([this](const PageRequest& request) { return ListPage(request); });
+  }
   // kFailedPrecondition when the job is final. A running job stops within a second.
   virtual absl::Status Cancel(const std::string& id) = 0;
+  // Forgets a job that is final, and its request id; what it made stays. kFailedPrecondition when
+  // the job is not final.
+  virtual absl::Status Delete(const std::string& id) = 0;
   // Calls `listener` after every change of the job or of the subscription's status, from any
   // thread. The listener must be quick and must not call the subscription: the news may be read
   // as soon as it has returned.

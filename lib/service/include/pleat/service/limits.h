@@ -32,5 +32,7 @@ inline constexpr int64_t kMaxPosesInFlight = 64;
 inline constexpr int64_t kMaxPageSize = 500;
 // Bytes of one piece of an upload: the server keeps one piece per upload.
 inline constexpr int64_t kMaxUploadChunkBytes = int64_t{2} << 20;
+// Bytes of one piece of a download.
+inline constexpr int64_t kDownloadPieceBytes = int64_t{512} << 10;
 
 }  // namespace pleat

@@ -11,6 +11,8 @@
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/service/content_upload.h"
+#include "pleat/service/entry_life.h"
+#include "pleat/service/list_page.h"
 
 namespace pleat {
 
@@ -20,6 +22,7 @@ struct SequenceInfo {
   int num_frames = 0, num_vertices = 0, num_faces = 0;
   FrameRate frame_rate;
   uint64_t size_bytes = 0;
+  EntryLife life{};
 };
 
 using SequenceUpload = ContentUpload<SequenceInfo>;
@@ -29,12 +32,24 @@ class SequenceService {
  public:
   virtual ~SequenceService() = default;
 
-  // Uploading the same content twice gives the same id and stores it once.
+  // Uploading the same content twice gives the same id and stores it once. ttl: how long the
+  // service keeps it at least, above 0.
   virtual absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence,
-                                              const Progress& progress) = 0;
+                                              const Progress& progress, absl::Duration ttl) = 0;
+  absl::StatusOr<SequenceInfo> Upload(const MeshSequence& sequence, const Progress& progress) {
+    return Upload(sequence, progress, kKeepForEver);
+  }
   virtual absl::StatusOr<SequenceInfo> Get(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<SequenceInfo>> List() = 0;
+  // Oldest first. kInvalidArgument for a size out of range, or a token that this list did not give.
+  virtual absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& request) = 0;
+  // All pages together.
+  absl::StatusOr<std::vector<SequenceInfo>> List() {
+    return ReadAllPages<SequenceInfo>(
+        [this](const PageRequest& request) { return ListPage(request); });
+  }
   virtual absl::Status Delete(const std::string& id) = 0;
+  // A pinned one is never removed by retention, only by Delete.
+  virtual absl::Status SetPinned(const std::string& id, bool pinned) = 0;
 
   // What has arrived of the file `id`, sequence or compressed sequence: where to go on.
   virtual absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) = 0;
@@ -43,7 +58,16 @@ class SequenceService {
   // kResourceExhausted when it is above a limit or the disk is full.
   virtual absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
                                                                       uint64_t size_bytes,
-                                                                      uint64_t offset_bytes) = 0;
+                                                                      uint64_t offset_bytes,
+                                                                      absl::Duration ttl) = 0;
+  absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
+                                                              uint64_t size_bytes,
+                                                              uint64_t offset_bytes) {
+    return BeginUpload(id, size_bytes, offset_bytes, kKeepForEver);
+  }
+  // Forgets what has arrived of the file `id`, sequence or compressed sequence. kNotFound when
+  // nothing has, kAborted while a writer holds it.
+  virtual absl::Status DeleteUpload(const std::string& id) = 0;
 };
 
 }  // namespace pleat

@@ -11,6 +11,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/store/disk_space.h"
+#include "pleat/store/open_file.h"
 #include "pleat/store/staged_file.h"
 #include "pleat/store/sync_hook.h"
 
@@ -57,9 +58,8 @@ class BlobStore {
   absl::StatusOr<std::string> Get(const std::string& id) const;
   // Reads the whole file and compares its SHA-256, in little memory. OK, or the errors of Get.
   absl::Status Verify(const std::string& id) const;
-  // `count` bytes from `offset` (fewer at the end), not verified.
-  absl::StatusOr<std::string> GetRange(const std::string& id, uint64_t offset,
-                                       uint64_t count) const;
+  // The file for reading in pieces, not verified; kNotFound.
+  absl::StatusOr<std::unique_ptr<OpenFile>> OpenForReading(const std::string& id) const;
   absl::StatusOr<uint64_t> Size(const std::string& id) const;
   bool Contains(const std::string& id) const;
   absl::Status Delete(const std::string& id);             // OK when it is not there

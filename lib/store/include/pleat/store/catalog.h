@@ -1,6 +1,8 @@
 // What exists, as rows of a SQLite database.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,8 +32,12 @@ inline constexpr const char* kCatalogSuffixes[] = {"-wal", "-shm", ""};
 
 struct CatalogEntry {
   std::string id;
-  std::string record;  // the owner's own bytes
-  int attempts = 0;    // jobs: how often one was started
+  std::string record;           // the owner's own bytes
+  int attempts = 0;             // jobs: how often one was started
+  int64_t created_unix_ms = 0;  // when it was first added; 0: not known
+  int64_t expires_unix_ms = 0;  // when retention may remove it; 0: never
+  bool pinned = false;          // retention never removes it; Put neither sets nor clears this
+  int64_t position = 0;         // in the order of all entries, from 1; the catalog sets it
 };
 
 // Invariants:
@@ -64,13 +70,29 @@ class Catalog {
   Catalog(const Catalog&) = delete;
   Catalog& operator=(const Catalog&) = delete;
 
-  // Adds the entry or replaces the one with the same id, which keeps its place in the order.
+  // Adds the entry or replaces the one with the same id. That one keeps its place in the order, its
+  // time of creation, and the longer of the two lives.
   absl::Status Put(EntryKind kind, const CatalogEntry& entry);
   absl::StatusOr<CatalogEntry> Get(EntryKind kind, const std::string& id);  // or kNotFound
   absl::StatusOr<std::vector<CatalogEntry>> List(EntryKind kind);           // oldest first
+  // The `max_entries` oldest entries behind `after_position`, which 0 puts before all. The cost
+  // depends on their number alone, and not on what else the catalog holds.
+  absl::StatusOr<std::vector<CatalogEntry>> ListPage(EntryKind kind, int64_t after_position,
+                                                     int max_entries);
+  // The steps that SQLite's machine has taken for all pages so far.
+  uint64_t num_page_steps() const { return num_page_steps_.load(std::memory_order_relaxed); }
   // kNotFound when there is none. In the same commit the file of the entry becomes a pending
   // removal.
   absl::Status Delete(EntryKind kind, const std::string& id);
+
+  // The three below are kNotFound when there is no such entry.
+  absl::Status SetPinned(EntryKind kind, const std::string& id, bool pinned);
+  // The longer of the two lives counts. expires_unix_ms: 0 = never.
+  absl::Status Prolong(EntryKind kind, const std::string& id, int64_t expires_unix_ms);
+  // Deletes the entry if it is not pinned and its life was over at `now_unix_ms`.
+  absl::Status DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms);
+  // The entries that DeleteExpired would delete, oldest first. The cost depends on their number.
+  absl::StatusOr<std::vector<CatalogEntry>> ListExpired(EntryKind kind, int64_t now_unix_ms);
 
   // The content ids that the rows name, sorted.
   absl::StatusOr<std::vector<std::string>> FileIds();
@@ -91,14 +113,22 @@ class Catalog {
 
  private:
   Catalog();
+  absl::Status Upgrade();  // brings the file to the version of this program
   // Looks for damage and returns the version, 0 for an empty file.
   absl::StatusOr<int> CheckFile(const std::string& path);
   absl::StatusOr<std::vector<std::string>> Ids(const char* sql);
+  // Selects the rows of entries that `conditions`, the rest of the statement, is about.
+  std::string Select(const char* conditions) const;
+  // Runs a statement that changes the entry ?1, ?2; kNotFound when it changes none. `value`: ?3.
+  absl::Status Change(const char* sql, EntryKind kind, const std::string& id, int64_t value);
 
   std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections
   std::unique_ptr<Database> writer_;
   std::unique_ptr<Database> reader_;
-  bool has_properties_ = true;  // false: version 1, opened read-only
+  // What the file has that older versions had not; false only when it was opened read-only.
+  bool has_properties_ = true;
+  bool has_lives_ = true;
+  std::atomic<uint64_t> num_page_steps_ = 0;
 };
 
 }  // namespace pleat

@@ -79,6 +79,8 @@ class Store {
   // Removes row and file; kNotFound when there is no such row. The file stays while a row of
   // another kind names it.
   absl::Status Delete(EntryKind kind, const std::string& id);
+  // The same, if the entry is not pinned and its life was over at `now_unix_ms`; else kNotFound.
+  absl::Status DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms);
 
   // Read returns the content of a file, and Verify reads it and says whether it is intact.
   // kNotFound when it is not there, kDataLoss when it has changed: then it is in quarantine

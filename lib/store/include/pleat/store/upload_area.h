@@ -8,9 +8,11 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "pleat/store/disk_space.h"
 #include "pleat/store/staged_file.h"
 #include "pleat/store/sync_hook.h"
@@ -65,9 +67,8 @@ class Upload {
 // Thread-safe.
 class UploadArea {
  public:
-  // Uses (and makes) `folder`; removes uploads that nobody has touched for `max_age_hours`.
+  // Uses (and makes) `folder`.
   static absl::StatusOr<std::unique_ptr<UploadArea>> Open(std::string folder,
-                                                          int max_age_hours = 7 * 24,
                                                           SyncHook before_sync = {});
 
   // Bytes of the upload `id` that have arrived, 0 when there is none.
@@ -78,6 +79,13 @@ class UploadArea {
   // arrived; offset 0 starts again. `room` is held for what is still to come.
   absl::StatusOr<std::unique_ptr<Upload>> Begin(const std::string& id, uint64_t size_bytes,
                                                 uint64_t offset_bytes, SpaceReservation room = {});
+
+  // Forgets what has arrived of an upload. kNotFound when nothing has, kAborted while a writer
+  // holds it.
+  absl::Status Remove(const std::string& id);
+  // Forgets the uploads that no writer holds and that got their last byte before `time`. Returns
+  // their ids, sorted.
+  std::vector<std::string> RemoveUntouchedSince(absl::Time time);
 
  private:
   friend class Upload;

@@ -2,7 +2,11 @@
 // FromProto checks them, and kInvalidArgument names the field that is wrong.
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "pleat/service/compressed_sequence_service.h"
 #include "pleat/service/job_service.h"
 #include "pleat/service/model_service.h"
@@ -25,6 +29,11 @@ absl::StatusOr<JobInfo> FromProto(const v1::Job& message);
 
 v1::Model ToProto(const ModelInfo& info);
 absl::StatusOr<ModelInfo> FromProto(const v1::Model& message);
+
+// A time to live in seconds, where 0 is for ever. kInvalidArgument names `what` when it is negative
+// or longer than a century.
+int64_t TtlToSeconds(absl::Duration ttl);
+absl::StatusOr<absl::Duration> TtlFromSeconds(int64_t seconds, const std::string& what);
 
 v1::CompressOptions ToProto(const CompressOptions& options);
 // Returns kInvalidArgument when no goal is set or a number is out of range.

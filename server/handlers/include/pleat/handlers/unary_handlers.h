@@ -19,6 +19,10 @@ absl::Status ListSequences(HandlerContext& context, const v1::ListSequencesReque
                            v1::ListSequencesResponse* response);
 absl::Status DeleteSequence(HandlerContext& context, const v1::DeleteSequenceRequest& request,
                             v1::DeleteSequenceResponse* response);
+absl::Status PinSequence(HandlerContext& context, const v1::PinSequenceRequest& request,
+                         v1::PinSequenceResponse* response);
+absl::Status DeleteUpload(HandlerContext& context, const v1::DeleteUploadRequest& request,
+                          v1::DeleteUploadResponse* response);
 
 absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTrainingJobRequest& request,
                                v1::CreateTrainingJobResponse* response);
@@ -31,6 +35,8 @@ absl::Status ListJobs(HandlerContext& context, const v1::ListJobsRequest& reques
                       v1::ListJobsResponse* response);
 absl::Status CancelJob(HandlerContext& context, const v1::CancelJobRequest& request,
                        v1::CancelJobResponse* response);
+absl::Status DeleteJob(HandlerContext& context, const v1::DeleteJobRequest& request,
+                       v1::DeleteJobResponse* response);
 
 absl::Status GetModel(HandlerContext& context, const v1::GetModelRequest& request,
                       v1::GetModelResponse* response);
@@ -38,6 +44,8 @@ absl::Status ListModels(HandlerContext& context, const v1::ListModelsRequest& re
                         v1::ListModelsResponse* response);
 absl::Status DeleteModel(HandlerContext& context, const v1::DeleteModelRequest& request,
                          v1::DeleteModelResponse* response);
+absl::Status PinModel(HandlerContext& context, const v1::PinModelRequest& request,
+                      v1::PinModelResponse* response);
 
 absl::Status GetCompressedSequence(HandlerContext& context,
                                    const v1::GetCompressedSequenceRequest& request,
@@ -48,6 +56,9 @@ absl::Status ListCompressedSequences(HandlerContext& context,
 absl::Status DeleteCompressedSequence(HandlerContext& context,
                                       const v1::DeleteCompressedSequenceRequest& request,
                                       v1::DeleteCompressedSequenceResponse* response);
+absl::Status PinCompressedSequence(HandlerContext& context,
+                                   const v1::PinCompressedSequenceRequest& request,
+                                   v1::PinCompressedSequenceResponse* response);
 
 absl::Status GetStreamHeader(HandlerContext& context, const v1::GetStreamHeaderRequest& request,
                              v1::GetStreamHeaderResponse* response);

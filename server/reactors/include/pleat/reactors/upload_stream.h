@@ -27,11 +27,9 @@ namespace pleat {
 template <typename Info, typename Response>
 struct UploadTarget {
   const char* rpc;
-  // Gives what the service has stored under `id`, and the call ends early; kNotFound when it has
-  // nothing.
-  std::function<absl::StatusOr<Info>(const std::string& id)> find;
+  // When the upload is complete already, the call ends early.
   std::function<absl::StatusOr<std::unique_ptr<ContentUpload<Info>>>(
-      const std::string& id, uint64_t size_bytes, uint64_t offset_bytes)>
+      const v1::UploadSequenceRequest::Header& header)>
       begin;
   std::function<void(const Info&, Response*)> reply;
 };
@@ -84,14 +82,9 @@ class UploadStream final : public CallReactor<grpc::ServerReadReactor<v1::Upload
     }
     const v1::UploadSequenceRequest::Header& header = request_.header();
     PLEAT_RETURN_IF_ERROR(CheckContentId(header.id(), "header.id"));
-    if (const absl::StatusOr<Info> known = target_.find(header.id()); known.ok()) {
-      *finished = true;
-      target_.reply(*known, response_);
-      return absl::OkStatus();
-    }
-    PLEAT_ASSIGN_OR_RETURN(upload_,
-                           target_.begin(header.id(), header.size_bytes(), header.offset_bytes()));
-    return absl::OkStatus();
+    PLEAT_ASSIGN_OR_RETURN(upload_, target_.begin(header));
+    *finished = upload_->complete();
+    return *finished ? Complete() : absl::OkStatus();
   }
 
   absl::Status Complete() {
