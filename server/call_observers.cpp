@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <string>
 
 #include "absl/status/status.h"
 
@@ -67,6 +68,13 @@ CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegi
               Audit(facts, status, seconds, tokens, audit_log);
             }
           }};
+}
+
+void LogJob(const JobInfo& job) {
+  const bool failed = job.state == JobState::kFailed;
+  spdlog::log(failed ? spdlog::level::warn : spdlog::level::info, "{} '{}' is {}{}{}", job.id,
+              job.name, JobStateName(job.state), job.error.ok() ? "" : ": ",
+              std::string(job.error.message()));
 }
 
 void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry) {

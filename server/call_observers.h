@@ -11,6 +11,7 @@
 #include "pleat/identity/token_registry.h"
 #include "pleat/metrics/server_metrics.h"
 #include "pleat/observe/audit_log.h"
+#include "pleat/service/job_service.h"
 
 namespace pleat {
 
@@ -24,6 +25,9 @@ absl::StatusOr<std::unique_ptr<AuditLog>> OpenAuditLog(const std::string& path);
 // `audit_log` may be null. All must outlive the server.
 CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens,
                           double slow_call_seconds);
+
+// Logs what a job has come to.
+void LogJob(const JobInfo& job);
 
 // Logs a warning when a certificate expires within the next month.
 void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry);

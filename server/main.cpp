@@ -61,6 +61,7 @@ int Run(const ServerOptions& options) {
 
   LocalServiceOptions service_options = options.service;
   service_options.on_problem = [](const std::string& problem) { spdlog::error("{}", problem); };
+  service_options.on_job_state = LogJob;
   service_options.on_removed = [](const std::string& sentence) { spdlog::info("{}", sentence); };
   absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
       LocalCharacterService::Open(service_options);

@@ -20,6 +20,7 @@
 #include "pleat/remote/remote_character_service.h"
 #include "pleat/v1/sequence_service.grpc.pb.h"
 #include "server/grpc/sockets.h"
+#include "server/watch_to_end.h"
 #include "support/certificates.h"
 #include "support/fake_training.h"
 #include "support/source_folder.h"
@@ -358,6 +359,24 @@ TEST(PleatdTest, IsOpenToOtherMachinesWhenItKnowsItsCallers) {
   tokens.Add("Ada", "admin");
   Daemon known(flags);
   EXPECT_NE(known.WaitForAddress(), "") << known.output();
+}
+
+TEST(PleatdTest, AFailedJobLeavesItsReasonInTheLog) {
+  TemporaryFolder folder;
+  Daemon daemon(Flags(folder));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto client,
+                             RemoteCharacterService::Connect(daemon.WaitForAddress()));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SequenceInfo tube,
+                             client->sequences().Upload(MakeSwayingTube(4), {}));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo created,
+                             client->jobs().CreateTraining({.sequence_ids = {tube.id}}));
+  const JobInfo job = WatchToEnd(client->jobs(), created.id);
+  EXPECT_EQ(job.state, JobState::kFailed) << "a tube is no human";
+  daemon.Signal(SIGTERM);
+  EXPECT_EQ(daemon.Wait(), 0);
+  for (const char* state : {"running", "failed: "}) {
+    EXPECT_THAT(daemon.output(), HasSubstr(absl::StrCat(job.id, " '", job.name, "' is ", state)));
+  }
 }
 
 TEST(PleatdTest, LogsJson) {

@@ -43,7 +43,9 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                         .max_batch = options.max_batch}),
       jobs_(&files_, &sequences_,
             JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
-            options.num_workers, options.jobs_in_idle_time) {}
+            {.num_workers = options.num_workers,
+             .in_idle_time = options.jobs_in_idle_time,
+             .on_state = options.on_job_state}) {}
 
 double LocalCharacterService::FreeDiskBytes() const {
   const absl::StatusOr<uint64_t> bytes = files_.store().blobs().FreeBytes();

@@ -54,19 +54,22 @@ class LocalSubscription final : public JobSubscription {
 }  // namespace
 
 LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner,
-                     int num_workers, bool in_idle_time)
+                     const LocalJobsOptions& options)
     : files_(files),
       sequences_(sequences),
       runner_(std::move(runner)),
       manager_(
-          JobManagerOptions{.num_workers = num_workers,
-                            .in_idle_time = in_idle_time,
+          JobManagerOptions{.num_workers = options.num_workers,
+                            .in_idle_time = options.in_idle_time,
                             .wall_clock = files->clock()},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_.Run(job, progress);
           },
-          [this](const JobInfo& info, int attempts) {
-            return files_->catalog().Put(EntryKind::kJob, {info.id, EncodeRecord(info), attempts});
+          [this, on_state = options.on_state](const JobInfo& info, int attempts) {
+            const absl::Status status =
+                files_->catalog().Put(EntryKind::kJob, {info.id, EncodeRecord(info), attempts});
+            if (status.ok() && on_state) on_state(info);
+            return status;
           },
           [this](const std::string& id) {
             const absl::Status status = files_->catalog().Delete(EntryKind::kJob, id);

@@ -38,6 +38,8 @@ struct LocalServiceOptions {
   TrainFunction train = TrainCharacter;
   // Receives sentences for the operator (StoreOptions::on_problem).
   std::function<void(const std::string& problem)> on_problem{};
+  // Receives a job whenever a new state of it has been saved.
+  std::function<void(const JobInfo& job)> on_job_state{};
   // Receives one sentence about each thing that retention removed.
   std::function<void(const std::string& sentence)> on_removed{};
 };

@@ -15,12 +15,18 @@
 
 namespace pleat {
 
+struct LocalJobsOptions {
+  int num_workers = 1;        // jobs that run at the same time
+  bool in_idle_time = false;  // see JobManagerOptions
+  // Receives a job whenever a new state of it has been saved, from any thread. May be empty.
+  std::function<void(const JobInfo& job)> on_state{};
+};
+
 // Thread-safe. `files` and `sequences` must outlive it.
 class LocalJobs final : public JobService {
  public:
-  // num_workers: the number of jobs that run at the same time. in_idle_time: see JobManagerOptions.
-  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, int num_workers,
-            bool in_idle_time = false);
+  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner,
+            const LocalJobsOptions& options);
 
   absl::StatusOr<JobInfo> CreateTraining(const TrainingRequest& request) override;
   absl::StatusOr<JobInfo> CreateCompression(const CompressionRequest& request) override;
