@@ -19,6 +19,10 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
   app->add_option("--workers", service->num_workers, "Jobs that run at the same time")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  app->add_option("--max-queued-jobs-per-client", service->max_queued_jobs_per_client,
+                  "Jobs of one token, or of one address of callers without tokens, that may wait")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   app->add_option("--threads-per-job", service->num_threads_per_job, "0 = one per core")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

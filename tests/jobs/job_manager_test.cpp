@@ -63,6 +63,24 @@ TEST(JobManagerTest, TimesThatAreSeenAreThoseThatAreSaved) {
   EXPECT_EQ(saved.ended, ended.ended);
 }
 
+TEST(JobManagerTest, OneClientCannotHaveAllPlacesOfTheQueue) {
+  Journal journal;
+  JobManager jobs({.max_queued = 4, .max_queued_per_client = 2}, Succeeds(), journal.save());
+  const auto create = [&](const std::string& client) {
+    JobInfo draft = Named("job");
+    draft.client = client;
+    return jobs.Create(draft).status();
+  };
+  EXPECT_THAT(create("ada"), IsOk());
+  EXPECT_THAT(create("ada"), IsOk());
+  EXPECT_THAT(create("ada"),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("this client has 2")));
+  EXPECT_THAT(create("zoe"), IsOk());
+  EXPECT_THAT(create("rea"), IsOk());
+  EXPECT_THAT(create("otto"),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("4 jobs are waiting")));
+}
+
 TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {
   Journal journal;
   Running running;

@@ -54,6 +54,7 @@ void ExpectSame(const JobInfo& a, const JobInfo& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.rig_id, b.rig_id);
   EXPECT_EQ(a.request_id, b.request_id);
+  EXPECT_EQ(a.client, b.client);
   EXPECT_EQ(a.stage, b.stage);
   EXPECT_EQ(a.fraction, b.fraction);
   EXPECT_EQ(a.objective, b.objective);
@@ -146,6 +147,7 @@ TEST(RecordsTest, RowsOfTheFirstVersionAreRead) {
 TEST(RecordsTest, WhatCameLaterIsKept) {
   JobInfo job = SampleTrainingJob();
   job.request_id = "0123456789abcdef";
+  job.client = "token:5d0f";
   PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo read, DecodeJobRecord(EncodeRecord(job)));
   ExpectSame(read, job);
 }

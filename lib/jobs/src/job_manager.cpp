@@ -68,7 +68,7 @@ void JobManager::Register(std::shared_ptr<JobStateMachine> job) {
   const uint64_t number = next_number_++;
   order_.emplace(number, info.id);
   if (!info.request_id.empty()) ids_by_request_.emplace(info.request_id, info.id);
-  if (info.state == JobState::kQueued) queue_.push_back(job);
+  if (info.state == JobState::kQueued) queue_.Add(job, info.client);
   jobs_.emplace(info.id, Registered{std::move(job), number});
 }
 
@@ -107,6 +107,11 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
       return absl::ResourceExhaustedError(absl::StrCat(queue_.size(),
                                                        " jobs are waiting, the limit is ",
                                                        options_.max_queued, "; try again later"));
+    }
+    if (queue_.NumOf(draft.client) >= options_.max_queued_per_client) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("this client has ", options_.max_queued_per_client,
+                       " waiting jobs, which is its limit; try again when some of them have run"));
     }
   }
   // Saved first: a job that was accepted is never lost. Saving waits for the disk, so those who ask
@@ -154,7 +159,7 @@ absl::Status JobManager::Cancel(const std::string& id) {
   bool was_waiting = false;
   {
     std::lock_guard lock(mutex_);
-    was_waiting = std::erase(queue_, job) > 0;
+    was_waiting = queue_.Remove(job);
   }
   const absl::Time now = options_.wall_clock();
   if (!was_waiting) return job->RequestCancel(now);  // its worker saves how it ends
@@ -165,7 +170,7 @@ absl::Status JobManager::Cancel(const std::string& id) {
   if (!status.ok()) {
     {
       std::lock_guard lock(mutex_);
-      queue_.push_front(job);
+      queue_.AddFirst(job, snapshot.info.client);
     }
     changed_.notify_all();
     return status;
@@ -205,22 +210,21 @@ void JobManager::Shutdown() {
   std::vector<std::shared_ptr<JobStateMachine>> waiting;
   {
     std::lock_guard lock(mutex_);
-    waiting.assign(queue_.begin(), queue_.end());
+    waiting = queue_.jobs();
   }
   for (const auto& job : waiting) job->Wake();
 }
 
 bool JobManager::MayStartNext() const {
   if (queue_.empty() || runs_suspect_) return false;
-  return num_running_ == 0 || !suspects_.contains(queue_.front()->id());
+  return num_running_ == 0 || !suspects_.contains(queue_.next()->id());
 }
 
 std::shared_ptr<JobStateMachine> JobManager::TakeNext() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return shutting_down() || MayStartNext(); });
   if (shutting_down()) return nullptr;
-  std::shared_ptr<JobStateMachine> job = std::move(queue_.front());
-  queue_.pop_front();
+  std::shared_ptr<JobStateMachine> job = queue_.Take();
   ++num_running_;
   runs_suspect_ = suspects_.erase(job->id()) > 0;
   return job;

@@ -44,6 +44,7 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
       jobs_(&files_, &sequences_,
             JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
             {.num_workers = options.num_workers,
+             .max_queued_per_client = options.max_queued_jobs_per_client,
              .in_idle_time = options.jobs_in_idle_time,
              .on_state = options.on_job_state}) {}
 

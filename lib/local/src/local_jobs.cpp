@@ -60,6 +60,7 @@ LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner ru
       runner_(std::move(runner)),
       manager_(
           JobManagerOptions{.num_workers = options.num_workers,
+                            .max_queued_per_client = options.max_queued_per_client,
                             .in_idle_time = options.in_idle_time,
                             .wall_clock = files->clock()},
           [this](const JobInfo& job, const Progress& progress) {
@@ -131,6 +132,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
   draft.request_id = request.request_id;
+  draft.client = request.client;
   draft.result_ttl = request.model_ttl;
   draft.name = request.model_name.empty() ? clips[0].name : request.model_name;
   if (!request.rig.empty()) {
@@ -150,6 +152,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& r
   draft.sequence_ids = {request.sequence_id};
   draft.options = request.options;
   draft.request_id = request.request_id;
+  draft.client = request.client;
   draft.result_ttl = request.result_ttl;
   draft.name = std::move(info.name);
   return manager_.Create(std::move(draft));

@@ -233,6 +233,7 @@ store::v1::Job ToRecord(const JobInfo& info) {
   message.set_result_id(info.result_id);
   message.set_rig_id(info.rig_id);
   message.set_request_id(info.request_id);
+  message.set_client(info.client);
   if (info.created) message.set_created_unix_ms(absl::ToUnixMillis(*info.created));
   if (info.started) message.set_started_unix_ms(absl::ToUnixMillis(*info.started));
   if (info.ended) message.set_ended_unix_ms(absl::ToUnixMillis(*info.ended));
@@ -263,6 +264,7 @@ absl::StatusOr<JobInfo> FromRecord(const store::v1::Job& message) {
   info.result_id = message.result_id();
   info.rig_id = message.rig_id();
   info.request_id = message.request_id();
+  info.client = message.client();
   if (message.has_created_unix_ms()) info.created = absl::FromUnixMillis(message.created_unix_ms());
   if (message.has_started_unix_ms()) info.started = absl::FromUnixMillis(message.started_unix_ms());
   if (message.has_ended_unix_ms()) info.ended = absl::FromUnixMillis(message.ended_unix_ms());

@@ -19,6 +19,17 @@
                     [=, this] { return pleat::rpc(*context_, *request, reply); });         \
   }
 
+// The same for a handler that is told who asks.
+#define PLEAT_UNARY_OF_CLIENT(rpc, executor)                                               \
+  grpc::ServerUnaryReactor* rpc(grpc::CallbackServerContext* call,                         \
+                                const v1::rpc##Request* request, v1::rpc##Response* reply) \
+      override {                                                                           \
+    return RunUnary(context_, call, context_->executor, #rpc,                              \
+                    [=, this, client = OriginOf(*call).client] {                           \
+                      return pleat::rpc(*context_, client, *request, reply);               \
+                    });                                                                    \
+  }
+
 // A method `rpc` that answers with a stream.
 #define PLEAT_SERVER_STREAM(rpc)                                                               \
   grpc::ServerWriteReactor<v1::rpc##Response>* rpc(grpc::CallbackServerContext* call,          \
@@ -53,8 +64,8 @@ class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
 class JobServiceImpl final : public v1::JobService::CallbackService {
  public:
   explicit JobServiceImpl(HandlerContext* context) : context_(context) {}
-  PLEAT_UNARY(CreateTrainingJob, storage_executor)
-  PLEAT_UNARY(CreateCompressionJob, storage_executor)
+  PLEAT_UNARY_OF_CLIENT(CreateTrainingJob, storage_executor)
+  PLEAT_UNARY_OF_CLIENT(CreateCompressionJob, storage_executor)
   PLEAT_UNARY(GetJob, storage_executor)
   PLEAT_UNARY(ListJobs, storage_executor)
   PLEAT_UNARY(CancelJob, storage_executor)

@@ -6,7 +6,7 @@
 
 namespace pleat {
 
-absl::Status CreateCompressionJob(HandlerContext& context,
+absl::Status CreateCompressionJob(HandlerContext& context, const std::string& client,
                                   const v1::CreateCompressionJobRequest& request,
                                   v1::CreateCompressionJobResponse* response) {
   PLEAT_RETURN_IF_ERROR(CheckContentId(request.sequence_id(), "sequence_id"));
@@ -18,6 +18,7 @@ absl::Status CreateCompressionJob(HandlerContext& context,
                          context.jobs->CreateCompression({.sequence_id = request.sequence_id(),
                                                           .options = options,
                                                           .request_id = request.request_id(),
+                                                          .client = client,
                                                           .result_ttl = ttl}));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();

@@ -7,7 +7,8 @@
 
 namespace pleat {
 
-absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTrainingJobRequest& request,
+absl::Status CreateTrainingJob(HandlerContext& context, const std::string& client,
+                               const v1::CreateTrainingJobRequest& request,
                                v1::CreateTrainingJobResponse* response) {
   for (const std::string& id : request.sequence_ids()) {
     PLEAT_RETURN_IF_ERROR(CheckContentId(id, "sequence_ids"));
@@ -25,6 +26,7 @@ absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTraining
            .model_name = request.model_name(),
            .rig = request.rig(),
            .request_id = request.request_id(),
+           .client = client,
            .model_ttl = ttl}));
   *response->mutable_job() = ToProto(info);
   return absl::OkStatus();

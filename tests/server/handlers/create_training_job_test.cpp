@@ -32,6 +32,7 @@ TEST(CreateTrainingJob, HandsOverAllThatWasAsked) {
   EXPECT_EQ(asked.model_name, "mine");
   EXPECT_EQ(asked.rig, "{}");
   EXPECT_EQ(asked.request_id, "again");
+  EXPECT_EQ(asked.client, "ada");
 }
 
 TEST(CreateTrainingJob, WhatIsWrongNeverReachesTheService) {

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/base/wall_clock.h"
+#include "pleat/jobs/job_queue.h"
 #include "pleat/jobs/job_state_machine.h"
 
 namespace pleat {
@@ -35,10 +35,11 @@ using EraseJob = std::function<absl::Status(const std::string& id)>;
 inline absl::Status EraseNothing(const std::string&) { return absl::OkStatus(); }
 
 struct JobManagerOptions {
-  int num_workers = 1;            // jobs that run at the same time
-  int max_queued = 1000;          // jobs that wait; more are refused
-  int max_attempts = 3;           // a job that took the server down this often fails
-  double save_retry_seconds = 1;  // between two tries to save how a job ended
+  int num_workers = 1;              // jobs that run at the same time
+  int max_queued = 1000;            // jobs that wait; more are refused
+  int max_queued_per_client = 250;  // the same for one client; jobs without a client share this too
+  int max_attempts = 3;             // a job that took the server down this often fails
+  double save_retry_seconds = 1;    // between two tries to save how a job ended
   // The threads of jobs run in the processor time that nothing else wants, so that live sessions in
   // the same process keep their pace.
   bool in_idle_time = false;
@@ -133,11 +134,11 @@ class JobManager {
     std::shared_ptr<JobStateMachine> job;
     uint64_t number = 0;  // in the order of creation
   };
-  std::map<std::string, Registered> jobs_;              // by id; guarded by mutex_
-  std::map<std::string, std::string> ids_by_request_;   // guarded by mutex_
-  std::map<uint64_t, std::string> order_;               // ids by number; guarded by mutex_
-  uint64_t next_number_ = 0;                            // guarded by mutex_
-  std::deque<std::shared_ptr<JobStateMachine>> queue_;  // guarded by mutex_
+  std::map<std::string, Registered> jobs_;             // by id; guarded by mutex_
+  std::map<std::string, std::string> ids_by_request_;  // guarded by mutex_
+  std::map<uint64_t, std::string> order_;              // ids by number; guarded by mutex_
+  uint64_t next_number_ = 0;                           // guarded by mutex_
+  JobQueue queue_;                                     // guarded by mutex_
   std::set<std::string> suspects_;  // ids of jobs that run alone; guarded by mutex_
   int num_running_ = 0;             // guarded by mutex_
   bool runs_suspect_ = false;       // guarded by mutex_

@@ -23,13 +23,14 @@ struct LocalServiceOptions {
   std::string data_dir{};
   uint64_t reserve_bytes = uint64_t{256} << 20;  // space that is kept free on the disk
   int num_workers = 1;                           // jobs that run at the same time
-  int num_threads_per_job = 0;                   // 0 = one per core
-  bool jobs_in_idle_time = false;                // jobs take what live sessions leave
-  int num_pose_threads = 0;                      // 0 = one per core
-  int max_batch = 8;                             // live poses of a model evaluated together
-  uint64_t cache_bytes = uint64_t{1} << 30;      // models in memory
-  uint64_t decode_bytes = uint64_t{1} << 30;     // all decoders of compressed sequences together
-  uint64_t encoder_bytes = uint64_t{64} << 20;   // frame encoders that nobody uses at the moment
+  int max_queued_jobs_per_client = 250;
+  int num_threads_per_job = 0;                  // 0 = one per core
+  bool jobs_in_idle_time = false;               // jobs take what live sessions leave
+  int num_pose_threads = 0;                     // 0 = one per core
+  int max_batch = 8;                            // live poses of a model evaluated together
+  uint64_t cache_bytes = uint64_t{1} << 30;     // models in memory
+  uint64_t decode_bytes = uint64_t{1} << 30;    // all decoders of compressed sequences together
+  uint64_t encoder_bytes = uint64_t{64} << 20;  // frame encoders that nobody uses at the moment
   double scrub_seconds = 0;  // in which every stored file is read once and verified; 0 = never
   double sweep_seconds = 0;  // between two runs of retention; 0 = never
   RetentionRules retention{};

@@ -16,8 +16,9 @@
 namespace pleat {
 
 struct LocalJobsOptions {
-  int num_workers = 1;        // jobs that run at the same time
-  bool in_idle_time = false;  // see JobManagerOptions
+  int num_workers = 1;              // jobs that run at the same time
+  int max_queued_per_client = 250;  // this and the next: see JobManagerOptions
+  bool in_idle_time = false;
   // Receives a job whenever a new state of it has been saved, from any thread. May be empty.
   std::function<void(const JobInfo& job)> on_state{};
 };

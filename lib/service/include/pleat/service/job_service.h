@@ -37,6 +37,9 @@ struct TrainingRequest {
   // Chosen by the caller at random; a call with the id of an earlier one makes no second job and
   // returns the first as it is now. Empty: every call makes a job.
   std::string request_id{};
+  // Who asks, as the server knows it (CallOrigin); clients take turns in the queue, each with a
+  // limit of its own. Empty in this process.
+  std::string client{};
   absl::Duration model_ttl = kKeepForEver;  // how long the service keeps the model at least
 };
 
@@ -44,6 +47,7 @@ struct CompressionRequest {
   std::string sequence_id{};
   CompressOptions options{};
   std::string request_id{};                  // as above
+  std::string client{};                      // as above
   absl::Duration result_ttl = kKeepForEver;  // of the compressed sequence
 };
 
@@ -55,6 +59,7 @@ struct JobInfo {
   std::string name;                          // of the result
   std::string rig_id;                        // hex SHA-256 of TrainingRequest::rig, or empty
   std::string request_id;                    // of the call that made it; services do not show it
+  std::string client;                        // the same holds for this
   absl::Duration result_ttl = kKeepForEver;  // from the moment when the result is stored
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1

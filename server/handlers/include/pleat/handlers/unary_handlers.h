@@ -24,9 +24,11 @@ absl::Status PinSequence(HandlerContext& context, const v1::PinSequenceRequest& 
 absl::Status DeleteUpload(HandlerContext& context, const v1::DeleteUploadRequest& request,
                           v1::DeleteUploadResponse* response);
 
-absl::Status CreateTrainingJob(HandlerContext& context, const v1::CreateTrainingJobRequest& request,
+// client: who asks (CallOrigin).
+absl::Status CreateTrainingJob(HandlerContext& context, const std::string& client,
+                               const v1::CreateTrainingJobRequest& request,
                                v1::CreateTrainingJobResponse* response);
-absl::Status CreateCompressionJob(HandlerContext& context,
+absl::Status CreateCompressionJob(HandlerContext& context, const std::string& client,
                                   const v1::CreateCompressionJobRequest& request,
                                   v1::CreateCompressionJobResponse* response);
 absl::Status GetJob(HandlerContext& context, const v1::GetJobRequest& request,

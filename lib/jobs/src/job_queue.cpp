@@ -1,0 +1,58 @@
+#include "pleat/jobs/job_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace pleat {
+namespace {
+
+// Turns of clients that have nothing in the queue are forgotten beyond this number.
+constexpr size_t kMaxRememberedClients = 1000;
+
+}  // namespace
+
+void JobQueue::Add(Job job, const std::string& client) {
+  waiting_.push_back({std::move(job), client});
+}
+
+void JobQueue::AddFirst(Job job, const std::string& client) {
+  waiting_.push_front({std::move(job), client});
+}
+
+bool JobQueue::Remove(const Job& job) {
+  return std::erase_if(waiting_, [&](const Waiting& waiting) { return waiting.job == job; }) > 0;
+}
+
+int JobQueue::NumOf(const std::string& client) const {
+  return static_cast<int>(std::ranges::count(waiting_, client, &Waiting::client));
+}
+
+std::vector<JobQueue::Job> JobQueue::jobs() const {
+  std::vector<Job> jobs;
+  for (const Waiting& waiting : waiting_) jobs.push_back(waiting.job);
+  return jobs;
+}
+
+size_t JobQueue::Next() const {
+  size_t best = 0;
+  uint64_t best_turn = UINT64_MAX;
+  for (size_t i = 0; i < waiting_.size(); ++i) {
+    const auto turn = last_turns_.find(waiting_[i].client);
+    const uint64_t last = turn == last_turns_.end() ? 0 : turn->second;
+    if (last >= best_turn) continue;
+    best = i;
+    best_turn = last;
+  }
+  return best;
+}
+
+JobQueue::Job JobQueue::Take() {
+  const auto place = waiting_.begin() + static_cast<std::ptrdiff_t>(Next());
+  Waiting taken = std::move(*place);
+  waiting_.erase(place);
+  if (last_turns_.size() >= kMaxRememberedClients) last_turns_.clear();
+  last_turns_[taken.client] = ++num_turns_;
+  return std::move(taken.job);
+}
+
+}  // namespace pleat
