@@ -38,10 +38,11 @@ struct RigFile {
 // names the limit that is exceeded.
 absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& limits = {});
 // Reads a skin of a hostile binary glTF 2.0 file: its joints with parents before children, rest
-// positions from the inverse bind matrices (from the nodes where there are none), and the first
-// four influences of every vertex of the mesh primitives that use the skin. skin: the name or the
-// number of the skin, counted from 0; it may be empty when the file has one. The errors are those
-// of DecodeRigJson, also for buffers outside the file and for compressed meshes.
+// positions from the inverse bind matrices (from the nodes where there are none), and the
+// influences of every vertex of the mesh primitives that use the skin, of all their sets (JOINTS_0,
+// JOINTS_1, ...). skin: the name or the number of the skin, counted from 0; it may be empty when
+// the file has one. The errors are those of DecodeRigJson, also for buffers outside the file and
+// for compressed meshes.
 absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits = {},
                                      std::string_view skin = {});
 // Reads a GLB, glTF text (.gltf) with its buffers beside it, or JSON. What the bytes are counts
