@@ -206,6 +206,9 @@ absl::Status CheckFlags(const TrainVerbOptions& options, const Session& session)
   if (!options.skin.empty() && options.rig.empty()) {
     return UsageError("--skin chooses a skin of the GLB that --rig names");
   }
+  if (options.flags.values.contains("placed_joints") && !options.rig.empty()) {
+    return UsageError("--at places joints of the automatic rig; move those of --rig in its file");
+  }
   if (options.detach && session.local) return UsageError("--detach needs a server");
   return CheckOutputFiles(
       session, {{"-o", options.output, {".pleat"}}, {"--report", options.report, {".json"}}});
