@@ -51,7 +51,8 @@ absl::StatusOr<size_t> ChooseSkin(const json& skins, const std::string& choice) 
   if (skins.size() > kMaxNamed) absl::StrAppend(&list, ", ...");
   const std::string fault =
       choice.empty() ? "" : absl::StrCat("--skin '", choice, "' is not one: ");
-  return Fault(absl::StrCat(fault, "the file has ", skins.size(), " skins: ", list,
+  return Fault(absl::StrCat(fault, "the file has ", skins.size(),
+                            skins.size() == 1 ? " skin: " : " skins: ", list,
                             "; choose one by name or number with --skin"));
 }
 
@@ -76,31 +77,27 @@ class SkinReader {
   }
 
  private:
-  // Returns the index in the skin of the nearest ancestor that is a joint, or -1.
-  int ParentJoint(int joint) const {
-    const std::vector<int>& joint_nodes = skin_.joint_nodes;
-    for (int node = nodes_.parent(joint_nodes[joint]); node >= 0; node = nodes_.parent(node)) {
-      const auto found = std::ranges::find(joint_nodes, node);
-      if (found != joint_nodes.end()) return static_cast<int>(found - joint_nodes.begin());
+  // Fills parent_joints_: the index in the skin of the nearest ancestor that is a joint, or -1.
+  void FindParents() {
+    std::vector<int> joint_of_node(static_cast<size_t>(nodes_.count()), -1);
+    for (size_t j = 0; j < skin_.joint_nodes.size(); ++j) {
+      joint_of_node[static_cast<size_t>(skin_.joint_nodes[j])] = static_cast<int>(j);
     }
-    return -1;
+    for (const int joint_node : skin_.joint_nodes) {
+      int node = nodes_.parent(joint_node);
+      while (node >= 0 && joint_of_node[static_cast<size_t>(node)] < 0) node = nodes_.parent(node);
+      parent_joints_.push_back(node < 0 ? -1 : joint_of_node[static_cast<size_t>(node)]);
+    }
   }
 
-  // Returns the indices of the skin with every parent before its children. Children of one parent
-  // stay in the order of the skin.
-  absl::StatusOr<std::vector<int>> ParentsFirst() const {
-    const int num_joints = static_cast<int>(skin_.joint_nodes.size());
+  // Returns the indices of the skin with every parent before its children: first the roots, of
+  // which there may be several. Roots and children of one parent stay in the order of the skin.
+  std::vector<int> ParentsFirst() const {
+    const int num_joints = static_cast<int>(parent_joints_.size());
     std::vector<std::vector<int>> children(num_joints);
     std::vector<int> order;
     for (int j = 0; j < num_joints; ++j) {
-      const int parent = ParentJoint(j);
-      if (parent >= 0) {
-        children[parent].push_back(j);
-      } else if (order.empty()) {
-        order.push_back(j);
-      } else {
-        return Fault("the skin has two roots: join them under one joint");
-      }
+      (parent_joints_[j] >= 0 ? children[parent_joints_[j]] : order).push_back(j);
     }
     for (size_t i = 0; i < order.size(); ++i) {
       order.insert(order.end(), children[order[i]].begin(), children[order[i]].end());
@@ -108,10 +105,14 @@ class SkinReader {
     return order;
   }
 
+  std::string NameOfNode(int node) const {
+    const json& entry = glb_.List("nodes")[static_cast<size_t>(node)];
+    const auto found = entry.find("name");
+    return found != entry.end() && found->is_string() ? found->get<std::string>() : "";
+  }
+
   std::string UniqueName(int joint, const std::vector<Joint>& before) const {
-    const json& node = glb_.List("nodes")[skin_.joint_nodes[joint]];
-    const auto found = node.find("name");
-    std::string name = found != node.end() && found->is_string() ? found->get<std::string>() : "";
+    std::string name = NameOfNode(skin_.joint_nodes[joint]);
     if (name.empty()) name = absl::StrCat("joint_", skin_.joint_nodes[joint]);
     const std::string stem = name;
     const auto is_taken = [&] {
@@ -121,8 +122,41 @@ class SkinReader {
     return name;
   }
 
+  Eigen::Vector3d RestPosition(int joint) const {
+    const Eigen::Matrix4d mesh_from_joint = skin_.inverse_binds.empty()
+                                                ? nodes_.world_from_node(skin_.joint_nodes[joint])
+                                                : skin_.inverse_binds[joint].inverse();
+    return mesh_from_joint.col(3).hnormalized();
+  }
+
+  // Returns the joint above several roots. glTF wants a common ancestor of all joints, which gives
+  // the name; where that node rests is not in the file, and it often lies on the floor, so the
+  // joint is put between the roots.
+  Joint CommonRoot(const std::vector<int>& roots) {
+    std::vector<int> num_below(static_cast<size_t>(nodes_.count()), 0);
+    Joint common{.name = "", .parent = -1, .rest_position = Eigen::Vector3d::Zero()};
+    std::string names;
+    for (const int root : roots) {
+      common.rest_position += RestPosition(root) / static_cast<double>(roots.size());
+      absl::StrAppend(&names, names.empty() ? "'" : ", '", UniqueName(root, {}), "'");
+      for (int node = nodes_.parent(skin_.joint_nodes[root]); node >= 0;
+           node = nodes_.parent(node)) {
+        const bool is_common =
+            ++num_below[static_cast<size_t>(node)] == static_cast<int>(roots.size());
+        if (is_common && common.name.empty()) common.name = NameOfNode(node);
+      }
+    }
+    if (common.name.empty()) common.name = "root";
+    file_.notes.push_back({.kind = "roots_joined",
+                           .text = absl::StrCat("the skin has ", roots.size(), " roots (", names,
+                                                "): they are joined under a new joint '",
+                                                common.name, "' between them")});
+    return common;
+  }
+
   absl::Status MakeSkeleton() {
-    PLEAT_ASSIGN_OR_RETURN(const std::vector<int> order, ParentsFirst());
+    FindParents();
+    const std::vector<int> order = ParentsFirst();
     new_index_.assign(skin_.joint_nodes.size(), -1);
     if (!skin_.inverse_binds.empty()) {
       // Nodes may be posed, so this is only where a mesh in another place or unit may be.
@@ -130,14 +164,21 @@ class SkinReader {
           nodes_.world_from_node(skin_.joint_nodes[order[0]]) * skin_.inverse_binds[order[0]];
     }
     std::vector<Joint> joints;
+    const auto num_roots = static_cast<size_t>(std::ranges::count(parent_joints_, -1));
+    if (num_roots > 1) {
+      if (skin_.joint_nodes.size() == kMaxUserJoints) {
+        return Fault(absl::StrCat("the skin has ", num_roots,
+                                  " roots and no room for the joint "
+                                  "above them: a rig has at most ",
+                                  kMaxUserJoints, " joints"));
+      }
+      joints.push_back(CommonRoot({order.begin(), order.begin() + num_roots}));
+    }
+    const int parent_of_roots = static_cast<int>(joints.size()) - 1;
     for (const int j : order) {
       new_index_[j] = static_cast<int>(joints.size());
-      const int parent = ParentJoint(j);
-      const Eigen::Matrix4d mesh_from_joint = skin_.inverse_binds.empty()
-                                                  ? nodes_.world_from_node(skin_.joint_nodes[j])
-                                                  : skin_.inverse_binds[j].inverse();
-      joints.push_back({UniqueName(j, joints), parent < 0 ? -1 : new_index_[parent],
-                        mesh_from_joint.col(3).hnormalized()});
+      const int parent = parent_joints_[j] < 0 ? parent_of_roots : new_index_[parent_joints_[j]];
+      joints.push_back({UniqueName(j, joints), parent, RestPosition(j)});
     }
     absl::StatusOr<Skeleton> skeleton = Skeleton::Create(std::move(joints));
     if (!skeleton.ok()) return Fault(std::string(skeleton.status().message()));
@@ -195,7 +236,8 @@ class SkinReader {
   GlbNodes nodes_;
   size_t skin_index_ = 0;
   GlbSkin skin_;
-  std::vector<int> new_index_;  // the index in file_.skeleton of every joint of the skin
+  std::vector<int> parent_joints_;  // of every joint of the skin, an index in it; -1 = root
+  std::vector<int> new_index_;      // the index in file_.skeleton of every joint of the skin
   RigFile file_;
 };
 

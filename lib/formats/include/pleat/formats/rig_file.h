@@ -32,6 +32,7 @@ struct RigFile {
   int rest_frame = 0;
   bool is_locked = false;          // locks all joints, including those that are added
   std::vector<int> locked_joints;  // ascending
+  std::vector<InputNote> notes;    // what was decided for the user
 };
 
 // Reads a rig from hostile JSON. kInvalidArgument says what is wrong and where, kResourceExhausted
@@ -52,8 +53,9 @@ absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& l
 
 // Returns the rig for the clip's own vertices. What EncodeRig wrote comes back as it was. The
 // weights of a GLB are carried over by place: each vertex of the clip takes those of the nearest
-// vertex of the file. A GLB that differs from the clip by a rigid motion or a unit is aligned, and
-// `notes`, which may be null, says how. kInvalidArgument when counts differ, when the meshes do not
+// vertex of the file. A GLB that differs from the clip by a rigid motion or a unit is aligned.
+// `notes`, which may be null, receives those of the file, how it was aligned and how many
+// influences were left out. kInvalidArgument when counts differ, when the meshes do not
 // lie on each other within 1 % of the diagonal, or when a joint lies far from the mesh.
 absl::StatusOr<UserRig> ResolveRig(const RigFile& given, const MeshSequence& clip,
                                    std::vector<InputNote>* notes = nullptr);
