@@ -73,7 +73,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
       other_extensions.insert(absl::StrCat("'", LowerExtension(path), "'"));
     }
   }
-  if (error) return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot list '", folder, "'"));
+  if (error) return ErrnoStatus(error.value(), absl::StrCat("cannot list '", folder, "'"));
   if (caches.size() == 1 && meshes.size() <= 1) return ReadOneFile(caches[0], reading);
   if (!caches.empty()) {
     std::sort(caches.begin(), caches.end());
