@@ -101,7 +101,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(rig ? CheckOptionsWithRig(options) : ValidateTrainOptions(options));
   PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, JoinClips(clips));
-  if (options.jumps == JumpPolicy::kRefuse) {
+  if (options.jumps == JumpPolicy::kRefuse && !resources.clips_are_known_without_jumps) {
     for (const MeshSequence& clip : clips) PLEAT_RETURN_IF_ERROR(RefuseFrameJumps(clip));
   }
   const double diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
