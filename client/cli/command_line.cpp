@@ -10,6 +10,7 @@
 #include "CLI/CLI.hpp"
 #include "absl/strings/str_cat.h"
 #include "cli/verbs/verbs.h"
+#include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
 
 namespace pleat {
@@ -18,8 +19,8 @@ namespace {
 std::unique_ptr<CLI::App> MakeParser(Session& session) {
   auto app = std::make_unique<CLI::App>(
       "Pleat: from a captured mesh sequence to an editable character.\n"
-      "INPUT is a folder or quoted glob of .obj, .ply or .drc files, a .pc2 beside its .obj, or a "
-      ".pseq.",
+      "INPUT is a folder or quoted glob of .obj, .ply or .drc files, a .pc2 beside its .obj, a "
+      ".pseq, or one .glb or .gltf.",
       "pleat");
   app->require_subcommand(1);
   app->footer(std::string("\n") + ExitCodeHelp());
@@ -65,9 +66,8 @@ absl::Status RunGuarded(const std::function<absl::Status()>& run) {
   } catch (const std::length_error&) {
     return absl::ResourceExhaustedError("a size is beyond all bounds: try fewer or smaller frames");
   } catch (const std::filesystem::filesystem_error& error) {
-    return absl::Status(
-        absl::ErrnoToStatusCode(error.code().value()),
-        absl::StrCat("cannot access '", error.path1().string(), "': ", error.code().message()));
+    return ErrnoStatus(error.code().value(),
+                       absl::StrCat("cannot access '", error.path1().string(), "'"));
   } catch (const std::exception&) {
     return absl::InternalError("this is a fault of Pleat itself; please report the command");
   }

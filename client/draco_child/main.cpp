@@ -31,6 +31,7 @@
 #include <string>
 
 #include "cli/io/draco_process_protocol.h"
+#include "pleat/base/status.h"
 #include "pleat/stream/draco_file.h"
 
 namespace pleat {
@@ -60,7 +61,7 @@ absl::StatusOr<std::string> ReadInput() {
   while (true) {
     const ssize_t count = read(STDIN_FILENO, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return absl::ErrnoToStatus(errno, "cannot read the Draco file");
+    if (count < 0) return ErrnoStatus(errno, "cannot read the Draco file");
     if (count == 0) return bytes;
     bytes.append(buffer, static_cast<size_t>(count));
   }

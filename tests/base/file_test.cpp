@@ -31,6 +31,13 @@ TEST(FileTest, OverwritesAndLeavesNothingElseBehind) {
   EXPECT_EQ(num_files, 1);
 }
 
+TEST(FileTest, ALinkThatLeadsInACircleIsBadInput) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("loop", folder.File("loop"));
+  EXPECT_THAT(ReadFile(folder.File("loop")),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("cannot open")));
+}
+
 TEST(FileTest, MissingFileFolderAndTooLargeFileAreNamed) {
   const TemporaryFolder folder;
   EXPECT_THAT(ReadFile(folder.File("absent")),

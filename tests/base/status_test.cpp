@@ -1,5 +1,6 @@
 #include "pleat/base/status.h"
 
+#include <cerrno>
 #include <memory>
 
 #include "support/status_matchers.h"
@@ -47,6 +48,23 @@ TEST(StatusTest, ReturnIfErrorStopsAtTheFirstError) {
   EXPECT_THAT(CheckBoth(absl::OkStatus(), absl::InternalError("b"), &num_passed),
               HasStatus(absl::StatusCode::kInternal, "b"));
   EXPECT_EQ(num_passed, 1);
+}
+
+// Exit code 1 of `pleat` and INTERNAL of the server say that Pleat itself is wrong.
+TEST(StatusTest, NoErrnoOfASystemCallIsUnknown) {
+  for (int code = 1; code < 140; ++code) {
+    const absl::Status status = ErrnoStatus(code, "cannot open 'a'");
+    EXPECT_FALSE(status.ok()) << code;
+    EXPECT_NE(status.code(), absl::StatusCode::kUnknown) << code;
+    EXPECT_NE(status.code(), absl::StatusCode::kInternal) << code;
+    EXPECT_NE(status.code(), absl::StatusCode::kDataLoss) << code;  // would be put in quarantine
+    EXPECT_THAT(std::string(status.message()), testing::StartsWith("cannot open 'a': "));
+  }
+  EXPECT_THAT(ErrnoStatus(ELOOP, "a"),
+              HasStatus(absl::StatusCode::kInvalidArgument, testing::HasSubstr("symbolic links")));
+  EXPECT_EQ(ErrnoStatus(EIO, "a").code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_EQ(ErrnoStatus(ENOENT, "a").code(), absl::StatusCode::kNotFound);
+  EXPECT_EQ(ErrnoStatus(ENOSPC, "a").code(), absl::StatusCode::kResourceExhausted);
 }
 
 TEST(StatusTest, WithContextNamesThePlaceOfAnErrorAndKeepsValues) {

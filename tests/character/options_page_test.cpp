@@ -39,7 +39,8 @@ std::string Section(const std::string& name, [[maybe_unused]] const T& default_v
   if constexpr (std::is_enum_v<T>) unwritten = ChoiceName(default_value);
   const std::string value = ValueOf({}, name, unwritten),
                     paper = ValueOf(TrainOptions::Paper(), name, unwritten);
-  std::string section = absl::StrCat("## ", name, "\n\n", flags, ", default `", value, "`");
+  std::string section = absl::StrCat("## ", name, "\n\n", flags, ", default ",
+                                     value.empty() ? "none" : absl::StrCat("`", value, "`"));
   if (paper != value) absl::StrAppend(&section, ", preset paper `", paper, "`");
   std::string help = text.help;
   help[0] = static_cast<char>(std::toupper(help[0]));

@@ -45,6 +45,10 @@ TEST(TrainCharacterTest, LivelyMotionHasNoJumpsAndClipsThatJumpAreRefusedUnlessA
   const Progress stop_when_rigging(nullptr, [] { return true; });
   EXPECT_THAT(TrainCharacter({clip, jumping}, allowing, {}, nullptr, stop_when_rigging),
               HasStatus(absl::StatusCode::kCancelled, testing::_));
+  // A caller who has looked through the clips is believed, and nothing is searched twice.
+  EXPECT_THAT(TrainCharacter({clip, jumping}, FastTrainOptions(),
+                             {.clips_are_known_without_jumps = true}, nullptr, stop_when_rigging),
+              HasStatus(absl::StatusCode::kCancelled, testing::_));
 }
 
 TEST(TrainCharacterTest, ReportsWorstFramesAndJoints) {

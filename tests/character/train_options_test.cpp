@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/skeleton/human_template.h"
 #include "support/fake_training.h"
 #include "support/option_choices.h"
 #include "support/status_matchers.h"
@@ -97,6 +98,23 @@ TEST(TrainOptionsTest, ANewOptionIsWrittenOnlyWhenItIsChosen) {
   EXPECT_THAT(FormatTrainOptions({}), testing::Not(HasSubstr("jumps")));
   EXPECT_THAT(FormatTrainOptions({}), testing::EndsWith("seed=1\n"));
   EXPECT_THAT(FormatTrainOptions({.jumps = JumpPolicy::kAllow}), HasSubstr("jumps=allow\n"));
+}
+
+TEST(TrainOptionsTest, PlacedJointsAreALineThatTheModelFileKeeps) {
+  TrainOptions options;
+  options.placed_joints = {{kLeftHand, {.7, 1.4, -.1}}, {kHead, {0, 1. / 3, 0}}};
+  EXPECT_THAT(FormatTrainOptions(options),
+              HasSubstr("placed_joints=leftHand=0.7,1.4,-0.1 head=0,0.3333333333333333,0\n"));
+  CharacterModel::Parts parts = MakeFakeModel(MakeSwayingTube(2), {})->parts();
+  parts.options = options;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, CharacterModel::Create(std::move(parts)));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto back, DecodeModel(EncodeModel(*model)));
+  EXPECT_EQ(back->options(), options);
+  for (const char* line : {"placed_joints=tail=0,0,0", "placed_joints=head=0,0,0 head=0,0,0"}) {
+    EXPECT_THAT(ParseTrainOptions(line), HasStatus(kInvalid, HasSubstr("option placed_joints: ")));
+  }
+  options.placed_joints.push_back({kNumHumanJoints, {0, 0, 0}});
+  EXPECT_THAT(ValidateTrainOptions(options), HasStatus(kInvalid, HasSubstr("placed_joints")));
 }
 
 TEST(TrainOptionsTest, EveryNameRoundTripsThroughTheModelFile) {

@@ -177,6 +177,8 @@ TEST_F(GlbContainerTest, OtherFilesAndDamageAreNamed) {
               HasStatus(absl::StatusCode::kInvalidArgument, "GLB: not a binary glTF file"));
   EXPECT_THAT(GlbContainer::Open(U32(0x46546C67) + U32(2) + U32(20) + Chunk(0x4E4F534A, "")),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("JSON chunk")));
+  root_["deep"] = json::parse(std::string(70, '[') + std::string(70, ']'));
+  EXPECT_THAT(Read(root_), HasStatus(kInvalid, HasSubstr("nested deeper than 64")));
   ForEachTruncation(bytes,
                     [](const std::string& cut) { EXPECT_FALSE(GlbContainer::Open(cut).ok()); });
 }

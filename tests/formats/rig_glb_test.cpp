@@ -98,6 +98,8 @@ TEST(RigGlb, OfTwoSkinsOneIsChosenByNameOrNumber) {
   for (const char* wrong : {"2", "-1", "tail"}) {
     EXPECT_THAT(DecodeRigGlb(bytes, {}, wrong), HasStatus(kInvalid, HasSubstr("'hair'"))) << wrong;
   }
+  EXPECT_THAT(DecodeRigGlb(PackFigureGltf(MakeFigureGltf(SmallFigure())), {}, "tail"),
+              HasStatus(kInvalid, HasSubstr("the file has 1 skin: 0 ''")));
 }
 
 TEST(RigGlb, InterleavedVerticesAreRead) {
@@ -171,6 +173,93 @@ FigureGltf WithWholeWeights(int component) {
 TEST(RigGlb, NormalizedWeightsAreFractions) {
   ExpectSameRig(WithWholeWeights<uint8_t>(5121));
   ExpectSameRig(WithWholeWeights<uint16_t>(5123));
+}
+
+// The second set holds half of every weight again, for the same joints in another order.
+TEST(RigGlb, FurtherSetsOfInfluencesAreReadAndWhatIsLeftOutIsSaid) {
+  const SkinnedFigure figure = SmallFigure();
+  FigureGltf gltf = MakeFigureGltf(figure);
+  const std::vector<float> weights = Floats(gltf, 2);
+  const int num_vertices = static_cast<int>(weights.size() / 4);
+  std::vector<uint8_t> joints;
+  std::vector<float> others;
+  for (int v = 0; v < num_vertices; ++v) {
+    joints.insert(joints.end(), {0, 1, 2, 3});
+    others.insert(others.end(), {.01f, .02f, 0, .03f});
+  }
+  json& attributes = gltf.root["meshes"][0]["primitives"][0]["attributes"];
+  attributes["JOINTS_1"] = gltf.Add(joints, 5121, "VEC4", num_vertices);
+  EXPECT_THAT(DecodeRigGlb(PackFigureGltf(gltf)),
+              HasStatus(kInvalid, HasSubstr("JOINTS_1 and WEIGHTS_1")));
+  attributes["WEIGHTS_1"] = gltf.Add(others, 5126, "VEC4", num_vertices);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile plain,
+                             DecodeRigGlb(PackFigureGltf(MakeFigureGltf(figure))));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigGlb(PackFigureGltf(gltf)));
+  const int num_joints = figure.rig.skeleton.num_joints();
+  size_t num_cut = 0;
+  for (int v = 0; v < num_vertices; ++v) {
+    const std::vector<JointInfluence>& influences = file.influences[v];
+    const size_t num_before = plain.influences[v].size();
+    ASSERT_EQ(influences.size(), num_before + 3) << v;
+    const JointInfluence& last = influences.back();  // the skin lists the joints in reverse
+    EXPECT_EQ(file.skeleton.joint(last.joint).name, figure.rig.skeleton.joint(num_joints - 4).name);
+    EXPECT_FLOAT_EQ(static_cast<float>(last.weight), .03f);
+    num_cut += num_before + 3 > 4;
+  }
+  ASSERT_GT(num_cut, 0u);
+  std::vector<InputNote> notes;
+  ASSERT_THAT(ResolveRig(file, StillClip(figure), &notes), IsOk());
+  ASSERT_FALSE(notes.empty());
+  EXPECT_EQ(notes[0].kind, "influences_left_out");
+  EXPECT_THAT(notes[0].text, HasSubstr(std::to_string(num_cut) + " of "));
+  attributes["JOINTS_2"] = attributes["JOINTS_3"] = attributes["JOINTS_4"] = attributes["JOINTS_1"];
+  attributes["WEIGHTS_2"] = attributes["WEIGHTS_3"] = attributes["WEIGHTS_4"] =
+      attributes["WEIGHTS_1"];
+  EXPECT_THAT(DecodeRigGlb(PackFigureGltf(gltf)),
+              HasStatus(kInvalid, HasSubstr("more than 16 influences")));
+}
+
+// Without its root, the figure has three: both legs and the trunk.
+TEST(RigGlb, SeveralRootsGetAJointAboveThem) {
+  const SkinnedFigure figure = SmallFigure();
+  const Skeleton& skeleton = figure.rig.skeleton;
+  ASSERT_GT(skeleton.children(0).size(), 1u);
+  FigureGltf gltf = MakeFigureGltf(figure);
+  const int num_joints = skeleton.num_joints();
+  json& joints = gltf.root["skins"][0]["joints"];
+  joints.erase(joints.size() - 1);  // the root comes last
+  for (json& node : gltf.root["nodes"]) {
+    if (node["name"] == skeleton.joint(0).name) node["name"] = "Armature";
+  }
+  // What moved with the root moves with its first child, which comes last now.
+  std::vector<uint16_t> influences;
+  for (const auto& vertex : figure.rig.weights.influences()) {
+    for (int k = 0; k < 4; ++k) {
+      const int parent = vertex.weights[k] > 0 ? skeleton.parent(vertex.bones[k]) : 1;
+      influences.push_back(static_cast<uint16_t>(num_joints - 1 - std::max(parent, 1)));
+    }
+  }
+  gltf.root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] =
+      gltf.Add(influences, 5123, "VEC4", static_cast<int>(influences.size() / 4));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RigFile file, DecodeRigGlb(PackFigureGltf(gltf)));
+  ASSERT_EQ(file.skeleton.num_joints(), num_joints);
+  EXPECT_EQ(file.skeleton.joint(0).name, "Armature");
+  EXPECT_EQ(file.skeleton.children(0).size(), skeleton.children(0).size());
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const int child : skeleton.children(0)) {
+    middle += 100 * skeleton.rest_position(child) / double(skeleton.children(0).size());
+    const int found = file.skeleton.FindJoint(skeleton.joint(child).name);
+    ASSERT_GE(found, 1);
+    EXPECT_EQ(file.skeleton.parent(found), 0);
+    EXPECT_LT((file.skeleton.rest_position(found) - 100 * skeleton.rest_position(child)).norm(),
+              1e-3);
+  }
+  EXPECT_LT((file.skeleton.rest_position(0) - middle).norm(), 1e-3);
+  std::vector<InputNote> notes;
+  EXPECT_THAT(ResolveRig(file, StillClip(figure), &notes), IsOk());
+  ASSERT_FALSE(notes.empty());
+  EXPECT_EQ(notes[0].kind, "roots_joined");
+  EXPECT_THAT(notes[0].text, AllOf(HasSubstr("roots"), HasSubstr("'Armature'")));
 }
 
 TEST(RigGlb, AMeshInAnotherUnitAndPlaceIsAlignedAndSaid) {

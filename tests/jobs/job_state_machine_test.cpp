@@ -61,10 +61,30 @@ TEST(JobStateMachineTest, EstimatesTheEndAndNeverGoesBack) {
   EXPECT_EQ(info.stage, "learn");
   EXPECT_EQ(info.objective, 7.5);
   EXPECT_DOUBLE_EQ(info.eta_seconds.value(), 30);
+  now = 122;  // whoever asks between two reports hears what is left by then
+  EXPECT_DOUBLE_EQ(job.snapshot().info.eta_seconds.value(), 18);
+  EXPECT_DOUBLE_EQ(job.WaitForChange(0, 0).info.eta_seconds.value(), 18);
+  now = 1000;
+  EXPECT_EQ(job.snapshot().info.eta_seconds.value(), 0);
   job.Report({"learn", .1, {}});
   EXPECT_EQ(job.snapshot().info.fraction, .25);
+  EXPECT_DOUBLE_EQ(job.snapshot().info.eta_seconds.value(), 2700);  // of the largest fraction
   job.Report({"learn", 7, {}});
   EXPECT_EQ(job.snapshot().info.fraction, 1);
+}
+
+TEST(JobStateMachineTest, TheFirstMomentsAndTheEndHaveNoEstimate) {
+  double now = 0;
+  JobStateMachine job(Draft(), 0, [&] { return now; });
+  ASSERT_TRUE(job.Start());
+  now = .5;
+  job.Report({"rig", .1, {}});
+  EXPECT_FALSE(job.snapshot().info.eta_seconds.has_value());
+  now = 60;
+  job.Report({"rig", .01, {}});
+  EXPECT_DOUBLE_EQ(job.snapshot().info.eta_seconds.value(), 540);
+  ASSERT_TRUE(job.Succeed("model", {}));
+  EXPECT_FALSE(job.snapshot().info.eta_seconds.has_value());
 }
 
 TEST(JobStateMachineTest, CancelsAtOnceWhileQueued) {

@@ -73,6 +73,8 @@ PLANTED = {
                           {"server/handlers/src/a.cpp": "class A : public CallReactor<grpc::ServerUnaryReactor> {};\n"}),
     "dynamic-cast": ({"client/cli/verbs/a.cpp": "dynamic_cast<Remote*>(service);\n"},
                      {"tests/stream/a_test.cpp": "dynamic_cast<Remote*>(service);\n"}),
+    "errno": ({"lib/store/src/a.cpp": 'return absl::ErrnoToStatus(errno, "cannot sync");\n'},
+              {"lib/store/src/a.cpp": 'return ErrnoStatus(errno, "cannot sync");\n'}),
     "sleep": ({"tests/jobs/a_test.cpp": "std::this_thread::sleep_for(seconds(1));\n"},
               {"tests/jobs/a_test.cpp": "// no sleep_for here\nnotification.WaitForNotification();\n"}),
     "unfinished": ({"lib/gp/src/a.cpp": "// TO" "DO: later\n"}, {"lib/gp/src/a.cpp": "// Later frames first.\n"}),

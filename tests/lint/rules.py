@@ -110,6 +110,9 @@ RULES = (
          where=("server/",)),
     Rule("dynamic-cast", "a cast to the concrete type breaks the contract of the interface", "code",
          r"\bdynamic_cast\b", where=PROGRAMS),
+    Rule("errno", "ErrnoStatus of pleat/base/status.h has a code for every errno; Abseil calls rare ones UNKNOWN", "code",
+         r"\bErrnoToStatus(?:Code)?\s*\(", where=PROGRAMS,
+         files=(("lib/base/src/status.cpp", "it is what ErrnoStatus begins with"),)),
     # Tests and words.
     Rule("sleep", "a test waits for what happens, never for time", "code",
          r"\b(?:sleep_for|sleep_until|usleep|nanosleep)\b|\babsl::SleepFor\b", where=("tests/",)),

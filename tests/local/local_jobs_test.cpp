@@ -160,6 +160,10 @@ TEST_F(LocalJobsTest, WhatCannotSucceedIsRefusedBeforeThereIsAJob) {
   const Rig other = MakeFakeModel(MakeSwayingTube(5, "x", 13), {})->rig();
   refused({.sequence_ids = {a_}, .rig = EncodeRig({other.skeleton, other.weights, 0, {}})},
           "weights of 104 vertices; 'a' has 96");
+  refused({.sequence_ids = {a_},
+           .options = {.placed_joints = {{.joint = 1}}},
+           .rig = EncodeRig({known.skeleton, known.weights, 0, {}})},
+          "placed_joints");
   EXPECT_THAT(jobs_->CreateCompression({a_, {.max_error_mm = -1}}),
               HasStatus(absl::StatusCode::kInvalidArgument, _));
   EXPECT_TRUE(jobs_->List()->empty());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -138,6 +139,8 @@ TEST_F(FrameJumpsTest, WarningsNameFrameFileAndWhatToDo) {
   frames[2] *= 10;
   const std::vector<InputNote> notes =
       DescribeJumps(Find(frames), {"f_1.obj", "f_2.obj", "f_3.obj", "f_4.obj", "f_5.obj"});
+  EXPECT_TRUE(std::ranges::all_of(notes, IsJumpNote));
+  EXPECT_FALSE(IsJumpNote({.kind = "face_order"}));
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0].severity, NoteSeverity::kWarning);
   EXPECT_EQ(notes[0].frame, 2);

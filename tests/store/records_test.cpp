@@ -251,6 +251,11 @@ TEST(RecordsTest, EveryTrainOptionHasAFieldOfItsName) {
   ASSERT_TRUE(job.ParseFromString(EncodeRecord(SampleTrainingJob())));
   job.mutable_training()->Clear();
   EXPECT_EQ(DecodeJobRecord(job.SerializeAsString())->options, JobOptions(defaults));
+  JobInfo placed = SampleTrainingJob();
+  TrainOptions options;
+  options.placed_joints = {{3, {.1, -1. / 3, 2}}, {0, {0, 1, 0}}};
+  placed.options = options;
+  EXPECT_EQ(DecodeJobRecord(EncodeRecord(placed))->options, JobOptions(options));
 }
 
 TEST(RecordsTest, AnErrorNeverTurnsIntoSuccess) {

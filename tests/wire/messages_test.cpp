@@ -40,6 +40,7 @@ TrainOptions ChangedOptions() {
   options.detail_energy = .5;
   options.max_components = 11;
   options.seed = std::numeric_limits<uint64_t>::max();
+  options.placed_joints = {{3, {.1, 1. / 3, -2}}, {0, {0, 1, 0}}};
   return options;
 }
 
@@ -60,6 +61,10 @@ TEST(MessagesTest, EveryTrainOptionCrossesTheWire) {
   v1::TrainOptions bad;
   bad.set_history(0);
   EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("history")));
+  bad.Clear();
+  bad.set_placed_joints("tail=1,2,3");
+  EXPECT_THAT(FromProto(bad), HasStatus(absl::StatusCode::kInvalidArgument,
+                                        AllOf(HasSubstr("placed_joints"), HasSubstr("'tail'"))));
 }
 
 TEST(MessagesTest, ChoicesTravelByNameAndUnknownNamesAreRefused) {

@@ -69,7 +69,7 @@ struct Pipe {
   Descriptor read_end, write_end;
   absl::Status Open() {
     int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return absl::ErrnoToStatus(errno, "cannot make a pipe");
+    if (pipe2(ends, O_CLOEXEC) != 0) return ErrnoStatus(errno, "cannot make a pipe");
     read_end.Reset(ends[0]);
     write_end.Reset(ends[1]);
     return absl::OkStatus();
@@ -117,8 +117,8 @@ class Child {
     messages_.write_end.Close();
     if (error == 0) return absl::OkStatus();
     pid_ = -1;
-    return absl::ErrnoToStatus(
-        error, absl::StrCat("cannot start '", program, "', which reads Draco files"));
+    return ErrnoStatus(error,
+                       absl::StrCat("cannot start '", program, "', which reads Draco files"));
   }
 
   // Reads `size` bytes, or fewer when the child has closed its output.
@@ -129,7 +129,7 @@ class Child {
       const ssize_t count =
           read(output_.read_end.get(), static_cast<char*>(data) + done, size - done);
       if (count < 0 && errno == EINTR) continue;
-      if (count < 0) return absl::ErrnoToStatus(errno, "cannot read from pleat-draco");
+      if (count < 0) return ErrnoStatus(errno, "cannot read from pleat-draco");
       if (count == 0) break;
       done += static_cast<size_t>(count);
     }
@@ -171,7 +171,7 @@ class Child {
     PLEAT_ASSIGN_OR_RETURN(const int status, AwaitEnd());
     return WIFEXITED(status) && WEXITSTATUS(status) == 0
                ? absl::OkStatus()
-               : absl::InternalError("pleat-draco ended badly");
+               : absl::DataLossError("Draco's decoder ended badly on it");
   }
   uint64_t peak_memory_bytes() const { return peak_memory_bytes_; }
 
@@ -182,7 +182,7 @@ class Child {
       struct pollfd entry = {output_.read_end.get(), POLLIN, 0};
       const int ready = poll(&entry, 1, kPollMs);
       if (ready > 0) return absl::OkStatus();
-      if (ready < 0 && errno != EINTR) return absl::ErrnoToStatus(errno, "cannot wait");
+      if (ready < 0 && errno != EINTR) return ErrnoStatus(errno, "cannot wait");
     }
   }
 
@@ -259,7 +259,7 @@ absl::StatusOr<DracoGeometry> DecodeDracoInChild(const std::string& path, const 
                                                  const DracoProcessOptions& options,
                                                  DracoProcessUsage* usage) {
   const Descriptor input(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (input.get() < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot open '", path, "'"));
+  if (input.get() < 0) return ErrnoStatus(errno, absl::StrCat("cannot open '", path, "'"));
   Child child(progress, options);
   absl::Status status = child.Start(input.get());
   if (status.ok()) {

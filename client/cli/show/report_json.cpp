@@ -74,6 +74,8 @@ ordered_json OptionsJson(const TrainOptions& options) {
   VisitTrainOptions(options, [&json](const char* name, const auto& value) {
     if constexpr (std::is_enum_v<std::decay_t<decltype(value)>>) {
       json[name] = ChoiceName(value);
+    } else if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::vector<PlacedJoint>>) {
+      json[name] = FormatPlacedJoints(value);
     } else {
       json[name] = value;
     }

@@ -2,8 +2,10 @@
 
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "cli/exit_code.h"
 
@@ -27,6 +29,8 @@ std::string HelpOf(const char* option, const T& default_value) {
       absl::StrAppend(&help, std::exchange(separator, ", "), choice.name, " (", choice.help, ")");
     }
     absl::StrAppend(&help, " [", ChoiceName(default_value), "]");
+  } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
+    absl::StrAppend(&help, " [none]");
   } else {
     absl::StrAppend(&help, " [", default_value, "]");
   }
@@ -43,14 +47,19 @@ void AddTrainFlags(CLI::App* verb, TrainFlags* flags) {
       ->group(group);
   const TrainOptions defaults;
   VisitTrainOptions(defaults, [&](const char* name, const auto& value) {
-    verb->add_option_function<std::string>(
-            FlagNames(name),
-            [flags, option = std::string(name)](const std::string& given) {
-              flags->values[option] = given;
-            },
-            HelpOf(name, value))
-        ->type_name("")
-        ->group(group);
+    const auto take = [flags, option = std::string(name)](const std::string& given) {
+      flags->values[option] = given;
+    };
+    CLI::Option* option = nullptr;
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::vector<PlacedJoint>>) {
+      option = verb->add_option_function<std::vector<std::string>>(
+          FlagNames(name),
+          [take](const std::vector<std::string>& texts) { take(absl::StrJoin(texts, " ")); },
+          HelpOf(name, value));
+    } else {
+      option = verb->add_option_function<std::string>(FlagNames(name), take, HelpOf(name, value));
+    }
+    option->type_name("")->group(group);
   });
   verb->add_flag_callback(
           "--allow-jumps", [flags] { flags->values["jumps"] = ChoiceName(JumpPolicy::kAllow); },

@@ -9,6 +9,7 @@
 #include "cli/service.h"
 #include "cli/show/info_json.h"
 #include "cli/show/json_text.h"
+#include "cli/show/progress_display.h"
 #include "cli/show/text_table.h"
 #include "cli/show/time_text.h"
 #include "cli/verbs/verbs.h"
@@ -24,13 +25,14 @@ struct JobsOptions {
 void PrintTable(const std::vector<JobInfo>& jobs, std::ostream& out) {
   std::vector<std::vector<std::string>> rows;
   for (const JobInfo& job : jobs) {
-    rows.push_back({job.id, JobStateName(job.state), job.stage,
-                    absl::StrFormat("%.0f %%", 100 * job.fraction), JobKindName(job), job.name,
-                    job.result_id.substr(0, 12), TimeText(job.created),
-                    DurationText(job.started, job.ended)});
+    rows.push_back(
+        {job.id, JobStateName(job.state), job.stage, absl::StrFormat("%.0f %%", 100 * job.fraction),
+         job.eta_seconds ? FormatDuration(*job.eta_seconds) : "", JobKindName(job), job.name,
+         job.result_id.substr(0, 12), TimeText(job.created), DurationText(job.started, job.ended)});
   }
   out << FormatTable(
-      {"id", "state", "stage", "done", "kind", "name", "result", "created (UTC)", "took"}, rows);
+      {"id", "state", "stage", "done", "left", "kind", "name", "result", "created (UTC)", "took"},
+      rows);
 }
 
 absl::Status RunWatch(JobService& jobs, const std::string& id, const Session& session) {

@@ -1,11 +1,13 @@
 // motion MODEL SOURCE -o motion.json: writes the poses of a mesh sequence, or of a motion file,
 // with edits.
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "absl/strings/str_format.h"
 #include "cli/io/model_input.h"
 #include "cli/io/motion_edit.h"
 #include "cli/io/output_path.h"
+#include "cli/show/json_text.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/motion_file.h"
@@ -35,9 +37,10 @@ absl::Status RunMotion(const MotionVerbOptions& options, const Session& session)
   PLEAT_RETURN_IF_ERROR(WriteMotion(options.output, model->skeleton(), motion.track,
                                     scales.empty() ? motion.bone_scales : scales));
   if (session.json) {
-    *session.out << absl::StrFormat(
-        "{\"schema\":\"pleat.motion_written/1\",\"num_frames\":%d,\"num_joints\":%d}\n",
-        motion.track.num_frames(), joint_names.size());
+    *session.out << JsonText({{"schema", "pleat.motion_written/1"},
+                              {"output", options.output},
+                              {"num_frames", motion.track.num_frames()},
+                              {"num_joints", joint_names.size()}});
   } else {
     *session.out << absl::StrFormat("%s: %d frames of %d joints\n", options.output,
                                     motion.track.num_frames(), joint_names.size());

@@ -1,6 +1,7 @@
 // render INPUT... -o sheet.png: draws a contact sheet with one row per input; with --rig it draws
 // skeletons, with --compare heat maps of the errors of a model.
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -13,6 +14,8 @@
 #include "cli/io/model_input.h"
 #include "cli/io/output_path.h"
 #include "cli/show/error_sheet.h"
+#include "cli/show/input_notes_json.h"
+#include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
 #include "cli/show/rig_sheet.h"
 #include "cli/show/sheet.h"
@@ -81,15 +84,15 @@ absl::Status CheckFrames(const std::string& label, const MeshSequence& sequence,
 
 // Draws the sheet of --compare: skinned only and hybrid, colored by their distance from the input,
 // and the input itself.
-absl::StatusOr<std::string> DrawComparison(const RenderVerbOptions& options,
-                                           const Session& session) {
+absl::StatusOr<std::string> DrawComparison(const RenderVerbOptions& options, const Session& session,
+                                           std::vector<InputNote>* notes) {
   if (options.inputs.size() != 2 || options.rig || !options.model.empty() ||
       !options.labels.empty()) {
     return UsageError(
         "--compare takes two inputs, a sequence and a model, and none of --rig, --model, --label");
   }
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence truth,
-                         ReadInput(session, options.inputs[0], options.fps));
+                         ReadInput(session, options.inputs[0], options.fps, notes));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
                          LoadModel(session, options.inputs[1]));
   std::vector<int> frames = options.sheet.frames;
@@ -144,7 +147,8 @@ absl::StatusOr<RigSheetRow> SequenceRigRow(const std::string& label, const MeshS
   return row;
 }
 
-absl::StatusOr<std::string> DrawRigs(const RenderVerbOptions& options, const Session& session) {
+absl::StatusOr<std::string> DrawRigs(const RenderVerbOptions& options, const Session& session,
+                                     std::vector<InputNote>* notes) {
   if (!options.model.empty() || options.azimuth_degrees) {
     return UsageError("--rig goes with neither --model nor --azimuth; a model is an INPUT there");
   }
@@ -158,7 +162,8 @@ absl::StatusOr<std::string> DrawRigs(const RenderVerbOptions& options, const Ses
       rows.push_back(ModelRigRow(label.empty() ? model->name() : label, *model));
       continue;
     }
-    PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, input, options.fps));
+    PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
+                           ReadInput(session, input, options.fps, notes));
     PLEAT_ASSIGN_OR_RETURN(RigSheetRow row,
                            SequenceRigRow(label.empty() ? sequence.name() : label, sequence,
                                           options.sheet.frames, session));
@@ -167,11 +172,12 @@ absl::StatusOr<std::string> DrawRigs(const RenderVerbOptions& options, const Ses
   return RenderRigSheet(rows, {options.sheet.tile_width, options.sheet.tile_height});
 }
 
-absl::StatusOr<std::string> DrawSheet(RenderVerbOptions options, const Session& session) {
+absl::StatusOr<std::string> DrawSheet(RenderVerbOptions options, const Session& session,
+                                      std::vector<InputNote>* notes) {
   std::vector<SheetRow> rows;
   for (size_t i = 0; i < options.inputs.size(); ++i) {
     PLEAT_ASSIGN_OR_RETURN(MeshSequence sequence,
-                           ReadInput(session, options.inputs[i], options.fps));
+                           ReadInput(session, options.inputs[i], options.fps, notes));
     std::string label = i < options.labels.size() ? options.labels[i] : sequence.name();
     rows.push_back({std::move(label), std::move(sequence)});
   }
@@ -199,11 +205,20 @@ absl::Status RunRender(RenderVerbOptions options, const Session& session) {
   }
   PLEAT_RETURN_IF_ERROR(CheckOutputFiles(session, {{"-o", options.output, {".png"}}}));
   options.sheet.count = options.count.value_or(options.compare ? 4 : options.sheet.count);
-  PLEAT_ASSIGN_OR_RETURN(const std::string png, options.compare ? DrawComparison(options, session)
-                                                : options.rig   ? DrawRigs(options, session)
-                                                                : DrawSheet(options, session));
+  std::vector<InputNote> notes;
+  PLEAT_ASSIGN_OR_RETURN(const std::string png,
+                         options.compare ? DrawComparison(options, session, &notes)
+                         : options.rig   ? DrawRigs(options, session, &notes)
+                                         : DrawSheet(options, session, &notes));
   PLEAT_RETURN_IF_ERROR(WriteFile(options.output, png));
-  *session.out << options.output << "\n";
+  if (session.json) {
+    const nlohmann::ordered_json json = {{"schema", "pleat.render/1"},
+                                         {"output", options.output},
+                                         {"input_notes", InputNotesJson(notes)}};
+    *session.out << JsonText(json);
+  } else {
+    *session.out << options.output << "\n";
+  }
   return absl::OkStatus();
 }
 

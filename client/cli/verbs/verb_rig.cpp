@@ -7,10 +7,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "cli/exit_code.h"
 #include "cli/io/input.h"
 #include "cli/io/output_path.h"
-#include "cli/io/placed_joints.h"
 #include "cli/io/rig_measurement.h"
 #include "cli/show/json_text.h"
 #include "cli/show/progress_display.h"
@@ -18,6 +18,8 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
+#include "pleat/character/option_choices.h"
+#include "pleat/character/placed_joints.h"
 #include "pleat/formats/rig_file.h"
 
 namespace pleat {
@@ -107,7 +109,10 @@ absl::Status RunRig(RigVerbOptions options, const Session& session) {
   if (!options.placed.empty() && options.inputs.size() != 1) {
     return UsageError("--at takes one INPUT");
   }
-  PLEAT_ASSIGN_OR_RETURN(options.measurement.rig.placed_joints, ParsePlacedJoints(options.placed));
+  absl::StatusOr<std::vector<PlacedJoint>> placed =
+      ParsePlacedJoints(absl::StrJoin(options.placed, " "));
+  if (!placed.ok()) return UsageError(absl::StrCat("--at: ", placed.status().message()));
+  options.measurement.rig.placed_joints = *std::move(placed);
   PLEAT_RETURN_IF_ERROR(CheckOutputFiles(
       session, {{"-o", options.output, {".json"}}, {"--report", options.report, {".json"}}}));
   options.measurement.fit = !options.no_fit;
@@ -171,9 +176,7 @@ void AddRigVerb(CLI::App& app, Session& session) {
       ->capture_default_str();
   verb->add_option("--yaw", options->measurement.rig.yaw_degrees,
                    "facing about +y from +z, degrees [found]");
-  verb->add_option("--at", options->placed,
-                   "joints that you place, NAME=x,y,z in meters (leftHand=.7,1.4,0): they stay "
-                   "there, and the others are solved with them");
+  verb->add_option("--at", options->placed, TextOfOption("placed_joints").help);
   verb->add_flag("--no-fit", options->no_fit, "only the rig: no pose fit, no refinement");
   verb->add_option("--threads", options->measurement.rig.num_threads,
                    "0 = one per core; the result does not depend on it")

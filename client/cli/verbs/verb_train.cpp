@@ -32,6 +32,7 @@
 #include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/rig_file.h"
+#include "pleat/mesh/frame_jumps.h"
 
 namespace pleat {
 namespace {
@@ -208,6 +209,9 @@ absl::Status CheckFlags(const TrainVerbOptions& options, const Session& session)
   if (!options.skin.empty() && options.rig.empty()) {
     return UsageError("--skin chooses a skin of the GLB that --rig names");
   }
+  if (options.flags.values.contains("placed_joints") && !options.rig.empty()) {
+    return UsageError("--at places joints of the automatic rig; move those of --rig in its file");
+  }
   if (options.detach && session.local) return UsageError("--detach needs a server");
   return CheckOutputFiles(
       session, {{"-o", options.output, {".pleat"}}, {"--report", options.report, {".json"}}});
@@ -230,7 +234,9 @@ absl::Status RunTrain(const TrainVerbOptions& options, const Session& session) {
 
   TrainedModel trained;
   if (session.local && session.data_dir.empty()) {
-    PLEAT_ASSIGN_OR_RETURN(trained, TrainHere(clips, user_rig, train, options.resources, session));
+    TrainResources resources = options.resources;
+    resources.clips_are_known_without_jumps = std::ranges::none_of(notes, IsJumpNote);
+    PLEAT_ASSIGN_OR_RETURN(trained, TrainHere(clips, user_rig, train, resources, session));
   } else {
     const absl::StatusOr<std::unique_ptr<CharacterService>> opened = OpenService(session);
     if (!opened.ok()) return WithLocalHint(opened.status(), session);

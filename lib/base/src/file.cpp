@@ -33,7 +33,7 @@ class FileDescriptor {
 // Takes the code from errno, so it must be called directly after the failing call.
 absl::Status FileError(absl::string_view action, const std::string& path) {
   const int code = errno;
-  return absl::ErrnoToStatus(code, absl::StrCat("cannot ", action, " '", path, "'"));
+  return ErrnoStatus(code, absl::StrCat("cannot ", action, " '", path, "'"));
 }
 
 // write() may take fewer bytes than it was given, or be interrupted by a signal.
@@ -82,8 +82,7 @@ absl::Status WriteFile(const std::string& path, std::string_view bytes, unsigned
     std::error_code error;
     std::filesystem::create_directories(parent, error);
     if (error) {
-      return absl::ErrnoToStatus(error.value(),
-                                 absl::StrCat("cannot create '", parent.string(), "'"));
+      return ErrnoStatus(error.value(), absl::StrCat("cannot create '", parent.string(), "'"));
     }
   }
   // The temporary file has to be in the same folder: a rename is atomic only within a file system.

@@ -27,7 +27,7 @@ constexpr Signature kSignatures[] = {
      "an HDF5 file (Alembic files of before 2013 are): export it as OBJ, PLY or .pc2"},
     {"Ogawa", "an Alembic (Ogawa) file: export it as OBJ, PLY or .pc2"},
     {"Kaydara FBX", "an FBX file: export it as OBJ, PLY or .pc2"},
-    {"glTF", "a binary glTF file (GLB): only rigs are read from it"},
+    {"glTF", "a binary glTF file (GLB): give it the ending .glb"},
     {"BLENDER", "a Blender file: export it as OBJ, PLY or .pc2"},
     {"PXR-USDC", "a USD file: export it as OBJ, PLY or .pc2"},
     {"#usda", "a USD file: export it as OBJ, PLY or .pc2"},

@@ -1,5 +1,7 @@
 #include "pleat/base/status.h"
 
+#include <cerrno>
+
 #include "absl/strings/str_cat.h"
 
 namespace pleat {
@@ -7,6 +9,16 @@ namespace pleat {
 absl::Status WithContext(absl::string_view where, absl::Status status) {
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat(where, ": ", status.message()));
+}
+
+absl::Status ErrnoStatus(int code, absl::string_view message) {
+  const absl::Status status = absl::ErrnoToStatus(code, message);
+  if (!absl::IsUnknown(status)) return status;
+  // What is left are names that lead in circles and, above all, disks and file systems that fail
+  // (EIO, EUCLEAN, ...). kDataLoss is reserved for bytes that were read and are wrong.
+  return absl::Status(
+      code == ELOOP ? absl::StatusCode::kInvalidArgument : absl::StatusCode::kFailedPrecondition,
+      status.message());
 }
 
 }  // namespace pleat

@@ -128,6 +128,8 @@ std::span<const OptionText> OptionTexts() {
       {"max_components", nullptr, "upper bound of the detail basis, 1 to 1024"},
       {"seed", nullptr, "seed of everything random"},
       {"jumps", nullptr, "clips with frames that jump to another size or vertex order"},
+      {"placed_joints", "at",
+       "joints that you place in the rest frame, NAME=x,y,z in meters (leftHand=.7,1.4,0)"},
   };
   return kTexts;
 }

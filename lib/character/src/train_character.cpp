@@ -99,9 +99,9 @@ absl::StatusOr<TrainingRecord> MeasureReconstruction(
 absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
     const std::vector<MeshSequence>& clips, const UserRig* rig, const TrainOptions& options,
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
+  PLEAT_RETURN_IF_ERROR(rig ? CheckOptionsWithRig(options) : ValidateTrainOptions(options));
   PLEAT_ASSIGN_OR_RETURN(const TrainingFrames frames, JoinClips(clips));
-  if (options.jumps == JumpPolicy::kRefuse) {
+  if (options.jumps == JumpPolicy::kRefuse && !resources.clips_are_known_without_jumps) {
     for (const MeshSequence& clip : clips) PLEAT_RETURN_IF_ERROR(RefuseFrameJumps(clip));
   }
   const double diagonal_m = BoundsDiagonal(frames.sequence.FrameAsDouble(0));
@@ -147,6 +147,14 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacter(
     const std::vector<MeshSequence>& clips, const TrainOptions& options,
     const TrainResources& resources, TrainSummary* summary, const Progress& progress) {
   return Train(clips, nullptr, options, resources, summary, progress);
+}
+
+absl::Status CheckOptionsWithRig(const TrainOptions& options) {
+  PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(options));
+  if (options.placed_joints.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "option placed_joints: they are joints of the automatic rig, and the rig is your own; move "
+      "its joints in the rig file instead");
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainCharacterWithRig(

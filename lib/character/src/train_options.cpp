@@ -36,6 +36,8 @@ std::string FormatValue(const T& value) {
     return text;
   } else if constexpr (std::is_enum_v<T>) {
     return ChoiceName(value);
+  } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
+    return FormatPlacedJoints(value);
   } else {
     return absl::StrCat(value);
   }
@@ -45,6 +47,10 @@ template <typename T>
 absl::Status ParseValue(absl::string_view option, absl::string_view text, T* value) {
   if constexpr (std::is_enum_v<T>) {
     PLEAT_ASSIGN_OR_RETURN(*value, ParseChoice<T>(option, text));
+    return absl::OkStatus();
+  } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
+    PLEAT_ASSIGN_OR_RETURN(*value,
+                           WithContext(absl::StrCat("option ", option), ParsePlacedJoints(text)));
     return absl::OkStatus();
   } else {
     bool parsed;
@@ -110,14 +116,19 @@ absl::Status ValidateTrainOptions(const TrainOptions& options) {
   PLEAT_RETURN_IF_ERROR(CheckRange("iterations", options.iterations, 1, 10000));
   PLEAT_RETURN_IF_ERROR(CheckRange("dynamics_weight", options.dynamics_weight, 0.0, 1e6));
   PLEAT_RETURN_IF_ERROR(CheckRange("detail_energy", options.detail_energy, 0.0, 1.0));
-  return CheckRange("max_components", options.max_components, 1, 1024);
+  PLEAT_RETURN_IF_ERROR(CheckRange("max_components", options.max_components, 1, 1024));
+  return WithContext("option placed_joints", CheckPlacedJoints(options.placed_joints));
 }
 
 std::string FormatTrainOptions(const TrainOptions& options) {
   std::string text;
   VisitTrainOptions(options, [&text](const char* name, const auto& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, JumpPolicy>) {
-      if (value == TrainOptions().jumps) return;  // younger than the first models
+    using T = std::decay_t<decltype(value)>;
+    // These are younger than the first models.
+    if constexpr (std::is_same_v<T, JumpPolicy>) {
+      if (value == TrainOptions().jumps) return;
+    } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
+      if (value.empty()) return;
     }
     absl::StrAppend(&text, name, "=", FormatValue(value), "\n");
   });

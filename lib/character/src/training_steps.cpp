@@ -200,6 +200,7 @@ absl::StatusOr<RiggedFrames> RigFrames(const TrainingFrames& frames, const Train
   AutoRigOptions rig_options;
   rig_options.rest_frame = options.rest_frame;
   if (options.yaw_degrees >= 0) rig_options.yaw_degrees = options.yaw_degrees;
+  rig_options.placed_joints = options.placed_joints;
   rig_options.num_threads = resources.num_threads;
   AutoRigSummary summary;
   const MeshSequence first_clip = frames.num_rig_frames == frames.sequence.num_frames()

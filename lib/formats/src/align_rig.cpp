@@ -3,7 +3,6 @@
 // Registration of 3-D Shapes, 1992). Whatever was guessed is measured against every vertex.
 #include "align_rig.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "pleat/base/status.h"
 #include "pleat/geometry/point_index.h"
+#include "pleat/math/principal_axes.h"
 #include "pleat/math/rigid.h"
 
 namespace pleat {
@@ -101,10 +101,7 @@ Placement Refine(const Meshes& meshes, Placement placement) {
 // axes.
 std::vector<Eigen::Matrix3d> GuessRotations(const Meshes& meshes) {
   const auto axes = [](const Eigen::Matrix3Xd& points, const Eigen::Vector3d& center) {
-    const Eigen::Matrix3Xd centered = points.colwise() - center;
-    Eigen::Matrix3d vectors =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centered * centered.transpose())
-            .eigenvectors();
+    Eigen::Matrix3d vectors = PrincipalAxes(points, center);
     if (vectors.determinant() < 0) vectors.col(0) *= -1;
     return vectors;
   };

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "json_depth.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -53,6 +54,11 @@ size_t ComponentBytes(int type) {
   }
 }
 
+size_t NumComponents(std::string_view type) {
+  if (type == "MAT4") return 16;
+  return type == "VEC4" ? 4 : type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1;
+}
+
 // Returns number i of a list of unsigned integers.
 size_t LoadIndex(const char* list, int type, size_t i) {
   const char* data = list + i * ComponentBytes(type);
@@ -70,8 +76,8 @@ int64_t Size(const json& object, const char* name, int64_t fallback) {
   return found->get<int64_t>();
 }
 
-// Extensions without which the positions of a skinned mesh cannot be read. Others may be required
-// as well (materials, textures): they do not concern a rig.
+// Extensions without which the positions of a mesh cannot be read. Others may be required as well
+// (materials, textures): they concern neither meshes nor rigs.
 absl::Status CheckExtensions(const json& root) {
   static constexpr std::string_view kCompressions[] = {
       "EXT_meshopt_compression", "KHR_meshopt_compression", "KHR_draco_mesh_compression"};
@@ -120,7 +126,7 @@ double GlbAccessor::At(size_t i, int k) const {
   }
 }
 
-absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes) {
+absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes, const MeshLimits& limits) {
   if (bytes.size() < 20 || ReadU32(bytes, 0) != kMagic) return Fault("not a binary glTF file");
   if (ReadU32(bytes, 4) != 2) {
     return Fault(absl::StrCat("version ", ReadU32(bytes, 4), ", not 2"));
@@ -136,6 +142,13 @@ absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes) {
     if (size > bytes.size() - at - 8) return Fault("a chunk reaches beyond the end");
     const std::string_view chunk = bytes.substr(at + 8, size);
     if (kind == kJsonChunk && !has_json) {
+      if (size > limits.max_document_bytes) {
+        return absl::ResourceExhaustedError(absl::StrCat(
+            "GLB: ", size, " bytes of JSON; the limit is ", limits.max_document_bytes));
+      }
+      if (NestsTooDeep(chunk, kMaxGltfDepth)) {
+        return Fault(absl::StrCat("JSON nested deeper than ", kMaxGltfDepth, " levels"));
+      }
       glb.root_ = json::parse(chunk, nullptr, false);
       has_json = true;
     } else if (kind == kBinaryChunk && glb.binary_.empty()) {
@@ -148,10 +161,16 @@ absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes) {
   return glb;
 }
 
+const json& GlbContainer::Member(const char* name) const {
+  static const json& null = *new json();
+  const auto found = root_.find(name);
+  return found != root_.end() ? *found : null;
+}
+
 const json& GlbContainer::List(const char* name) const {
   static const json& empty = *new json(json::array());
-  const auto found = root_.find(name);
-  return found != root_.end() && found->is_array() ? *found : empty;
+  const json& member = Member(name);
+  return member.is_array() ? member : empty;
 }
 
 const json& GlbContainer::Entry(const char* name, const json& index) const {
@@ -170,7 +189,7 @@ absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_
   const int64_t component = Size(accessor, "componentType", 0);
   result.component_type_ = static_cast<int>(std::clamp<int64_t>(component, 0, kFloat));
   result.is_normalized_ = accessor.value("normalized", json()) == true;
-  result.num_components_ = type == "MAT4" ? 16 : type == "VEC4" ? 4 : type == "VEC3" ? 3 : 1;
+  result.num_components_ = NumComponents(type);
   const auto element_bytes =
       static_cast<int64_t>(result.num_components_ * ComponentBytes(result.component_type_));
   const int64_t count = Size(accessor, "count", -1);
@@ -183,7 +202,8 @@ absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_
                            Elements(accessor["bufferView"], Size(accessor, "byteOffset", 0), count,
                                     element_bytes, &result.stride_));
   } else if (!accessor.contains("sparse")) {
-    return Fault("an accessor has no buffer view");
+    return Fault(
+        "an accessor has no buffer view; if the mesh is compressed, export it without compression");
   }
   if (accessor.contains("sparse")) {
     PLEAT_RETURN_IF_ERROR(ReadSparse(accessor["sparse"], element_bytes, &result));

@@ -6,8 +6,11 @@
 #include <string_view>
 
 #include "absl/status/statusor.h"
+#include "pleat/mesh/mesh_limits.h"
 
 namespace pleat {
+
+inline constexpr int kMaxGltfDepth = 64;  // nested brackets of its JSON
 
 // The elements of one accessor, all of which lie inside the file.
 class GlbAccessor {
@@ -33,9 +36,12 @@ class GlbAccessor {
 // A GLB file. Its bytes must outlive this object and its accessors.
 class GlbContainer {
  public:
-  // kInvalidArgument when the bytes are not a GLB of version 2 with a JSON chunk.
-  static absl::StatusOr<GlbContainer> Open(std::string_view bytes);
+  // kInvalidArgument when the bytes are not a GLB of version 2 with a JSON chunk,
+  // kResourceExhausted when that chunk, which is parsed whole, is larger than the limit.
+  static absl::StatusOr<GlbContainer> Open(std::string_view bytes, const MeshLimits& limits = {});
 
+  // Returns a member of the top level, or null when it is missing.
+  const nlohmann::json& Member(const char* name) const;
   // Returns a list of the top level, which is empty when it is missing.
   const nlohmann::json& List(const char* name) const;
   // Returns an entry of such a list, or null when `index` is not an index of it.

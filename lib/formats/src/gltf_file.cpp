@@ -9,6 +9,8 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "glb_container.h"
+#include "json_depth.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
@@ -20,7 +22,6 @@ namespace {
 using nlohmann::json;
 
 constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-constexpr int kMaxDepth = 64;
 
 absl::Status Fault(const std::string& what) {
   return absl::InvalidArgumentError(
@@ -132,16 +133,10 @@ bool IsGltfText(std::string_view bytes) {
 
 absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& path,
                                      const MeshLimits& limits) {
-  // A callback that refuses depth keeps hostile nesting from filling the stack and the memory.
-  bool is_deep = false;
-  json root = json::parse(
-      text,
-      [&](int depth, json::parse_event_t, json&) {
-        is_deep |= depth > kMaxDepth;
-        return !is_deep;
-      },
-      false);
-  if (is_deep) return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
+  if (NestsTooDeep(text, kMaxGltfDepth)) {
+    return Fault(absl::StrCat("nested deeper than ", kMaxGltfDepth, " levels"));
+  }
+  json root = json::parse(text, nullptr, false);
   if (!root.is_object()) return Fault("the file is not a JSON object");
   std::string binary;
   PLEAT_RETURN_IF_ERROR(JoinBuffers(path, limits, &root, &binary));

@@ -101,6 +101,21 @@ absl::StatusOr<SkinWeights> BoneWeights(const RigFile& file) {
   return SkinWeights::Create(file.skeleton.num_joints(), std::move(vertices));
 }
 
+// Says how many vertices lose influences because they have more than the skinning takes.
+void NoteInfluences(const RigFile& file, std::vector<InputNote>* notes) {
+  size_t num_cut = 0, most = 0;
+  for (const std::vector<JointInfluence>& vertex : file.influences) {
+    num_cut += vertex.size() > kMaxInfluences;
+    most = std::max(most, vertex.size());
+  }
+  if (num_cut == 0) return;
+  notes->push_back(
+      {.kind = "influences_left_out",
+       .text = absl::StrCat(num_cut, " of ", file.influences.size(),
+                            " vertices of the rig have up to ", most, " influences: the strongest ",
+                            kMaxInfluences, " of each are kept and add up to 1")});
+}
+
 std::vector<int> LockedJoints(const RigFile& file, const Skeleton& skeleton) {
   if (!file.is_locked) return file.locked_joints;
   std::vector<int> all(skeleton.num_joints());
@@ -113,6 +128,10 @@ std::vector<int> LockedJoints(const RigFile& file, const Skeleton& skeleton) {
 absl::StatusOr<UserRig> ResolveRig(const RigFile& given, const MeshSequence& clip,
                                    std::vector<InputNote>* notes) {
   RigFile file = given;
+  if (notes != nullptr) {
+    notes->insert(notes->end(), file.notes.begin(), file.notes.end());
+    NoteInfluences(file, notes);
+  }
   if (file.rest_frame >= clip.num_frames()) {
     return absl::InvalidArgumentError(absl::StrCat("rig: rest_frame ", file.rest_frame, " of ",
                                                    clip.name(), ", which has ", clip.num_frames(),

@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "gltf_file.h"
+#include "json_depth.h"
 #include "pleat/base/file.h"
 #include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
@@ -178,27 +179,6 @@ class RigParser {
   RigFile file_;
 };
 
-// Says whether brackets nest deeper than a rig file needs. Every level costs the parser memory, so
-// this is found out before it runs.
-bool NestsTooDeep(std::string_view text) {
-  int depth = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMaxDepth) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
-}
-
 // Returns the double whose shortest decimal text is that of the float. The file then has half as
 // many digits, and reading it gives the same float.
 double ShortDecimal(float value) {
@@ -216,7 +196,8 @@ absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& l
     return absl::ResourceExhaustedError(
         absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_document_bytes));
   }
-  if (NestsTooDeep(text)) return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
+  if (NestsTooDeep(text, kMaxDepth))
+    return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
   const json root = json::parse(text, nullptr, false);
   if (root.is_discarded()) return Fault("the file is not JSON");
   return RigParser(root, limits).Parse();

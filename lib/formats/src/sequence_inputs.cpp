@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
+#include "pleat/formats/gltf_reader.h"
 #include "pleat/formats/obj_reader.h"
 #include "pleat/formats/ply_reader.h"
 
@@ -20,11 +21,17 @@ bool IsMeshFile(const std::filesystem::path& path) {
   return extension == ".obj" || extension == ".ply" || extension == ".drc";
 }
 
+bool IsGltfFile(const std::filesystem::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".glb" || extension == ".gltf";
+}
+
 std::string DisplayName(const std::filesystem::path& path) {
   return EscapeControls(path.filename().string());
 }
 
 absl::StatusOr<MeshFile> ReadMesh(const std::string& path, const ReadSequenceOptions& options) {
+  if (IsGltfFile(path)) return ReadGltf(path, options.limits);
   if (LowerExtension(path) != ".drc") {
     return LowerExtension(path) == ".ply" ? ReadPly(path, options.limits)
                                           : ReadObj(path, options.limits);

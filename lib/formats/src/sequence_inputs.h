@@ -21,7 +21,11 @@ struct InputReading {
 };
 
 std::string LowerExtension(const std::filesystem::path& path);
-bool IsMeshFile(const std::filesystem::path& path);  // by its extension
+// By its extension: a mesh that may be a frame or the mesh of a point cache.
+bool IsMeshFile(const std::filesystem::path& path);
+// By its extension. Beside other files a glTF file is most often a rig or a preview, so it is a
+// frame only where it is asked for or where nothing else is.
+bool IsGltfFile(const std::filesystem::path& path);
 // The name without its folders, fit for messages and for UTF-8 strings.
 std::string DisplayName(const std::filesystem::path& path);
 

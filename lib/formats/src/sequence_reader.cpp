@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr absl::string_view kKnownExtensions = ".obj, .ply, .drc, .pc2, .pseq";
+constexpr absl::string_view kKnownExtensions = ".obj, .ply, .drc, .glb, .gltf, .pc2, .pseq";
 
 // The folder's own name, also for "." and "dir/".
 std::string FolderName(const std::string& folder) {
@@ -42,18 +42,13 @@ absl::StatusOr<MeshSequence> ReadPleatSequence(const std::string& path,
 
 absl::Status UnknownExtension(const std::string& path) {
   PLEAT_RETURN_IF_ERROR(RefuseForeignFile(path));
-  if (LowerExtension(path) == ".gltf") {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "'", path,
-        "' is a glTF file, which is read as a rig only; export frames as OBJ, PLY or .pc2"));
-  }
-  return absl::InvalidArgumentError(absl::StrCat(
-      "'", path, "' has the unknown extension '", fs::path(path).extension().string(),
-      "'; known are ", kKnownExtensions, ", a folder of .obj, .ply or .drc, or a pattern (*, ?)"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("'", path, "' has the unknown extension '", fs::path(path).extension().string(),
+                   "'; known are ", kKnownExtensions, ", a folder of meshes, or a pattern (*, ?)"));
 }
 
 absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
-  if (IsMeshFile(path)) {
+  if (IsMeshFile(path) || IsGltfFile(path)) {
     return ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading);
   }
   if (LowerExtension(path) == ".pc2") return ReadPointCacheSequence(path, reading);
@@ -62,7 +57,7 @@ absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputRea
 }
 
 absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputReading& reading) {
-  std::vector<std::string> meshes, caches;
+  std::vector<std::string> meshes, caches, gltf_files;
   std::set<std::string> other_extensions;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
@@ -72,11 +67,13 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
       meshes.push_back(path);
     } else if (LowerExtension(path) == ".pc2" || LowerExtension(path) == ".pseq") {
       caches.push_back(path);
+    } else if (IsGltfFile(path)) {
+      gltf_files.push_back(path);
     } else {
       other_extensions.insert(absl::StrCat("'", LowerExtension(path), "'"));
     }
   }
-  if (error) return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot list '", folder, "'"));
+  if (error) return ErrnoStatus(error.value(), absl::StrCat("cannot list '", folder, "'"));
   if (caches.size() == 1 && meshes.size() <= 1) return ReadOneFile(caches[0], reading);
   if (!caches.empty()) {
     std::sort(caches.begin(), caches.end());
@@ -85,6 +82,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
                                                    "such as '",
                                                    caches[0], "', or a pattern for its meshes"));
   }
+  if (meshes.empty()) meshes = std::move(gltf_files);
   if (meshes.empty()) {
     return absl::NotFoundError(
         absl::StrCat("'", folder, "' holds no frames: known extensions are ", kKnownExtensions,
@@ -99,7 +97,7 @@ absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const Input
   PLEAT_ASSIGN_OR_RETURN(const std::vector<std::string> paths, ExpandPattern(pattern));
   if (paths.size() == 1 && !IsMeshFile(paths[0])) return ReadOneFile(paths[0], reading);
   for (const std::string& path : paths) {
-    if (!IsMeshFile(path)) return UnknownExtension(path);
+    if (!IsMeshFile(path) && !IsGltfFile(path)) return UnknownExtension(path);
   }
   return ReadFrameFiles(paths, FolderName(fs::path(pattern).parent_path().string()), pattern,
                         reading);

@@ -27,7 +27,16 @@ JobStateMachine::JobStateMachine(JobInfo info, int attempts, MonotonicClock cloc
 
 JobSnapshot JobStateMachine::snapshot() const {
   std::lock_guard lock(mutex_);
-  return state_;
+  return SnapshotNow();
+}
+
+JobSnapshot JobStateMachine::SnapshotNow() const {
+  JobSnapshot now = state_;
+  if (now.info.eta_seconds) {
+    now.info.eta_seconds =
+        std::max(0.0, *now.info.eta_seconds - std::max(0.0, clock_() - reported_seconds_));
+  }
+  return now;
 }
 
 JobState JobStateMachine::state() const {
@@ -58,7 +67,8 @@ void JobStateMachine::Report(const ProgressUpdate& update) {
     info.stage = update.stage;
     info.fraction = std::max(info.fraction, std::clamp(update.fraction, 0.0, 1.0));
     info.objective = update.objective;
-    const double elapsed = clock_() - started_seconds_;
+    reported_seconds_ = clock_();
+    const double elapsed = reported_seconds_ - started_seconds_;
     if (elapsed >= kMinSecondsForEta && info.fraction >= kMinFractionForEta) {
       info.eta_seconds = elapsed * (1 - info.fraction) / info.fraction;
     }
@@ -150,7 +160,7 @@ JobSnapshot JobStateMachine::WaitForChange(uint64_t revision, double timeout_sec
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, std::chrono::duration<double>(timeout_seconds),
                     [&] { return state_.revision > revision; });
-  return state_;
+  return SnapshotNow();
 }
 
 int JobStateMachine::AddListener(std::function<void()> listener) {

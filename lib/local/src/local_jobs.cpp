@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
+#include "pleat/character/train_with_rig.h"
 #include "pleat/store/records.h"
 #include "stored_infos.h"
 
@@ -117,7 +118,8 @@ absl::Status LocalJobs::Restore() {
 }
 
 absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request) {
-  PLEAT_RETURN_IF_ERROR(ValidateTrainOptions(request.options));
+  PLEAT_RETURN_IF_ERROR(request.rig.empty() ? ValidateTrainOptions(request.options)
+                                            : CheckOptionsWithRig(request.options));
   const size_t num_clips = request.sequence_ids.size();
   if (num_clips == 0 || num_clips > static_cast<size_t>(files_->limits().max_clips)) {
     return absl::InvalidArgumentError(absl::StrCat(

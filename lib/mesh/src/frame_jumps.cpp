@@ -10,6 +10,8 @@
 namespace pleat {
 namespace {
 
+constexpr const char *kSizeJumps = "size_jumps", *kShapeJumps = "shape_jumps";  // kinds of notes
+
 // The thresholds lie between what motion does and what jumps do. In captures and simulated cloth
 // at 30 frames per second, 4 % of the edges change by a factor of more than 1.3 from one frame to
 // the next at most, 1 % by 2 and .4 % by 4; at 3 frames per second 38 %, 4 % and 1.2 %. The median
@@ -157,7 +159,7 @@ std::vector<InputNote> DescribeJumps(const std::vector<FrameJump>& jumps,
   for (const FrameJump& jump : jumps) {
     const bool one = jump.frames.size() == 1;
     InputNote note{.severity = NoteSeverity::kWarning,
-                   .kind = jump.is_scaled_only() ? "size_jumps" : "shape_jumps",
+                   .kind = jump.is_scaled_only() ? kSizeJumps : kShapeJumps,
                    .text = FrameListLabel(frame_names, jump.frames),
                    .frame = jump.frames[0]};
     if (jump.is_scaled_only()) {
@@ -177,6 +179,10 @@ std::vector<InputNote> DescribeJumps(const std::vector<FrameJump>& jumps,
     notes.push_back(std::move(note));
   }
   return notes;
+}
+
+bool IsJumpNote(const InputNote& note) {
+  return note.kind == kSizeJumps || note.kind == kShapeJumps;
 }
 
 absl::Status RefuseFrameJumps(const MeshSequence& sequence) {

@@ -1,6 +1,5 @@
 #include "rest_frame.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -13,6 +12,7 @@
 #include "absl/strings/str_format.h"
 #include "main_body.h"
 #include "pleat/base/status.h"
+#include "pleat/math/principal_axes.h"
 
 namespace pleat {
 namespace {
@@ -49,11 +49,10 @@ Eigen::Matrix3d TurnToY(const Eigen::Vector3d& up) {
 // axes of the shell, both ways; the body's own left and right come to lie along the x axis.
 std::vector<Eigen::Matrix3d> OrientationsToTry(const BodyShell& shell) {
   std::vector<Eigen::Vector3d> ups = {{0, 0, 1}, {0, 0, -1}, {0, -1, 0}, {1, 0, 0}, {-1, 0, 0}};
-  const Eigen::Matrix3Xd centered = shell.positions.colwise() - shell.positions.rowwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(centered * centered.transpose());
+  const Eigen::Matrix3d axes = PrincipalAxes(shell.positions, shell.positions.rowwise().mean());
   for (int k = 2; k >= 0; --k) {
-    ups.emplace_back(axes.eigenvectors().col(k));
-    ups.emplace_back(-axes.eigenvectors().col(k));
+    ups.emplace_back(axes.col(k));
+    ups.emplace_back(-axes.col(k));
   }
   std::vector<Eigen::Matrix3d> turns;
   for (const Eigen::Vector3d& up : ups) {

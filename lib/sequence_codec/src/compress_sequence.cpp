@@ -12,11 +12,25 @@
 #include "pleat/base/status.h"
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "sequence_encoder.h"
+#include "trial_progress.h"
 
 namespace pleat {
 namespace {
 
 constexpr int kMaxTrials = 12;
+constexpr int kNumFactors = 2;  // 2 and its root, by which the step of the motion is changed
+// What the progress expects of the time, measured on captured and made-up sequences: the share that
+// is over after the analysis and before the last check, for each kind of goal.
+struct TimeShares {
+  double analyzed, encoded;
+};
+constexpr TimeShares kKgShares = {.25, .95}, kBoundShares = {.06, .91};
+constexpr double kUsualKgTrials = 4, kUsualTrialsPerDirection = 1.5;
+constexpr double kEncodingShare = .7;  // of a trial for a KG error; the rest decodes and compares
+
+TimeShares SharesOf(CompressionGoal goal) {
+  return goal == CompressionGoal::kKg ? kKgShares : kBoundShares;
+}
 
 absl::Status CheckRange(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return absl::OkStatus();
@@ -72,6 +86,14 @@ absl::StatusOr<Measured> Measure(const MeshSequence& sequence, const std::string
   return Measured{100 * std::sqrt(sum / spread), std::sqrt(largest)};
 }
 
+// How many trials are to come until a KG error is as near to the aim as it has to be. miss, before:
+// how far the last trial and the one before it were off, as logarithms; before is 0 at first.
+double ExpectedKgTrials(double miss, double before) {
+  constexpr double kHit = .005;
+  const double rate = before > 0 ? std::clamp(miss / before, .05, .7) : .3;
+  return std::max(1.0, std::log(std::max(miss, kHit) / kHit) / -std::log(rate));
+}
+
 // The largest step whose error is at most the goal's, to some percent: regula falsi on logarithms.
 absl::StatusOr<std::string> EncodeForKg(const SequenceEncoder& encoder,
                                         const MeshSequence& sequence, const Extent& extent,
@@ -84,11 +106,14 @@ absl::StatusOr<std::string> EncodeForKg(const SequenceEncoder& encoder,
   double step_m = 15 * kg_percent / 100 * std::sqrt(extent.squared_spread / num_values);
   double below = 0, above = 0, kg_below = 0, kg_above = 0;  // steps with too small, too large error
   std::string best;
+  TrialProgress trials(progress);
+  double num_expected = kUsualKgTrials, last_miss = 0;
   for (int trial = 0; trial < kMaxTrials; ++trial) {
-    const Progress part =
-        progress.Stage("encode", 1.0 * trial / kMaxTrials, (trial + 1.0) / kMaxTrials);
-    PLEAT_ASSIGN_OR_RETURN(std::string bytes, encoder.Encode(step_m, {}, part));
-    PLEAT_ASSIGN_OR_RETURN(const Measured measured, Measure(sequence, bytes, extent, part));
+    const Progress part = trials.Next("encode", num_expected);
+    PLEAT_ASSIGN_OR_RETURN(std::string bytes,
+                           encoder.Encode(step_m, {}, PartOf(part, 0, kEncodingShare)));
+    PLEAT_ASSIGN_OR_RETURN(const Measured measured,
+                           Measure(sequence, bytes, extent, PartOf(part, kEncodingShare, 1)));
     if (measured.kg_percent <= kg_percent) {
       below = step_m;
       kg_below = measured.kg_percent;
@@ -99,6 +124,9 @@ absl::StatusOr<std::string> EncodeForKg(const SequenceEncoder& encoder,
       kg_above = measured.kg_percent;
     }
     const double aim = std::log(0.995 * kg_percent);
+    const double miss = std::abs(std::log(std::max(measured.kg_percent, 1e-9)) - aim);
+    num_expected = ExpectedKgTrials(miss, last_miss);
+    last_miss = miss;
     if (below > 0 && above > 0) {
       if (above < 1.002 * below) break;
       const double share = (aim - std::log(std::max(kg_below, 1e-9))) /
@@ -120,14 +148,17 @@ absl::StatusOr<std::string> EncodeForKg(const SequenceEncoder& encoder,
 absl::StatusOr<std::string> EncodeSmallest(const SequenceEncoder& encoder, const ResidualGrid& grid,
                                            double step_m, const Progress& progress) {
   int num_trials = 0;
+  // Each direction ends with a trial that is no better, after a few that are.
+  double num_directions = 2 * kNumFactors;
+  TrialProgress trials(progress);
   const auto encode = [&](double step) {
-    const double begin = 1.0 * num_trials / kMaxTrials;
+    const double num_expected = num_directions * kUsualTrialsPerDirection + (num_trials == 0);
     ++num_trials;
-    return encoder.Encode(step, grid,
-                          progress.Stage("encode", begin, 1.0 * num_trials / kMaxTrials));
+    return encoder.Encode(step, grid, trials.Next("encode", num_expected));
   };
   PLEAT_ASSIGN_OR_RETURN(std::string best, encode(step_m));
-  for (double factor = 2; factor > 1.3 && num_trials < kMaxTrials; factor = std::sqrt(factor)) {
+  double factor = 2;
+  for (int k = 0; k < kNumFactors && num_trials < kMaxTrials; ++k, factor = std::sqrt(factor)) {
     for (const double direction : {factor, 1 / factor}) {
       bool better = true;
       while (better && num_trials < kMaxTrials) {
@@ -138,6 +169,7 @@ absl::StatusOr<std::string> EncodeSmallest(const SequenceEncoder& encoder, const
         best = *std::move(trial);
         step_m *= direction;
       }
+      --num_directions;
     }
   }
   return best;
@@ -207,14 +239,16 @@ absl::StatusOr<Encoded> EncodeAround(const Eigen::Vector3d& origin_m, const Mesh
                              {sequence.name(), sequence.frame_rate(), sequence.appearance(), {}}));
   }
   const MeshSequence& encoded = moved ? *moved : sequence;
+  const TimeShares shares = SharesOf(options.goal);
+  const double analyzed = shares.analyzed / shares.encoded;  // of the encoding without the check
   PLEAT_ASSIGN_OR_RETURN(
       SequenceAnalysis analysis,
-      AnalyzeSequence(encoded, options.num_threads, progress.Stage("analyse", 0, 0.2)));
+      AnalyzeSequence(encoded, options.num_threads, progress.Stage("analyse", 0, analyzed)));
   const SequenceEncoder encoder(encoded, std::move(analysis), origin_m, options.keep_face_order,
                                 options.num_threads);
   Encoded result;
   PLEAT_ASSIGN_OR_RETURN(result.bytes, EncodeForGoal(encoder, sequence, extent, options, origin_m,
-                                                     progress.Stage("encode", 0.2, 1)));
+                                                     progress.Stage("encode", analyzed, 1)));
   result.num_topology_bytes = encoder.topology_bytes();
   return result;
 }
@@ -253,17 +287,21 @@ absl::StatusOr<std::string> CompressSequence(const MeshSequence& sequence,
                                              CompressSummary* summary, const Progress& progress) {
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
   const Extent extent(sequence);
-  absl::StatusOr<Encoded> encoded =
-      EncodeAround(Eigen::Vector3d::Zero(), sequence, extent, options, progress.Stage("", 0, 0.9));
+  const TimeShares shares = SharesOf(options.goal);
+  const Progress forward = ForwardOnly(progress);
+  absl::StatusOr<Encoded> encoded = EncodeAround(Eigen::Vector3d::Zero(), sequence, extent, options,
+                                                 forward.Stage("", 0, shares.encoded));
   // Where the sequence lies cannot be quantized as finely as its shape: that is subtracted first.
+  // Mostly this shows in the first trial, right after the analysis.
   if (absl::IsInvalidArgument(encoded.status()) && extent.IsFar()) {
-    encoded =
-        EncodeAround(extent.Middle(), sequence, extent, options, progress.Stage("", 0.9, 0.95));
+    encoded = EncodeAround(extent.Middle(), sequence, extent, options,
+                           forward.Stage("", shares.analyzed, shares.encoded));
   }
   PLEAT_RETURN_IF_ERROR(encoded.status());
   const std::string& bytes = encoded->bytes;
-  PLEAT_ASSIGN_OR_RETURN(const Measured measured,
-                         Measure(sequence, bytes, extent, progress.Stage("check", 0.95, 1)));
+  PLEAT_ASSIGN_OR_RETURN(
+      const Measured measured,
+      Measure(sequence, bytes, extent, forward.Stage("check", shares.encoded, 1)));
   PLEAT_RETURN_IF_ERROR(CheckPromise(options, measured, extent));
   if (summary != nullptr) {
     const double num_values = static_cast<double>(sequence.num_vertices()) * sequence.num_frames();

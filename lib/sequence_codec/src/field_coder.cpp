@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "integer_model.h"
+#include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 constexpr int kMaxLevelClass = 15, kNumComponentClasses = 200;
 constexpr int kBlockColumns = 8 * 3;
 constexpr float kMaxQuantized = 1 << 26;
+constexpr size_t kVerticesPerReport = 256;  // some milliseconds
 
 // 0 .. 15, twice the logarithm of 1 + k.
 int ComponentClass(int k) {
@@ -37,8 +39,14 @@ class FieldWalk {
         blocks_({12 * 12, 32 * 16, 8 * 12}, 1),
         values_({12 * 12, 12 * 12 * 3, 16 * 16, 12 * 3, kNumComponentClasses * 2}, 12) {}
 
-  absl::Status Run() {
+  absl::Status Run(const Progress& progress) {
+    size_t num_done = 0;
+    const size_t num_vertices = hierarchy_.order().size();
     for (const int v : hierarchy_.order()) {
+      if (num_done++ % kVerticesPerReport == 0) {
+        PLEAT_RETURN_IF_ERROR(
+            progress.Report(static_cast<double>(num_done) / static_cast<double>(num_vertices)));
+      }
       SumNeighbors(v);
       if (!coder_->decoding() && !QuantizeRow(v)) {
         return absl::InvalidArgumentError(absl::StrCat("vertex ", v,
@@ -165,10 +173,10 @@ class FieldWalk {
 }  // namespace
 
 absl::Status CodeFields(const SurfaceHierarchy& hierarchy, float step, BinaryCoder* coder,
-                        FieldMatrix* fields) {
+                        FieldMatrix* fields, const Progress& progress) {
   if (fields->cols() == 0) return absl::OkStatus();  // rigid motion
   if (!coder->decoding()) hierarchy.Analyze(fields);
-  const absl::Status status = FieldWalk(hierarchy, step, coder, fields).Run();
+  const absl::Status status = FieldWalk(hierarchy, step, coder, fields).Run(progress);
   if (status.ok()) hierarchy.Synthesize(fields);
   return status;
 }

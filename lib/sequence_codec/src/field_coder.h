@@ -3,6 +3,7 @@
 
 #include "absl/status/status.h"
 #include "binary_coder.h"
+#include "pleat/base/progress.h"
 #include "pleat/geometry/surface_hierarchy.h"
 
 namespace pleat {
@@ -12,7 +13,7 @@ namespace pleat {
 // about step / sqrt(12). kInvalidArgument (encoding): a value is too large for the step. kDataLoss
 // (decoding): the code is cut off.
 absl::Status CodeFields(const SurfaceHierarchy& hierarchy, float step, BinaryCoder* coder,
-                        FieldMatrix* fields);
+                        FieldMatrix* fields, const Progress& progress = {});
 
 // Where the two middle quantization cells meet: |x| < (1 - kRounding) * step becomes 0. Below 1/2,
 // because zeros are cheap.

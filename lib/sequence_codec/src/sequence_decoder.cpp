@@ -12,9 +12,13 @@
 #include "field_coder.h"
 #include "pleat/base/status.h"
 #include "rest_shape.h"
+#include "trial_progress.h"
 
 namespace pleat {
 namespace {
+
+// Share of the time of a segment without residuals that its fields take.
+constexpr double kFieldsShare = .85;
 
 // Where one segment is in the file.
 struct SegmentPlace {
@@ -114,7 +118,16 @@ struct SequenceDecoder::State {
     return reader->Next(SectionKind::kEnd, "end").status();
   }
 
-  absl::Status LoadSegment(int index) {
+  // How much of the time of decoding a segment is taken before its first frame: the fields of
+  // its motion, against the residuals of its frames.
+  static double LoadingShare(const SegmentPlace& place) {
+    size_t num_group_bytes = 0;
+    for (const std::string_view group : place.groups) num_group_bytes += group.size();
+    const auto motion = static_cast<double>(place.motion.size());
+    return kFieldsShare * motion / (motion + static_cast<double>(num_group_bytes) + 1);
+  }
+
+  absl::Status LoadSegment(int index, const Progress& progress = {}) {
     if (loaded == index) return absl::OkStatus();
     loaded = loaded_group = -1;
     const SegmentPlace& place = places[index];
@@ -140,7 +153,8 @@ struct SequenceDecoder::State {
     PLEAT_RETURN_IF_ERROR(CodeRigidMotion(header.steps, &coder, &rigid, &segment));
     PLEAT_RETURN_IF_ERROR(CodeWeights(header.steps, &coder, &rows, &segment));
     segment.fields.resize(header.num_vertices, 3 * num_components);
-    PLEAT_RETURN_IF_ERROR(CodeFields(*hierarchy, header.steps.field_m, &coder, &segment.fields));
+    PLEAT_RETURN_IF_ERROR(
+        CodeFields(*hierarchy, header.steps.field_m, &coder, &segment.fields, progress));
     loaded = index;
     return absl::OkStatus();
   }
@@ -222,12 +236,17 @@ absl::Status SequenceDecoder::Decode(int begin, int end, const FrameSink& sink,
     return absl::InvalidArgumentError(absl::StrCat(
         "the frames ", begin, " to ", end, " are not in the sequence, which has ", num_frames()));
   }
+  const double num_wanted = end - begin;
   for (size_t s = 0; s < state_->places.size(); ++s) {
     const SegmentPlace& place = state_->places[s];
     const int low = std::max(begin - place.first_frame, 0);
     const int high = std::min(end - place.first_frame, place.num_frames);
     if (low >= high) continue;
-    PLEAT_RETURN_IF_ERROR(state_->LoadSegment(static_cast<int>(s)));
+    const Progress part = PartOf(progress, (place.first_frame + low - begin) / num_wanted,
+                                 (place.first_frame + high - begin) / num_wanted);
+    const double loading = State::LoadingShare(place);
+    PLEAT_RETURN_IF_ERROR(state_->LoadSegment(static_cast<int>(s), PartOf(part, 0, loading)));
+    const Progress decoding = PartOf(part, loading, 1);
     for (int group = low / kGroupFrames; group * kGroupFrames < high; ++group) {
       PLEAT_RETURN_IF_ERROR(state_->LoadGroup(group));
       for (int i = 0; i < static_cast<int>(state_->frames.size()); ++i) {
@@ -235,8 +254,8 @@ absl::Status SequenceDecoder::Decode(int begin, int end, const FrameSink& sink,
         if (t < begin || t >= end) continue;
         PLEAT_RETURN_IF_ERROR(sink(t, state_->frames[i]));
       }
-      const int done = place.first_frame + group * kGroupFrames - begin;
-      PLEAT_RETURN_IF_ERROR(progress.Report(std::clamp(1.0 * done / (end - begin), 0.0, 1.0)));
+      PLEAT_RETURN_IF_ERROR(
+          decoding.Report(((group + 1.0) * kGroupFrames - low) / static_cast<double>(high - low)));
     }
   }
   return absl::OkStatus();

@@ -14,6 +14,7 @@
 #include "pleat/base/status.h"
 #include "pleat/mesh/mesh_sections.h"
 #include "rest_shape.h"
+#include "trial_progress.h"
 
 namespace pleat {
 namespace {
@@ -22,6 +23,10 @@ namespace {
 // .04 that rate-distortion theory gives for white fields and 0, because fields are sparse.
 constexpr double kComponentThreshold = 0.0125;
 constexpr int kVerticesPerPart = 512;
+constexpr int kGroupsPerReport = 8;
+// Shares of the time of a segment that are over when its fields are fitted and coded.
+constexpr double kFitted = .25, kCoded = .85;
+constexpr double kFittedWithResiduals = .1, kCodedWithResiduals = .3;
 
 // Steps with which one bit lowers the squared error equally wherever it is spent (reverse
 // water-filling): every coefficient is scaled to its effect on all positions of all frames.
@@ -129,7 +134,6 @@ struct SequenceEncoder::Shared {
   const CompressedHeader& header;
   const Eigen::Matrix3Xf& rest;  // decoded
   const SurfaceHierarchy& hierarchy;
-  const Progress& progress;
 };
 
 SequenceEncoder::SequenceEncoder(const MeshSequence& sequence, SequenceAnalysis analysis,
@@ -160,7 +164,7 @@ int SequenceEncoder::NumComponents(const SegmentAnalysis& segment, double step_m
 }
 
 absl::Status SequenceEncoder::EncodeSegment(const SegmentAnalysis& analysis, const Shared& shared,
-                                            ByteWriter* writer) const {
+                                            const Progress& progress, ByteWriter* writer) const {
   const MotionSteps& steps = shared.header.steps;
   MotionSegment segment;
   segment.first_frame = analysis.first_frame;
@@ -172,18 +176,26 @@ absl::Status SequenceEncoder::EncodeSegment(const SegmentAnalysis& analysis, con
   TrajectoryMatrix rows = analysis.singular_values.head(segment.num_components).asDiagonal() *
                           analysis.trajectories.topRows(segment.num_components);
   PLEAT_RETURN_IF_ERROR(CodeWeights(steps, &coder, &rows, &segment));
+  const bool has_residuals = shared.header.grid.kind != ResidualKind::kNone;
+  const double fitted = has_residuals ? kFittedWithResiduals : kFitted;
+  const double coded = has_residuals ? kCodedWithResiduals : kCoded;
   segment.fields = FitFields(sequence_, shared.rest, segment, rows, num_threads_);
-  if (shared.progress.cancelled()) return absl::CancelledError("compression was cancelled");
-  PLEAT_RETURN_IF_ERROR(CodeFields(shared.hierarchy, steps.field_m, &coder, &segment.fields));
+  PLEAT_RETURN_IF_ERROR(CodeFields(shared.hierarchy, steps.field_m, &coder, &segment.fields,
+                                   PartOf(progress, fitted, coded)));
   ByteWriter motion;
   motion.Write(static_cast<uint16_t>(segment.num_components));
   motion.WriteRaw(coder.Finish());
   WriteSection(SectionKind::kMotion, motion.bytes(), writer);
 
+  return EncodeGroups(segment, shared, PartOf(progress, coded, 1), writer);
+}
+
+absl::Status SequenceEncoder::EncodeGroups(const MotionSegment& segment, const Shared& shared,
+                                           const Progress& progress, ByteWriter* writer) const {
   std::vector<std::string> groups(segment.num_groups());
   std::vector<absl::Status> statuses(groups.size());
-  ParallelFor(segment.num_groups(), num_threads_, [&](int group) {
-    if (shared.progress.cancelled()) return;
+  const auto encode_group = [&](int group) {
+    if (progress.cancelled()) return;
     std::vector<Eigen::Matrix3Xf> frames;
     EvaluateGroup(shared.rest, segment, group, &frames);
     std::vector<const Eigen::Matrix3Xf*> truth;
@@ -198,8 +210,14 @@ absl::Status SequenceEncoder::EncodeSegment(const SegmentAnalysis& analysis, con
     group_writer.Write(FramesChecksum(frames));
     if (shared.header.grid.kind != ResidualKind::kNone) group_writer.WriteRaw(residuals.Finish());
     groups[group] = group_writer.Release();
-  });
-  if (shared.progress.cancelled()) return absl::CancelledError("compression was cancelled");
+  };
+  // In batches, since progress is told between parallel loops.
+  for (int first = 0; first < segment.num_groups(); first += kGroupsPerReport) {
+    const int count = std::min(kGroupsPerReport, segment.num_groups() - first);
+    ParallelFor(count, num_threads_, [&](int item) { encode_group(first + item); });
+    PLEAT_RETURN_IF_ERROR(
+        progress.Report(static_cast<double>(first + count) / segment.num_groups()));
+  }
   for (size_t group = 0; group < groups.size(); ++group) {
     PLEAT_RETURN_IF_ERROR(statuses[group]);
     WriteSection(SectionKind::kGroup, groups[group], writer);
@@ -224,10 +242,11 @@ absl::StatusOr<std::string> SequenceEncoder::Encode(double step_m, const Residua
   PLEAT_RETURN_IF_ERROR(CodeRestShape(sequence_.topology(), header.steps.rest_m, &coder, &rest));
   WriteSection(SectionKind::kRest, coder.Finish(), &writer);
   const SurfaceHierarchy hierarchy(sequence_.topology(), &rest);
-  double done = 0;
+  const double num_frames = sequence_.num_frames();
   for (const SegmentAnalysis& segment : analysis_.segments) {
-    PLEAT_RETURN_IF_ERROR(EncodeSegment(segment, {header, rest, hierarchy, progress}, &writer));
-    PLEAT_RETURN_IF_ERROR(progress.Report(++done / static_cast<double>(analysis_.segments.size())));
+    const Progress part = PartOf(progress, segment.first_frame / num_frames,
+                                 (segment.first_frame + segment.num_frames) / num_frames);
+    PLEAT_RETURN_IF_ERROR(EncodeSegment(segment, {header, rest, hierarchy}, part, &writer));
   }
   WriteSection(SectionKind::kEnd, {}, &writer);
   return writer.Release();

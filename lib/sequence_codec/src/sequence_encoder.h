@@ -4,6 +4,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "motion_segment.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
@@ -33,7 +34,9 @@ class SequenceEncoder {
  private:
   struct Shared;
   absl::Status EncodeSegment(const SegmentAnalysis& segment, const Shared& shared,
-                             ByteWriter* writer) const;
+                             const Progress& progress, ByteWriter* writer) const;
+  absl::Status EncodeGroups(const MotionSegment& segment, const Shared& shared,
+                            const Progress& progress, ByteWriter* writer) const;
 
   const MeshSequence& sequence_;
   const SequenceAnalysis analysis_;

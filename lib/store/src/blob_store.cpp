@@ -48,7 +48,7 @@ absl::Status CannotRead(const std::string& id) {
 
 // From errno.
 absl::Status CannotStore(const std::string& id) {
-  return absl::ErrnoToStatus(errno, absl::StrCat("cannot store the file '", id, "'"));
+  return ErrnoStatus(errno, absl::StrCat("cannot store the file '", id, "'"));
 }
 
 absl::Status HasChanged(const std::string& id) {
@@ -61,7 +61,7 @@ absl::Status MakeFolder(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (!error) return absl::OkStatus();
-  return absl::ErrnoToStatus(error.value(), "cannot create a folder of the store");
+  return ErrnoStatus(error.value(), "cannot create a folder of the store");
 }
 
 // False with errno set when the disk does not take all of them.
@@ -176,7 +176,7 @@ absl::StatusOr<uint64_t> BlobStore::Size(const std::string& id) const {
   if (!Contains(id)) return NoSuchBlob(id);
   std::error_code error;
   const uint64_t size = fs::file_size(PathOf(id), error);
-  if (error) return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot inspect ", id));
+  if (error) return ErrnoStatus(error.value(), absl::StrCat("cannot inspect ", id));
   return size;
 }
 
@@ -189,7 +189,7 @@ absl::Status BlobStore::Delete(const std::string& id) {
   if (!IsContentId(id)) return absl::OkStatus();
   std::error_code error;
   fs::remove(PathOf(id), error);
-  if (error) return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot delete ", id));
+  if (error) return ErrnoStatus(error.value(), absl::StrCat("cannot delete ", id));
   return absl::OkStatus();
 }
 
@@ -201,7 +201,7 @@ absl::StatusOr<std::vector<std::string>> BlobStore::List() const {
     const std::string name = it->path().filename();
     if (IsContentId(name)) ids.push_back(name);
   }
-  if (error) return absl::ErrnoToStatus(error.value(), "cannot list the files of the store");
+  if (error) return ErrnoStatus(error.value(), "cannot list the files of the store");
   std::sort(ids.begin(), ids.end());
   return ids;
 }

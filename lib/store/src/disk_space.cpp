@@ -29,7 +29,7 @@ std::shared_ptr<DiskSpace> DiskSpace::Of(const std::string& folder, uint64_t res
   const AskFreeBytes ask = [folder]() -> absl::StatusOr<uint64_t> {
     std::error_code error;
     const std::filesystem::space_info space = std::filesystem::space(folder, error);
-    if (error) return absl::ErrnoToStatus(error.value(), "cannot ask for the free disk space");
+    if (error) return ErrnoStatus(error.value(), "cannot ask for the free disk space");
     return space.available;
   };
   return std::make_shared<DiskSpace>(ask, reserve_bytes);

@@ -8,13 +8,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/file.h"
+#include "pleat/base/status.h"
 
 namespace pleat {
 
 absl::StatusOr<FolderLock> FolderLock::Take(const std::string& data_dir) {
   const std::string path = data_dir + "/lock";
   const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (fd < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot open '", path, "'"));
+  if (fd < 0) return ErrnoStatus(errno, absl::StrCat("cannot open '", path, "'"));
   FolderLock lock(fd);
   if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
     const absl::StatusOr<std::string> holder = ReadFile(path, 64);

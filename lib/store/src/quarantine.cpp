@@ -34,14 +34,14 @@ constexpr uint64_t kMaxManifestBytes = uint64_t{1} << 30;
 absl::Status Quarantine::WriteDown(const std::string& name, const std::string& reason) {
   const std::string path = absl::StrCat(folder_, "/", kManifest);
   const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (fd < 0) return absl::ErrnoToStatus(errno, "cannot open the manifest of the quarantine");
+  if (fd < 0) return ErrnoStatus(errno, "cannot open the manifest of the quarantine");
   const std::string line = absl::StrCat(
       EscapeControls(name), "\t", absl::FormatTime(kTimeFormat, absl::Now(), absl::UTCTimeZone()),
       "\t", EscapeControls(reason), "\n");
   absl::Status status;
   // One call for the whole line: a crash leaves all of it or a line that has no end.
   if (write(fd, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
-    status = absl::ErrnoToStatus(errno, "cannot write the manifest of the quarantine");
+    status = ErrnoStatus(errno, "cannot write the manifest of the quarantine");
   }
   if (status.ok()) status = SyncFile(fd, path, before_sync_);
   close(fd);
@@ -52,7 +52,7 @@ absl::Status Quarantine::Take(const std::string& path, const std::string& reason
   std::lock_guard lock(mutex_);
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (error) return absl::ErrnoToStatus(error.value(), "cannot create the quarantine");
+  if (error) return ErrnoStatus(error.value(), "cannot create the quarantine");
   const fs::path source(path);
   std::string name = source.filename();
   for (int number = 2; fs::exists(fs::path(folder_) / name, error); ++number) {
@@ -60,7 +60,7 @@ absl::Status Quarantine::Take(const std::string& path, const std::string& reason
   }
   PLEAT_RETURN_IF_ERROR(WriteDown(name, reason));
   if (rename(path.c_str(), absl::StrCat(folder_, "/", name).c_str()) != 0) {
-    return absl::ErrnoToStatus(
+    return ErrnoStatus(
         errno, absl::StrCat("cannot move '", source.filename().string(), "' to the quarantine"));
   }
   PLEAT_RETURN_IF_ERROR(SyncFolder(folder_, before_sync_));
@@ -89,7 +89,7 @@ absl::StatusOr<std::vector<QuarantinedFile>> Quarantine::List() const {
     }
     files.push_back(std::move(file));
   }
-  if (error) return absl::ErrnoToStatus(error.value(), "cannot list the quarantine");
+  if (error) return ErrnoStatus(error.value(), "cannot list the quarantine");
   std::ranges::sort(files, {}, &QuarantinedFile::name);
   return files;
 }

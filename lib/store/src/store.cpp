@@ -48,7 +48,7 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
     std::filesystem::permissions(data_dir, std::filesystem::perms::owner_all, error);
   }
   if (error) {
-    return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", data_dir, "'"));
+    return ErrnoStatus(error.value(), absl::StrCat("cannot create '", data_dir, "'"));
   }
   std::unique_ptr<Store> store(new Store(options));
   PLEAT_ASSIGN_OR_RETURN(FolderLock lock, FolderLock::Take(data_dir));

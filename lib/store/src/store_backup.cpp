@@ -88,7 +88,7 @@ class StoreCopier {
     }
     std::error_code error;
     fs::create_directories(to_, error);
-    if (error) return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", to_, "'"));
+    if (error) return ErrnoStatus(error.value(), absl::StrCat("cannot create '", to_, "'"));
     return absl::OkStatus();
   }
 
@@ -133,7 +133,7 @@ class StoreCopier {
     std::error_code ignored;
     for (const char* suffix : {"-wal", "-shm"}) fs::remove(CatalogPath(to_) + suffix, ignored);
     if (rename(snapshot_path.c_str(), CatalogPath(to_).c_str()) != 0) {
-      return absl::ErrnoToStatus(errno, absl::StrCat("cannot write '", CatalogPath(to_), "'"));
+      return ErrnoStatus(errno, absl::StrCat("cannot write '", CatalogPath(to_), "'"));
     }
     return SyncFolder(to_, {});
   }

@@ -52,7 +52,7 @@ absl::Status Upload::Append(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = write(fd_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot write upload ", id_));
+    if (written < 0) return ErrnoStatus(errno, absl::StrCat("cannot write upload ", id_));
     received_bytes_ += static_cast<uint64_t>(written);
     room_.Spend(static_cast<uint64_t>(written));
     bytes.remove_prefix(static_cast<size_t>(written));
@@ -94,7 +94,7 @@ absl::StatusOr<std::unique_ptr<UploadArea>> UploadArea::Open(std::string folder,
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot create '", folder, "'"));
+    return ErrnoStatus(error.value(), absl::StrCat("cannot create '", folder, "'"));
   }
   return std::unique_ptr<UploadArea>(new UploadArea(std::move(folder), std::move(before_sync)));
 }
@@ -149,8 +149,7 @@ absl::StatusOr<std::unique_ptr<Upload>> UploadArea::Begin(const std::string& id,
   const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | (offset_bytes == 0 ? O_TRUNC : 0);
   const int fd = open(PathOf(id).c_str(), flags, 0644);
   if (fd < 0) {
-    const absl::Status status =
-        absl::ErrnoToStatus(errno, absl::StrCat("cannot write upload ", id));
+    const absl::Status status = ErrnoStatus(errno, absl::StrCat("cannot write upload ", id));
     Release(id);
     return status;
   }

@@ -5,7 +5,10 @@
 
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
 #include "pleat/wire/skeleton_messages.h"
@@ -24,6 +27,8 @@ v1::TrainOptions ToProto(const TrainOptions& options) {
     const auto* field = v1::TrainOptions::descriptor()->FindFieldByName(name);
     if constexpr (std::is_enum_v<T>) {
       fields.SetString(&message, field, ChoiceName(value));
+    } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
+      fields.SetString(&message, field, FormatPlacedJoints(value));
     } else if constexpr (std::is_same_v<T, double>) {
       fields.SetDouble(&message, field, value);
     } else if constexpr (std::is_same_v<T, uint64_t>) {
@@ -47,6 +52,10 @@ absl::StatusOr<TrainOptions> FromProto(const v1::TrainOptions& message) {
       absl::StatusOr<T> choice = ParseChoice<T>(name, fields.GetString(message, field));
       if (choice.ok()) value = *choice;
       status.Update(choice.status());
+    } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
+      absl::StatusOr<T> placed = ParsePlacedJoints(fields.GetString(message, field));
+      if (placed.ok()) value = *std::move(placed);
+      status.Update(WithContext(absl::StrCat("option ", name), placed.status()));
     } else if constexpr (std::is_same_v<T, double>) {
       value = fields.GetDouble(message, field);
     } else if constexpr (std::is_same_v<T, uint64_t>) {

@@ -97,7 +97,7 @@ TEST_F(DracoChildTest, WhatIsNoReplyIsAnErrorThatNamesTheFile) {
            {Reply(1, 1) + Print(corner) + Print(beyond), kDataLoss, "impossible"},
            {Reply(1, 1) + Print(corner) + Print(before), kDataLoss, "impossible"},
            {Reply(0, 0) + "printf x\n", kDataLoss, "wrote too much"},
-           {Reply(0, 0) + "exit 3\n", kInternal, "ended badly"}}) {
+           {Reply(0, 0) + "exit 3\n", kDataLoss, "ended badly"}}) {
     EXPECT_THAT(Decode(child.script),
                 HasStatus(child.code, AllOf(HasSubstr("x.drc: "), HasSubstr(child.message))))
         << child.script;

@@ -187,14 +187,17 @@ TEST_F(ServerAnswersTest, ListsOfTheServerAreTablesAndJson) {
   JobInfo job = Job("j1", JobState::kRunning);
   job.stage = "learn";
   job.fraction = .4567;
+  job.eta_seconds = 95;
   job.name = "dancer";
   job.options = CompressOptions();
   ServeJobs({job});
   const Outcome table = Run({"jobs"});
-  EXPECT_THAT(table.out, AllOf(HasSubstr("running"), HasSubstr("learn"), HasSubstr("46 %"),
-                               HasSubstr("compression"), HasSubstr("dancer")));
+  EXPECT_THAT(table.out,
+              AllOf(HasSubstr("running"), HasSubstr("learn"), HasSubstr("46 %"),
+                    HasSubstr("1 min 35 s"), HasSubstr("compression"), HasSubstr("dancer")));
   const auto json = nlohmann::json::parse(Run({"jobs", "--json"}).out);
   EXPECT_EQ(json[0]["fraction"], .4567);
+  EXPECT_EQ(json[0]["eta_seconds"], 95);
   EXPECT_FALSE(json[0].contains("error"));
   EXPECT_THAT(Run({"jobs", "--quiet"}).out, Not(testing::IsEmpty()));  // it is the result
 }

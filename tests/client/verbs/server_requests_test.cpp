@@ -58,8 +58,10 @@ TEST_F(ServerRequestsTest, TrainingSendsClipsOptionsAndTheRigWithItsLocks) {
   for (const auto& joint : rig["joints"]) {
     EXPECT_EQ(joint.value("locked", false), joint["name"] != "hips");
   }
-  ExpectRefused(Run({"train", input, "-o", output_}), "train");
+  ExpectRefused(Run({"train", input, "-o", output_, "--at", "head=0,1.7,0", "hips=0,.9,.05"}),
+                "train");
   EXPECT_EQ(request.rig(), "");
+  EXPECT_EQ(request.options().placed_joints(), "head=0,1.7,0 hips=0,0.9,0.05");
 }
 
 TEST_F(ServerRequestsTest, ADetachedTrainingPrintsItsJobAndWaitsForNothing) {

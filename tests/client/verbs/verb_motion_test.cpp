@@ -29,6 +29,7 @@ TEST_F(MotionVerbTest, WithoutEditsAMotionComesBack) {
   ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
   EXPECT_EQ(nlohmann::json::parse(outcome.out),
             (nlohmann::json{{"schema", "pleat.motion_written/1"},
+                            {"output", output_},
                             {"num_frames", TubeFiles::kNumMotionFrames},
                             {"num_joints", 3}}));
   const Motion before = Read(files_.motion_path()), after = Read(output_);

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "client/tube_files.h"
 
 namespace pleat {
@@ -50,6 +52,21 @@ TEST_F(RenderVerbTest, ASheetHasATileForEveryFrameAndARowForEveryInput) {
   ASSERT_EQ(Render({input, input}, {"--count", "3", "--label", "a", "--label", "b"}).code,
             ExitCode::kOk);
   EXPECT_GE(Height(), height + 64);
+}
+
+TEST_F(RenderVerbTest, JsonNamesThePictureAndWhatTheReaderNoticed) {
+  const std::string mesh = files_.File("two.obj");
+  ASSERT_THAT(WriteFile(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n"), IsOk());
+  // A quotation mark, a line break, and a byte that is not UTF-8.
+  const std::string output = files_.File("a\"b\n\xe6.png");
+  const Outcome outcome = RunPleat({"render", mesh, "--json", "--count", "1", "-o", output});
+  ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
+  EXPECT_THAT(ReadFile(output).value(), StartsWith("\x89PNG"));
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["schema"], "pleat.render/1");
+  EXPECT_EQ(json["output"], files_.File("a\"b\n\uFFFD.png"));
+  ASSERT_EQ(json["input_notes"].size(), 1u);
+  EXPECT_EQ(json["input_notes"][0]["kind"], "faces_left_out");
 }
 
 TEST_F(RenderVerbTest, TheViewerCanStandElsewhere) {

@@ -6,6 +6,8 @@
 
 #include "client/run_pleat.h"
 #include "pleat/base/file.h"
+#include "pleat/character/placed_joints.h"
+#include "pleat/formats/model_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "support/capsule_figure.h"
 #include "support/status_matchers.h"
@@ -111,6 +113,30 @@ TEST(RigVerb, JointsThatAPersonPlacesStay) {
   EXPECT_NEAR(joints[kRightFoot]["position_m"][1].get<double>(), .1, 1e-6);
   EXPECT_EQ(RunPleat({"rig", folder.File("figure.pseq"), "--at", "leftHand=1"}).code,
             ExitCode::kUsage);
+}
+
+TEST(RigVerb, TrainingTakesThePlacedJointsHereAndInAStore) {
+  const TemporaryFolder folder;
+  WriteFigure(folder, 4);
+  const auto train = [&](const std::string& model, std::vector<std::string> others) {
+    std::vector<std::string> arguments = {"train",     folder.File("figure.pseq"),
+                                          "--local",   "-q",
+                                          "-o",        folder.File(model),
+                                          "--learner", "ridge",
+                                          "--refine",  "none",
+                                          "--at",      "leftHand=.5,1.2,.1"};
+    arguments.insert(arguments.end(), others.begin(), others.end());
+    const Outcome outcome = RunPleat(arguments);
+    ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
+  };
+  train("here.pleat", {});
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto model, ReadModelFile(folder.File("here.pleat")));
+  EXPECT_TRUE(
+      model->skeleton().rest_position(kLeftHand).isApprox(Eigen::Vector3d(.5, 1.2, .1), 1e-6));
+  EXPECT_EQ(FormatPlacedJoints(model->options().placed_joints), "leftHand=0.5,1.2,0.1");
+  train("stored.pleat", {"--data-dir", folder.File("store")});
+  EXPECT_EQ(ReadFile(folder.File("stored.pleat")).value(),
+            ReadFile(folder.File("here.pleat")).value());
 }
 
 }  // namespace

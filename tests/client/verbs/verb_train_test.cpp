@@ -69,6 +69,11 @@ TEST_F(TrainVerbTest, CommandLinesThatLackSomethingAreUsageErrors) {
                   "--lock needs --rig"),
         std::pair(std::vector<std::string>{"train", input, "--local", "--skin", "1", "-o", model_},
                   "--skin chooses"),
+        std::pair(std::vector<std::string>{"train", input, "--local", "-o", model_, "--rig",
+                                           files_.rig_path(), "--at", "head=0,1,0"},
+                  "--at places"),
+        std::pair(std::vector<std::string>{"train", input, "--local", "-o", model_, "--at", "head"},
+                  "x,y,z"),
         std::pair(std::vector<std::string>{"train", input, "--local", "--detach", "-o", model_},
                   "--detach needs a server"),
         std::pair(

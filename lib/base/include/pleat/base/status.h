@@ -13,6 +13,10 @@ namespace pleat {
 // The same error with "where: " in front of its message; OK stays OK.
 absl::Status WithContext(absl::string_view where, absl::Status status);
 
+// The error of a system call: "message: the system's words for `code`", where `code` is an errno.
+// Codes that are rare are never kUnknown, which would blame Pleat for what a disk or a path does.
+absl::Status ErrnoStatus(int code, absl::string_view message);
+
 template <typename T>
 absl::StatusOr<T> WithContext(absl::string_view where, absl::StatusOr<T> value) {
   if (value.ok()) return value;

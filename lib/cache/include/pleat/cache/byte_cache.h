@@ -108,9 +108,9 @@ class ByteCache {
   static absl::StatusOr<Loaded> Call(const Loader& load, const std::string& key) {
     try {
       return load(key);
-    } catch (const std::exception& error) {
+    } catch (const std::exception&) {  // memory, most likely; its text is for developers
       return absl::ResourceExhaustedError(std::string("cannot load '") + key +
-                                          "': " + error.what());
+                                          "': it may be too large for the memory that is left");
     }
   }
 

@@ -17,6 +17,9 @@ namespace pleat {
 // Resources are not choices: they never change the result and are not stored.
 struct TrainResources {
   int num_threads = 0;  // 0 = one per core
+  // True: the caller has looked for frames that jump and the clips have none (FindFrameJumps), so
+  // that they are not looked for again.
+  bool clips_are_known_without_jumps = false;
 };
 
 // What a training run reports beside the model. The record of the model holds the rest.

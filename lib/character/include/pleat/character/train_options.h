@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "pleat/character/option_choices.h"
+#include "pleat/character/placed_joints.h"
 
 namespace pleat {
 
@@ -38,6 +39,8 @@ struct TrainOptions {
   int max_components = 128;        // upper bound of the PCA basis, 1..1024
   uint64_t seed = 1;               // for everything random
   JumpPolicy jumps = JumpPolicy::kRefuse;  // of clips whose frames jump
+  // Joints of the automatic rig that a person placed in the rest frame, in meters.
+  std::vector<PlacedJoint> placed_joints = {};
 
   // The published settings: the SGPLVM on a control mesh of 5 %, the pose fit "walk" and world axes
   // (paper, section IV).
@@ -64,7 +67,8 @@ std::string FormatTrainOptions(const TrainOptions& options);
 absl::StatusOr<TrainOptions> ParseTrainOptions(absl::string_view text);
 
 // Calls visit(name, member&) for every option. Files, the wire, reports and flags share this one
-// list. A member is an enum with ChoicesOf, an int, a double or a uint64_t.
+// list. A member is an enum with ChoicesOf, an int, a double, a uint64_t or a list of placed
+// joints.
 template <typename Options, typename Visitor>
 void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("learner", options.learner);
@@ -89,6 +93,7 @@ void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("max_components", options.max_components);
   visit("seed", options.seed);
   visit("jumps", options.jumps);
+  visit("placed_joints", options.placed_joints);
 }
 
 }  // namespace pleat

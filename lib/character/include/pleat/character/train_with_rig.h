@@ -10,6 +10,10 @@
 
 namespace pleat {
 
+// Checks the options of a training with the user's own rig: those of ValidateTrainOptions, and that
+// none places joints of the automatic one.
+absl::Status CheckOptionsWithRig(const TrainOptions& options);
+
 // Does the same as TrainCharacter with `rig` in place of the automatic one: with its joints and
 // their names, and with its weights or, where it has none, heat weights on its rest frame.
 // Everything after the rig is the same, except that refinement leaves its locked joints alone. The

@@ -32,16 +32,18 @@ struct RigFile {
   int rest_frame = 0;
   bool is_locked = false;          // locks all joints, including those that are added
   std::vector<int> locked_joints;  // ascending
+  std::vector<InputNote> notes;    // what was decided for the user
 };
 
 // Reads a rig from hostile JSON. kInvalidArgument says what is wrong and where, kResourceExhausted
 // names the limit that is exceeded.
 absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& limits = {});
 // Reads a skin of a hostile binary glTF 2.0 file: its joints with parents before children, rest
-// positions from the inverse bind matrices (from the nodes where there are none), and the first
-// four influences of every vertex of the mesh primitives that use the skin. skin: the name or the
-// number of the skin, counted from 0; it may be empty when the file has one. The errors are those
-// of DecodeRigJson, also for buffers outside the file and for compressed meshes.
+// positions from the inverse bind matrices (from the nodes where there are none), and the
+// influences of every vertex of the mesh primitives that use the skin, of all their sets (JOINTS_0,
+// JOINTS_1, ...). skin: the name or the number of the skin, counted from 0; it may be empty when
+// the file has one. The errors are those of DecodeRigJson, also for buffers outside the file and
+// for compressed meshes.
 absl::StatusOr<RigFile> DecodeRigGlb(std::string_view bytes, const MeshLimits& limits = {},
                                      std::string_view skin = {});
 // Reads a GLB, glTF text (.gltf) with its buffers beside it, or JSON. What the bytes are counts
@@ -51,8 +53,9 @@ absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& l
 
 // Returns the rig for the clip's own vertices. What EncodeRig wrote comes back as it was. The
 // weights of a GLB are carried over by place: each vertex of the clip takes those of the nearest
-// vertex of the file. A GLB that differs from the clip by a rigid motion or a unit is aligned, and
-// `notes`, which may be null, says how. kInvalidArgument when counts differ, when the meshes do not
+// vertex of the file. A GLB that differs from the clip by a rigid motion or a unit is aligned.
+// `notes`, which may be null, receives those of the file, how it was aligned and how many
+// influences were left out. kInvalidArgument when counts differ, when the meshes do not
 // lie on each other within 1 % of the diagonal, or when a joint lies far from the mesh.
 absl::StatusOr<UserRig> ResolveRig(const RigFile& given, const MeshSequence& clip,
                                    std::vector<InputNote>* notes = nullptr);

@@ -28,9 +28,10 @@ struct ReadSequenceOptions {
 };
 
 // Reads `input`, which is one of
-// - a folder of .obj, .ply or .drc files, or a folder with one .pc2 and its mesh
+// - a folder of .obj, .ply or .drc files (of .glb or .gltf where there are no others), or a folder
+//   with one .pc2 and its mesh
 // - a glob of such files ("dir/frame_*.obj")
-// - one .obj, .ply or .drc, which is a sequence of one frame
+// - one .obj, .ply, .drc, .glb or .gltf, which is a sequence of one frame
 // - a .pc2, whose mesh is the .obj or .ply of the same stem, or template.obj or template.ply, or
 //   the only mesh of the folder with the right number of vertices, in this order
 // - a Pleat sequence file (.pseq).

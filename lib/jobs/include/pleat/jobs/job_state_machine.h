@@ -72,6 +72,8 @@ class JobStateMachine {
   void Wake();  // calls the listeners although nothing has changed
 
  private:
+  // The state with the estimate counted down since the last report. Call it with mutex_ held.
+  JobSnapshot SnapshotNow() const;
   bool Finish(JobState state, const absl::Status& error, absl::Time now);
   void Changed();
 
@@ -80,8 +82,8 @@ class JobStateMachine {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  JobSnapshot state_;           // guarded by mutex_
-  double started_seconds_ = 0;  // guarded by mutex_
+  JobSnapshot state_;                                  // guarded by mutex_
+  double started_seconds_ = 0, reported_seconds_ = 0;  // guarded by mutex_
 
   std::mutex listeners_mutex_;
   std::map<int, std::function<void()>> listeners_;  // guarded by listeners_mutex_

@@ -30,6 +30,9 @@ std::vector<FrameJump> FindFrameJumps(const MeshSequence& sequence);
 std::vector<InputNote> DescribeJumps(const std::vector<FrameJump>& jumps,
                                      const std::vector<std::string>& frame_names);
 
+// Says whether a note is one of those warnings.
+bool IsJumpNote(const InputNote& note);
+
 // kFailedPrecondition names the frames that jump; what training refuses unless it is told to take
 // them.
 absl::Status RefuseFrameJumps(const MeshSequence& sequence);
