@@ -53,7 +53,7 @@ absl::Status MakeFolder(const std::string& folder) {
     std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
   }
   if (!error) return absl::OkStatus();
-  return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot make '", folder, "'"));
+  return ErrnoStatus(error.value(), absl::StrCat("cannot make '", folder, "'"));
 }
 
 absl::Status Create(const TokenVerbOptions& options, const Session& session) {

@@ -65,11 +65,11 @@ class TokenLock {
  public:
   static absl::StatusOr<TokenLock> Take(const std::string& path) {
     const int fd = open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (fd < 0) return absl::ErrnoToStatus(errno, absl::StrCat("cannot open '", path, ".lock'"));
+    if (fd < 0) return ErrnoStatus(errno, absl::StrCat("cannot open '", path, ".lock'"));
     TokenLock lock(fd);
     while (flock(fd, LOCK_EX) != 0) {
       if (errno != EINTR) {
-        return absl::ErrnoToStatus(errno, absl::StrCat("cannot lock '", path, ".lock'"));
+        return ErrnoStatus(errno, absl::StrCat("cannot lock '", path, ".lock'"));
       }
     }
     return lock;

@@ -110,7 +110,7 @@ absl::Status UploadArea::Remove(const std::string& id) {
   std::error_code error;
   if (fs::remove(PathOf(id), error)) return absl::OkStatus();
   if (!error) return absl::NotFoundError(absl::StrCat("nothing has arrived of upload ", id));
-  return absl::ErrnoToStatus(error.value(), absl::StrCat("cannot remove upload ", id));
+  return ErrnoStatus(error.value(), absl::StrCat("cannot remove upload ", id));
 }
 
 std::vector<std::string> UploadArea::RemoveUntouchedSince(absl::Time time) {

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/time.h"
+#include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
@@ -38,7 +39,7 @@ absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::Open(const std::string& path
                                                          std::function<int64_t()> clock) {
   const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   if (fd < 0) {
-    return absl::ErrnoToStatus(errno, absl::StrCat("cannot open the audit log '", path, "'"));
+    return ErrnoStatus(errno, absl::StrCat("cannot open the audit log '", path, "'"));
   }
   return std::unique_ptr<AuditLog>(new AuditLog(fd, std::move(clock)));
 }
@@ -49,7 +50,7 @@ absl::Status AuditLog::Write(const AuditEntry& entry) {
   const std::string line = Line(entry, clock_());
   const ssize_t written = write(fd_, line.data(), line.size());
   if (written == static_cast<ssize_t>(line.size())) return absl::OkStatus();
-  return absl::ErrnoToStatus(written < 0 ? errno : ENOSPC, "cannot write to the audit log");
+  return ErrnoStatus(written < 0 ? errno : ENOSPC, "cannot write to the audit log");
 }
 
 }  // namespace pleat
