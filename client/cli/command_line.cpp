@@ -18,8 +18,8 @@ namespace {
 std::unique_ptr<CLI::App> MakeParser(Session& session) {
   auto app = std::make_unique<CLI::App>(
       "Pleat: from a captured mesh sequence to an editable character.\n"
-      "INPUT is a folder or quoted glob of .obj, .ply or .drc files, a .pc2 beside its .obj, or a "
-      ".pseq.",
+      "INPUT is a folder or quoted glob of .obj, .ply or .drc files, a .pc2 beside its .obj, an "
+      ".abc (Alembic), or a .pseq.",
       "pleat");
   app->require_subcommand(1);
   app->footer(std::string("\n") + ExitCodeHelp());

@@ -26,6 +26,8 @@ void AddServerFlags(CLI::App* verb, Session& session);
 // RunsOnService says which of the two it is.
 void AddOptionalServerFlags(CLI::App* verb, Session& session);
 bool RunsOnService(const Session& session);
+// Adds --object, for verbs that read sequences.
+void AddObjectFlag(CLI::App* verb, Session& session);
 // Adds --force, for verbs that write files.
 void AddForceFlag(CLI::App* verb, Session& session);
 // Adds --local alone, for verbs that always run in this process.
