@@ -86,7 +86,7 @@ TEST(AlembicTimeTest, FractionsComeBackExactly) {
   for (const FrameRate rate :
        {FrameRate{24, 1}, FrameRate{25, 1}, FrameRate{30, 1}, FrameRate{60, 1}, FrameRate{120, 1},
         FrameRate{24000, 1001}, FrameRate{30000, 1001}, FrameRate{60000, 1001}, FrameRate{1, 1},
-        FrameRate{15, 2}, FrameRate{2997, 100}, FrameRate{23976, 1000 / 8 * 8}, FrameRate{1, 3},
+        FrameRate{15, 2}, FrameRate{2997, 100}, FrameRate{2997, 125}, FrameRate{1, 3},
         FrameRate{12345, 678}, FrameRate{999983, 999979}, FrameRate{10000, 1}}) {
     const auto read = RateOfStep(static_cast<double>(rate.denominator) / rate.numerator);
     ASSERT_TRUE(read);
