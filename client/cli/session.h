@@ -31,6 +31,7 @@ struct Session {
   bool quiet = false;
   bool force = false;   // existing files may be replaced
   bool strict = false;  // warnings are errors
+  std::string object;   // --object: of Alembic inputs, empty = all meshes that move
 
   // The callback of the chosen verb in the parser sets these two.
   std::string verb;

@@ -1,12 +1,14 @@
 #include "pleat/formats/sequence_reader.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "pleat/base/file.h"
+#include "pleat/formats/alembic_writer.h"
 #include "pleat/formats/obj_writer.h"
 #include "pleat/formats/pc2.h"
 #include "pleat/formats/sequence_file.h"
@@ -170,6 +172,34 @@ TEST_F(SequenceReaderTest, NamesOfSequencesAreUtf8) {
   EXPECT_EQ(sequence.name(), "B\xc3\xa6r_1");
 }
 
+TEST_F(SequenceReaderTest, AlembicArchivesAreReadAloneAndInAFolder) {
+  WriteBox("f0.obj", 0);
+  WriteBox("f1.obj", 1);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence frames, Read(""));
+  std::filesystem::create_directory(folder_.File("cache"));
+  ASSERT_THAT(WriteAlembic(folder_.File("cache/a.abc"), frames), IsOk());
+  for (const char* input : {"cache", "cache/a.abc", "cache/*.abc"}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence, Read(input, {.object = "/"}));
+    EXPECT_EQ(sequence.name(), "a");
+    EXPECT_EQ(sequence.topology(), box_.topology);
+    ASSERT_EQ(sequence.num_frames(), 2);
+    EXPECT_EQ(sequence.frame(1), Frame(1));
+    EXPECT_EQ(Notes(), "");
+  }
+  EXPECT_THAT(Read("cache/a.abc", {.object = "/b"}),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("no object '/b'")));
+  Write("cache/renamed.obj", ReadFile(folder_.File("cache/a.abc")).value());
+  EXPECT_THAT(Read("cache/renamed.obj"), HasStatus(kInvalid, HasSubstr("the ending .abc")));
+}
+
+TEST_F(SequenceReaderTest, ObjectsOfWhatIsNoArchiveAreANote) {
+  WriteBox("f0.obj", 0);
+  for (const char* input : {"", "f0.obj", "*.obj"}) {
+    EXPECT_THAT(Read(input, {.object = "/a"}), IsOk());
+    EXPECT_THAT(Notes(), HasSubstr("object_ignored")) << input;
+  }
+}
+
 TEST_F(SequenceReaderTest, ForeignFilesAreNamedWhateverTheirExtension) {
   for (const char* name : {"a.obj", "a.ply", "a.pc2", "a.pseq", "a.abc"}) {
     Write(name, "version https://git-lfs.github.com/spec/v1\noid sha256:12\n");
@@ -210,7 +240,8 @@ TEST_F(SequenceReaderTest, EmptyAndDoubledFramesAreNamed) {
 TEST_F(SequenceReaderTest, UnknownInputListsWhatIsKnown) {
   Write("a.fbx", "Kaydara");
   EXPECT_THAT(Read("a.fbx"),
-              HasStatus(kInvalid, AllOf(HasSubstr("'.fbx'"), HasSubstr(".obj, .ply, .drc, .glb"))));
+              HasStatus(kInvalid, AllOf(HasSubstr("'.fbx'"),
+                                        HasSubstr(".obj, .ply, .drc, .glb, .gltf, .pc2, .abc"))));
   EXPECT_THAT(Read(""), HasStatus(absl::StatusCode::kNotFound,
                                   AllOf(HasSubstr(".obj, .ply"), HasSubstr("'.fbx'"))));
   EXPECT_THAT(Read("*.fbx"), HasStatus(kInvalid, HasSubstr("unknown extension")));

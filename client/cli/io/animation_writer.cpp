@@ -10,6 +10,7 @@
 #include "cli/exit_code.h"
 #include "cli/io/draco_folder.h"
 #include "pleat/base/status.h"
+#include "pleat/formats/alembic_writer.h"
 #include "pleat/formats/obj_writer.h"
 #include "pleat/formats/pc2.h"
 #include "pleat/formats/ply_writer.h"
@@ -43,10 +44,14 @@ class PointCacheWriter : public AnimationWriter {
   PointCache cache_;
 };
 
+// Collects a whole sequence for one file, a .pseq or an .abc.
 class SequenceFileWriter : public AnimationWriter {
  public:
-  SequenceFileWriter(std::string path, const Topology& topology, AnimationOptions options)
-      : path_(std::move(path)), topology_(topology), options_(std::move(options)) {}
+  using Write = absl::Status (*)(const std::string& path, const MeshSequence& sequence);
+
+  SequenceFileWriter(std::string path, const Topology& topology, AnimationOptions options,
+                     Write write)
+      : path_(std::move(path)), topology_(topology), options_(std::move(options)), write_(write) {}
 
   absl::Status AddFrame(const Eigen::Matrix3Xf& positions) override {
     frames_.push_back(positions);
@@ -60,13 +65,14 @@ class SequenceFileWriter : public AnimationWriter {
     options.appearance = options_.appearance;
     PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
                            MeshSequence::Create(topology_, std::move(frames_), options));
-    return WriteSequenceFile(path_, sequence);
+    return write_(path_, sequence);
   }
 
  private:
   std::string path_;
   Topology topology_;
   AnimationOptions options_;
+  Write write_;
   std::vector<Eigen::Matrix3Xf> frames_;
 };
 
@@ -138,13 +144,14 @@ absl::StatusOr<AnimationFormat> ChooseAnimationFormat(const std::string& name,
                                                       AnimationFormat folder_format) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (name == "pc2" || (name == "auto" && extension == ".pc2")) return AnimationFormat::kPc2;
+  if (name == "abc" || (name == "auto" && extension == ".abc")) return AnimationFormat::kAbc;
   if (name == "pseq" || (name == "auto" && extension == ".pseq")) return AnimationFormat::kPseq;
   if (name == "obj") return AnimationFormat::kObj;
   if (name == "ply") return AnimationFormat::kPly;
   if (name == "drc") return AnimationFormat::kDraco;
   if (name == "auto") return folder_format;
   return UsageError(
-      absl::StrCat("format '", name, "' is unknown; choose auto, pc2, pseq, obj, ply or drc"));
+      absl::StrCat("format '", name, "' is unknown; choose auto, pc2, abc, pseq, obj, ply or drc"));
 }
 
 std::unique_ptr<AnimationWriter> MakeAnimationWriter(AnimationFormat format,
@@ -155,7 +162,10 @@ std::unique_ptr<AnimationWriter> MakeAnimationWriter(AnimationFormat format,
     case AnimationFormat::kPc2:
       return std::make_unique<PointCacheWriter>(path, topology, std::move(options));
     case AnimationFormat::kPseq:
-      return std::make_unique<SequenceFileWriter>(path, topology, std::move(options));
+      return std::make_unique<SequenceFileWriter>(path, topology, std::move(options),
+                                                  WriteSequenceFile);
+    case AnimationFormat::kAbc:
+      return std::make_unique<SequenceFileWriter>(path, topology, std::move(options), WriteAlembic);
     case AnimationFormat::kObj:
     case AnimationFormat::kPly:
       return std::make_unique<MeshFolderWriter>(path, topology, std::move(options),

@@ -19,6 +19,7 @@ namespace {
 absl::StatusOr<MeshSequence> ReadWithProgress(const Session& session, const std::string& input,
                                               const std::string& fps, InputReport* report) {
   ReadSequenceOptions options;
+  options.object = session.object;
   if (!fps.empty()) {
     PLEAT_ASSIGN_OR_RETURN(options.frame_rate, ParseFrameRate(fps));
   }

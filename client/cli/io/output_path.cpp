@@ -102,6 +102,7 @@ absl::Status CheckAnimationOutput(const Session& session, const std::string& pat
     const std::string mesh_path = fs::path(path).replace_extension(".obj").string();
     return CheckOutputFiles(session, {{"-o", path, {".pc2"}}, {"-o", mesh_path, {".obj"}}});
   }
+  if (format == AnimationFormat::kAbc) return CheckOutputFiles(session, {{"-o", path, {".abc"}}});
   if (format == AnimationFormat::kPseq) {
     return CheckOutputFiles(session, {{"-o", path, {".pseq"}}});
   }
@@ -109,7 +110,8 @@ absl::Status CheckAnimationOutput(const Session& session, const std::string& pat
     return CheckContents(session, "-o", path);
   }
   if (format_name == "auto" && !EndingOf(path).empty() && !IsFolder(path)) {
-    return UnknownEnding("-o", path, ".pc2, .pseq, and none for a folder; or write a / at its end");
+    return UnknownEnding("-o", path,
+                         ".pc2, .abc, .pseq, and none for a folder; or write a / at its end");
   }
   return CheckOutputFolder(session, "-o", path);
 }

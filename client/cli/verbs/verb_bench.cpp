@@ -203,6 +203,7 @@ void AddBenchVerb(CLI::App& app, Session& session) {
                    "poses: a motion (.json), or a mesh sequence of the model's connectivity "
                    "[every joint sways]");
   verb->add_option("--fps", options->fps, "frames per second, where a sequence does not say");
+  AddObjectFlag(verb, session);
   AddLoadFlags(verb, &options->load);
   AddContentFlag(verb, &options->load.session.stream.content);
   verb->add_option("--encoding", options->encoding, "mesh, points or delta")

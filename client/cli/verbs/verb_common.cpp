@@ -28,6 +28,12 @@ absl::Status RefuseWarningsWhenStrict(const Session& session, size_t num_warning
                                                     " (refused because of --strict)"));
 }
 
+void AddObjectFlag(CLI::App* verb, Session& session) {
+  verb->add_option("--object", session.object,
+                   "PATH of the mesh to read from an .abc, or of an object with meshes below it "
+                   "[all meshes that move]");
+}
+
 void AddServerFlags(CLI::App* verb, Session& session) {
   CLI::Option* server = verb->add_option("--server", session.server,
                                          "address of pleatd [PLEAT_SERVER, else 127.0.0.1:7320]");

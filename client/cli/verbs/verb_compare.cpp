@@ -64,6 +64,7 @@ void AddCompareVerb(CLI::App& app, Session& session) {
   CLI::App* verb =
       AddVerb(app, session, "compare", "distances between corresponding vertices of two animations",
               [options, &session] { return RunCompare(*options, session); });
+  AddObjectFlag(verb, session);
   verb->add_option("INPUT", options->input, "the animation to judge")->required();
   verb->add_option("REFERENCE", options->reference, "the truth; percents are of its diagonal")
       ->required();

@@ -131,7 +131,7 @@ void AddCompressVerb(CLI::App& app, Session& session) {
   CLI::App* verb =
       AddVerb(app, session, "compress", "make an animation small, with a promised error",
               [options, &session] { return RunCompress(*options, session); });
-  verb->add_option("INPUT", options->input, "folder, glob, .pc2 or .pseq")->required();
+  verb->add_option("INPUT", options->input, "folder, glob, .pc2, .abc or .pseq")->required();
   verb->add_option("-o,--output", options->output, "the compressed sequence, OUT.plt")->required();
   verb->add_option("--max-error-mm", options->max_error_mm,
                    "no vertex of any frame is further off than this, mm")
@@ -148,6 +148,7 @@ void AddCompressVerb(CLI::App& app, Session& session) {
                  "faces may change their order (vertices never do): about 1.5 bytes less per face");
   verb->add_option("--report", options->report, "JSON report (pleat.compress/1)");
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
+  AddObjectFlag(verb, session);
   verb->add_option("--threads", options->num_threads,
                    "in this process: 0 = one per core; the result does not depend on it")
       ->check(CLI::Range(0, 1024))

@@ -170,8 +170,9 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
   CLI::App* verb =
       AddVerb(app, session, "evaluate", "train on some frames and measure the error on others",
               [options, &session] { return RunEvaluate(*options, session); });
-  verb->add_option("INPUT", options->inputs,
-                   "folder, glob, .pc2 or .pseq; several are the training clips of protocol cross")
+  verb->add_option(
+          "INPUT", options->inputs,
+          "folder, glob, .pc2, .abc or .pseq; several are the training clips of protocol cross")
       ->required();
   verb->add_option("--protocol", options->protocol,
                    "reconstruct, every5th, blocks10, last30 or cross [blocks10; of an experiment "
@@ -190,6 +191,7 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
       ->check(CLI::IsMember(LearnerNames()))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  AddObjectFlag(verb, session);
   verb->add_option("--threads", options->evaluate.resources.num_threads, "0 = one per core")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

@@ -42,6 +42,8 @@ std::string FramesPath(const std::string& folder, AnimationFormat format) {
   switch (format) {
     case AnimationFormat::kPc2:
       return folder + "/performer.pc2";
+    case AnimationFormat::kAbc:
+      return folder + "/performer.abc";
     case AnimationFormat::kPseq:
       return folder + "/performer.pseq";
     default:
@@ -112,7 +114,7 @@ void AddGenerateVerb(CLI::App& app, Session& session) {
   verb->add_option("-o,--output", options->output,
                    "folder for the sequence, truth.json and motion.json")
       ->required();
-  verb->add_option("--format", options->format, "pc2 (with its .obj), pseq, obj, ply or drc")
+  verb->add_option("--format", options->format, "pc2 (with its .obj), abc, pseq, obj, ply or drc")
       ->capture_default_str();
   verb->add_option("--seed", options->performer.seed, "of the motion")->capture_default_str();
   verb->add_option("--character-seed", options->performer.character_seed,

@@ -62,6 +62,7 @@ void AddMotionVerb(CLI::App& app, Session& session) {
       ->required();
   verb->add_option("-o,--output", options->output, "motion file (.json)")->required();
   verb->add_option("--fps", options->fps, "frames per second, where a sequence does not say");
+  AddObjectFlag(verb, session);
   verb->add_option("--scale-rotation", options->edits.scale_rotation,
                    "JOINT=FACTOR: more or less of the motion of the bone that ends in JOINT "
                    "(leftLowerArm is the upper arm); JOINT 'all' is every bone");

@@ -178,7 +178,8 @@ absl::Status CheckContent(StreamContent content, AnimationFormat format, bool fr
     return UsageError("--content control is a stream of another mesh: write it with --format drc");
   }
   if (content == StreamContent::kParameters && is_draco) {
-    return UsageError("--content parameters has no Draco frames: choose pc2, pseq, obj or ply");
+    return UsageError(
+        "--content parameters has no Draco frames: choose pc2, abc, pseq, obj or ply");
   }
   return absl::OkStatus();
 }
@@ -250,9 +251,11 @@ void AddPoseVerb(CLI::App& app, Session& session) {
   verb->add_option("MODEL", options->model, "a .pleat file, or the id of a model on the server")
       ->required();
   verb->add_option("--motion", options->motion, "motion file (.json)")->required();
-  verb->add_option("-o,--output", options->output, "OUT.pc2, OUT.pseq or a folder")->required();
-  verb->add_option("--format", options->format,
-                   "auto (by the ending of OUT; a folder gets drc), pc2, pseq, obj, ply or drc")
+  verb->add_option("-o,--output", options->output, "OUT.pc2, OUT.abc, OUT.pseq or a folder")
+      ->required();
+  verb->add_option(
+          "--format", options->format,
+          "auto (by the ending of OUT; a folder gets drc), pc2, abc, pseq, obj, ply or drc")
       ->capture_default_str();
   verb->add_option("--encoding", options->encoding,
                    "of drc: mesh (every frame can be read alone) or points (smaller)")

@@ -259,6 +259,7 @@ void AddRenderVerb(CLI::App& app, Session& session) {
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  AddObjectFlag(verb, session);
   AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }

@@ -183,6 +183,7 @@ void AddRigVerb(CLI::App& app, Session& session) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  AddObjectFlag(verb, session);
   AddForceFlag(verb, session);
   AddInProcessFlag(verb, session);
 }

@@ -276,6 +276,7 @@ void AddTrainVerb(CLI::App& app, Session& session) {
   verb->add_option("-o,--output", options->output, "model file (.pleat)");
   verb->add_option("--report", options->report, "JSON report (pleat.train/1)");
   verb->add_option("--fps", options->fps, "frames per second, where the inputs do not say");
+  AddObjectFlag(verb, session);
   verb->add_option("--threads", options->resources.num_threads,
                    "with --local: threads, 0 = one per core; the result does not depend on it")
       ->check(CLI::Range(0, 1024))

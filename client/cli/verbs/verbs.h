@@ -30,6 +30,8 @@ bool RunsOnService(const Session& session);
 // Adds --ttl-hours: how long a service keeps `what`. TtlOf gives its value; 0 hours are for ever.
 void AddTtlFlag(CLI::App* verb, const std::string& what, double* ttl_hours);
 absl::Duration TtlOf(double ttl_hours);
+// Adds --object, for verbs that read sequences.
+void AddObjectFlag(CLI::App* verb, Session& session);
 // Adds --force, for verbs that write files.
 void AddForceFlag(CLI::App* verb, Session& session);
 // Adds --local alone, for verbs that always run in this process.

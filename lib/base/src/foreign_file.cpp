@@ -24,8 +24,9 @@ constexpr Signature kSignatures[] = {
     {"\xff\xfe", "UTF-16 text: save it as UTF-8 or ASCII"},
     {"\xfe\xff", "UTF-16 text: save it as UTF-8 or ASCII"},
     {"\x89HDF\r\n\x1a\n",
-     "an HDF5 file (Alembic files of before 2013 are): export it as OBJ, PLY or .pc2"},
-    {"Ogawa", "an Alembic (Ogawa) file: export it as OBJ, PLY or .pc2"},
+     "an HDF5 file (Alembic files of before 2013 are): convert it with 'abcconvert -toOgawa', or "
+     "export it as Ogawa, OBJ, PLY or .pc2"},
+    {"Ogawa", "an Alembic (Ogawa) archive: give its name the ending .abc"},
     {"Kaydara FBX", "an FBX file: export it as OBJ, PLY or .pc2"},
     {"glTF", "a binary glTF file (GLB): give it the ending .glb"},
     {"BLENDER", "a Blender file: export it as OBJ, PLY or .pc2"},

@@ -7,9 +7,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "pleat/base/file.h"
 #include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
+#include "pleat/formats/alembic_reader.h"
 #include "pleat/formats/sequence_file.h"
 #include "sequence_inputs.h"
 
@@ -18,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr absl::string_view kKnownExtensions = ".obj, .ply, .drc, .glb, .gltf, .pc2, .pseq";
+constexpr absl::string_view kKnownExtensions = ".obj, .ply, .drc, .glb, .gltf, .pc2, .abc, .pseq";
 
 // The folder's own name, also for "." and "dir/".
 std::string FolderName(const std::string& folder) {
@@ -38,6 +40,24 @@ absl::StatusOr<MeshSequence> ReadPleatSequence(const std::string& path,
                               {sequence.name(), *options.frame_rate, sequence.appearance(), {}});
 }
 
+absl::StatusOr<MeshSequence> ReadAlembicSequence(const std::string& path,
+                                                 const InputReading& reading) {
+  const ReadSequenceOptions& options = reading.options;
+  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, options.limits.max_file_bytes));
+  return DecodeAlembic(bytes, path,
+                       {.name = fs::path(path).stem().string(),
+                        .object = options.object,
+                        .frame_rate = options.frame_rate,
+                        .limits = options.limits},
+                       reading.progress, reading.report);
+}
+
+// Formats that hold a whole animation in one file.
+bool IsAnimationFile(const std::string& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".pc2" || extension == ".abc" || extension == ".pseq";
+}
+
 // ---- Which of them the input is ----
 
 absl::Status UnknownExtension(const std::string& path) {
@@ -47,12 +67,32 @@ absl::Status UnknownExtension(const std::string& path) {
                    "'; known are ", kKnownExtensions, ", a folder of meshes, or a pattern (*, ?)"));
 }
 
-absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
-  if (IsMeshFile(path) || IsGltfFile(path)) {
-    return ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading);
+// Says that --object does not count for an input that is no archive.
+absl::StatusOr<MeshSequence> WithoutObject(absl::StatusOr<MeshSequence> sequence,
+                                           const std::string& input, const InputReading& reading) {
+  if (sequence.ok() && !reading.options.object.empty()) {
+    reading.report->notes.push_back(
+        {.kind = "object_ignored",
+         .text = absl::StrCat("'", input, "' is no Alembic archive, so it has no object '",
+                              reading.options.object, "' to choose"),
+         .refused_when_strict = true});
   }
-  if (LowerExtension(path) == ".pc2") return ReadPointCacheSequence(path, reading);
-  if (LowerExtension(path) == ".pseq") return ReadPleatSequence(path, reading.options);
+  return sequence;
+}
+
+absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
+  const std::string extension = LowerExtension(path);
+  if (extension == ".abc") return ReadAlembicSequence(path, reading);
+  if (IsMeshFile(path) || IsGltfFile(path)) {
+    return WithoutObject(ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading),
+                         path, reading);
+  }
+  if (extension == ".pc2") {
+    return WithoutObject(ReadPointCacheSequence(path, reading), path, reading);
+  }
+  if (extension == ".pseq") {
+    return WithoutObject(ReadPleatSequence(path, reading.options), path, reading);
+  }
   return UnknownExtension(path);
 }
 
@@ -65,7 +105,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
     if (entry.is_directory(error) || DisplayName(path).starts_with(".")) continue;
     if (IsMeshFile(path)) {
       meshes.push_back(path);
-    } else if (LowerExtension(path) == ".pc2" || LowerExtension(path) == ".pseq") {
+    } else if (IsAnimationFile(path)) {
       caches.push_back(path);
     } else if (IsGltfFile(path)) {
       gltf_files.push_back(path);
@@ -90,7 +130,8 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
                          ? "; it is empty"
                          : absl::StrCat("; found only ", absl::StrJoin(other_extensions, ", "))));
   }
-  return ReadFrameFiles(meshes, FolderName(folder), folder, reading);
+  return WithoutObject(ReadFrameFiles(meshes, FolderName(folder), folder, reading), folder,
+                       reading);
 }
 
 absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const InputReading& reading) {
@@ -99,8 +140,8 @@ absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const Input
   for (const std::string& path : paths) {
     if (!IsMeshFile(path) && !IsGltfFile(path)) return UnknownExtension(path);
   }
-  return ReadFrameFiles(paths, FolderName(fs::path(pattern).parent_path().string()), pattern,
-                        reading);
+  const std::string name = FolderName(fs::path(pattern).parent_path().string());
+  return WithoutObject(ReadFrameFiles(paths, name, pattern, reading), pattern, reading);
 }
 
 }  // namespace

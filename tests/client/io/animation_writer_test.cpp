@@ -41,6 +41,8 @@ absl::StatusOr<MeshSequence> Read(const std::string& path) {
 TEST(AnimationWriter, ChoosesByTheEnding) {
   EXPECT_EQ(*ChooseAnimationFormat("auto", "a/b.pc2"), AnimationFormat::kPc2);
   EXPECT_EQ(*ChooseAnimationFormat("auto", "a/b.pseq"), AnimationFormat::kPseq);
+  EXPECT_EQ(*ChooseAnimationFormat("auto", "a/b.abc"), AnimationFormat::kAbc);
+  EXPECT_EQ(*ChooseAnimationFormat("abc", "a/b"), AnimationFormat::kAbc);
   EXPECT_EQ(*ChooseAnimationFormat("auto", "a/b"), AnimationFormat::kDraco);
   EXPECT_EQ(*ChooseAnimationFormat("obj", "a/b.pc2"), AnimationFormat::kObj);
   EXPECT_TRUE(IsUsageError(ChooseAnimationFormat("gif", "a/b").status()));
@@ -64,8 +66,8 @@ TEST_P(EveryFormat, ComesBackAsItWas) {
 
 INSTANTIATE_TEST_SUITE_P(AnimationWriter, EveryFormat,
                          ::testing::Values(std::pair("a.pc2", "auto"), std::pair("a.pseq", "auto"),
-                                           std::pair("objs", "obj"), std::pair("plys", "ply"),
-                                           std::pair("drcs", "drc")));
+                                           std::pair("a.abc", "auto"), std::pair("objs", "obj"),
+                                           std::pair("plys", "ply"), std::pair("drcs", "drc")));
 
 TEST(AnimationWriter, DracoFoldersKeepTheFrameRateInBothEncodings) {
   const TemporaryFolder folder;
@@ -90,7 +92,7 @@ TEST(AnimationWriter, AShorterAnimationLeavesNoFramesOfALongerOne) {
 
 TEST(AnimationWriter, NoFramesIsAnError) {
   const TemporaryFolder folder;
-  for (const char* format : {"pc2", "pseq", "obj", "ply", "drc"}) {
+  for (const char* format : {"pc2", "abc", "pseq", "obj", "ply", "drc"}) {
     const auto writer =
         MakeAnimationWriter(*ChooseAnimationFormat(format, "x"), folder.File(format),
                             MovingTetrahedron(1).topology(), {});

@@ -163,7 +163,7 @@ TEST_F(ServerRequestsTest, ContentsThatAFormatCannotHoldAreRefusedBeforeTheCall)
   for (const auto& [content, format, hint] :
        {std::tuple("control", "pseq", "write it with --format drc"),
         std::tuple("control", "obj", "write it with --format drc"),
-        std::tuple("parameters", "drc", "choose pc2, pseq, obj or ply")}) {
+        std::tuple("parameters", "drc", "choose pc2, abc, pseq, obj or ply")}) {
     const Outcome outcome = Run({"pose", id_, "--motion", files_.motion_path(), "-o", output_,
                                  "--format", format, "--content", content});
     EXPECT_EQ(outcome.code, ExitCode::kUsage) << content << format;

@@ -7,6 +7,7 @@
 #include "client/run_pleat.h"
 #include "client/test_sequence.h"
 #include "pleat/base/file.h"
+#include "pleat/formats/alembic_writer.h"
 #include "pleat/formats/sequence_file.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -42,6 +43,18 @@ TEST_F(InspectVerbTest, JsonSaysCountsBoundsAndContent) {
   EXPECT_NEAR(json["bounds"]["max_m"][2].get<double>(), 1.04, 1e-6);
   EXPECT_EQ(json["mesh_report"]["closed"], true);
   EXPECT_EQ(json["sequence_id"].get<std::string>().size(), 64u);
+}
+
+TEST_F(InspectVerbTest, ObjectsOfAlembicArchivesAreChosen) {
+  const std::string archive = folder_.File("tetrahedron.abc");
+  ASSERT_THAT(WriteAlembic(archive, MovingTetrahedron(5)), IsOk());
+  const Outcome chosen = RunPleat(
+      {"inspect", archive, "--json", "--strict", "--object", "/tetrahedron/tetrahedronShape"});
+  ASSERT_EQ(chosen.code, ExitCode::kOk) << chosen.err;
+  EXPECT_EQ(nlohmann::json::parse(chosen.out)["sequence_id"],
+            nlohmann::json::parse(RunPleat({"inspect", path_, "--json"}).out)["sequence_id"]);
+  EXPECT_THAT(RunPleat({"inspect", archive, "--object", "/a"}).err, HasSubstr("no object '/a'"));
+  EXPECT_THAT(RunPleat({"inspect", path_, "--object", "/a"}).err, HasSubstr("no Alembic archive"));
 }
 
 TEST_F(InspectVerbTest, TheIdIsOfTheContentNotOfTheFile) {

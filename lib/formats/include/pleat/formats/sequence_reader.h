@@ -16,9 +16,12 @@
 namespace pleat {
 
 struct ReadSequenceOptions {
-  // Unset: the rate of the input where it has one (.pseq), otherwise 30 fps. The "rate" of a point
-  // cache is frames of its host's timeline per sample; it is named in a note and not used.
+  // Unset: the rate of the input where it has one (.pseq, .abc), otherwise 30 fps. The "rate" of a
+  // point cache is frames of its host's timeline per sample; it is named in a note and not used.
   std::optional<FrameRate> frame_rate{};
+  // The object of an Alembic archive that is read: a mesh, or one with meshes below it. Empty: all
+  // meshes that move. A note says when the input is no archive.
+  std::string object{};
   MeshLimits limits{};
   // The threads that read folders and globs, 0 = one per core. The result does not depend on it.
   int num_threads = 0;
@@ -29,11 +32,12 @@ struct ReadSequenceOptions {
 
 // Reads `input`, which is one of
 // - a folder of .obj, .ply or .drc files (of .glb or .gltf where there are no others), or a folder
-//   with one .pc2 and its mesh
+//   with one .pc2 and its mesh, or with one .abc
 // - a glob of such files ("dir/frame_*.obj")
 // - one .obj, .ply, .drc, .glb or .gltf, which is a sequence of one frame
 // - a .pc2, whose mesh is the .obj or .ply of the same stem, or template.obj or template.ply, or
 //   the only mesh of the folder with the right number of vertices, in this order
+// - an Alembic archive (.abc), whose meshes that move are joined
 // - a Pleat sequence file (.pseq).
 //
 // Topology and appearance are those of the first frame. The errors name the file and the fault: the
