@@ -16,8 +16,8 @@ namespace pleat {
 // Vertices that one node places: all those of a POSITION accessor.
 struct GlbPart {
   int node = -1;
-  int first_vertex = 0;                                 // in the mesh
-  int skin = -1;                                        // index in GlbMesh::skins, -1 = none
+  int first_vertex = 0;                                   // in the mesh
+  int skin = -1;                                          // index in GlbMesh::skins, -1 = none
   Eigen::Matrix3Xd positions{};                           // as the accessor has them
   std::vector<std::vector<JointInfluence>> influences{};  // of the skin; empty without one
 };

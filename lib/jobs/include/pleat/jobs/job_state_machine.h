@@ -79,7 +79,7 @@ class JobStateMachine {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
-  JobSnapshot state_;           // guarded by mutex_
+  JobSnapshot state_;                                  // guarded by mutex_
   double started_seconds_ = 0, reported_seconds_ = 0;  // guarded by mutex_
 
   std::mutex listeners_mutex_;
