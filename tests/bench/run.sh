@@ -58,6 +58,9 @@ done
 mkdir -p build/bench
 build/bin/compress_curves build/bench "${curves[@]}"
 
+echo "== obj_folder"
+build/bin/obj_folder "$out/obj"
+
 echo "== refinement"
 build/bin/refine_table "${inputs[@]}"
 

@@ -24,8 +24,8 @@ constexpr int kNumFactors = 2;  // 2 and its root, by which the step of the moti
 struct TimeShares {
   double analyzed, encoded;
 };
-constexpr TimeShares kKgShares = {.25, .95}, kBoundShares = {.06, .91};
-constexpr double kUsualKgTrials = 4, kUsualTrialsPerDirection = 1.5;
+constexpr TimeShares kKgShares = {.22, .95}, kBoundShares = {.06, .91};
+constexpr double kUsualKgTrials = 5, kUsualTrialsPerDirection = 1.5;
 constexpr double kEncodingShare = .7;  // of a trial for a KG error; the rest decodes and compares
 
 TimeShares SharesOf(CompressionGoal goal) {
@@ -89,9 +89,11 @@ absl::StatusOr<Measured> Measure(const MeshSequence& sequence, const std::string
 // How many trials are to come until a KG error is as near to the aim as it has to be. miss, before:
 // how far the last trial and the one before it were off, as logarithms; before is 0 at first.
 double ExpectedKgTrials(double miss, double before) {
-  constexpr double kHit = .005;
-  const double rate = before > 0 ? std::clamp(miss / before, .05, .7) : .3;
-  return std::max(1.0, std::log(std::max(miss, kHit) / kHit) / -std::log(rate));
+  constexpr double kHit = .005, kUsualRate = .2;
+  // The last step rarely hits at once, hence what is added.
+  constexpr double kAdded = .7, kFewest = 1.6;
+  const double rate = before > 0 ? std::clamp(miss / before, .05, .7) : kUsualRate;
+  return std::max(kFewest, std::log(std::max(miss, kHit) / kHit) / -std::log(rate) + kAdded);
 }
 
 // The largest step whose error is at most the goal's, to some percent: regula falsi on logarithms.
