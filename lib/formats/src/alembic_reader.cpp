@@ -16,6 +16,7 @@
 #include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
+#include "sequence_inputs.h"
 
 namespace pleat {
 namespace {
@@ -308,7 +309,7 @@ absl::StatusOr<MeshSequence> DecodeAlembic(std::string_view bytes, const std::st
   std::vector<InputNote> notes;
   absl::StatusOr<MeshSequence> sequence = Decode(bytes, options, progress, &notes);
   for (InputNote& note : notes) {
-    note.text = absl::StrCat(file, ": ", note.text);
+    note.text = absl::StrCat(DisplayName(file), ": ", note.text);
     if (report != nullptr) report->notes.push_back(std::move(note));
   }
   return WithContext(file, std::move(sequence));
