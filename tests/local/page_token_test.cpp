@@ -41,7 +41,8 @@ TEST(PageToken, EveryTruncationIsRefused) {
   for (size_t size = 1; size < good.size(); ++size) {
     const auto position = ParsePageToken(EntryKind::kSequence, good.substr(0, size));
     // A token that is cut between two digits is a good one, of an earlier place.
-    if (position.ok()) EXPECT_EQ(MakePageToken(EntryKind::kSequence, *position).size(), size);
+    if (!position.ok()) continue;
+    EXPECT_EQ(MakePageToken(EntryKind::kSequence, *position).size(), size);
   }
 }
 

@@ -21,7 +21,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::UnorderedElementsAre;
 
 const absl::Time kNow = absl::FromUnixSeconds(1'800'000'000);
 
@@ -47,7 +46,7 @@ TEST(RetentionOfJobs, TheNewestStayByTheirEndAndNotByTheirCreation) {
   EXPECT_THAT(ChosenIds(jobs, {.max_ended_jobs = 2}), ElementsAre("old", "b"));
   EXPECT_THAT(ChosenIds(jobs, {.max_ended_jobs = 4}), IsEmpty());
   EXPECT_THAT(ChooseJobsToRemove(jobs, {.max_ended_jobs = 3}, kNow).at(0).why,
-              HasSubstr("more than 3 jobs"));
+              HasSubstr("newest 3"));
 }
 
 TEST(RetentionOfJobs, AJobGoesWhenItIsOlderThanTheAge) {

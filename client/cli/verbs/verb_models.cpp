@@ -36,8 +36,8 @@ void AddModelsVerb(CLI::App& app, Session& session) {
                       const Progress& progress) { return service.models().Download(id, progress); },
        .file_ending = ".pleat",
        .json = ModelJson,
-       .header = {"id", "name", "learner", "vertices", "frames", "error %", "size",
-                  "created (UTC)"},
+       .header = {"id", "name", "learner", "vertices", "frames", "error %", "size", "created (UTC)",
+                  "kept until"},
        .row = ModelRow});
 }
 

@@ -119,8 +119,8 @@ std::vector<JobToRemove> ChooseJobsToRemove(std::vector<EndedJob> jobs, const Re
           {std::move(jobs[i]),
            absl::StrCat("it ended more than ", absl::FormatDuration(rules.max_job_age), " ago")});
     } else if (i < num_too_many) {
-      chosen.push_back({std::move(jobs[i]), absl::StrCat("more than ", rules.max_ended_jobs,
-                                                         " jobs have ended since")});
+      chosen.push_back({std::move(jobs[i]), absl::StrCat("only the newest ", rules.max_ended_jobs,
+                                                         " that have ended stay")});
     }
   }
   return chosen;

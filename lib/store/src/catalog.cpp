@@ -225,19 +225,19 @@ absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListExpired(EntryKind kind,
 }
 
 absl::Status Catalog::Change(const char* sql, EntryKind kind, const std::string& id,
-                             int64_t value) {
+                             std::optional<int64_t> value) {
   std::lock_guard lock(writer_->mutex());
   Statement statement(writer_.get(), sql);
   statement.Bind(1, EntryKindName(kind));
   statement.Bind(2, id);
-  statement.Bind(3, value);
+  if (value) statement.Bind(3, *value);
   PLEAT_RETURN_IF_ERROR(statement.Step("change").status());
   if (sqlite3_changes(writer_->handle()) > 0) return absl::OkStatus();
   return NotThere(kind, id);
 }
 
 absl::Status Catalog::Delete(EntryKind kind, const std::string& id) {
-  return Change("DELETE FROM entries WHERE kind=?1 AND id=?2 AND ?3=0", kind, id, 0);
+  return Change("DELETE FROM entries WHERE kind=?1 AND id=?2", kind, id);
 }
 
 absl::Status Catalog::DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms) {

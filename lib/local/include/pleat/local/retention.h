@@ -28,9 +28,9 @@ struct RetentionRules {
 };
 
 struct EndedJob {
-  std::string id;
-  std::string name;                 // of its result
-  std::optional<absl::Time> ended;  // none: not known, so it counts as older than all others
+  std::string id{};
+  std::string name{};                 // of its result
+  std::optional<absl::Time> ended{};  // none: not known, so it counts as older than all others
 };
 
 struct JobToRemove {
@@ -55,7 +55,7 @@ JobsOfRetention JobsInRows(StoredFiles* files);
 
 struct RetentionTarget {
   StoredFiles* files = nullptr;
-  JobsOfRetention jobs;
+  JobsOfRetention jobs{};
   std::function<void(const std::string& id)> on_model_removed{};  // may be empty
   // Receives one sentence about each thing that was removed, with its name. May be empty.
   std::function<void(const std::string& sentence)> on_removed{};

@@ -11,10 +11,10 @@ namespace pleat {
 inline constexpr absl::Duration kKeepForEver = absl::InfiniteDuration();
 
 struct EntryLife {
-  std::optional<absl::Time> created;  // when it was first stored; none: not known
+  std::optional<absl::Time> created{};  // when it was first stored; none: not known
   // When its time to live is over: from then on retention may remove it. None: never. Of several
   // uploads of one content the longest life counts.
-  std::optional<absl::Time> expires;
+  std::optional<absl::Time> expires{};
   bool pinned = false;  // retention never removes it
 };
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,8 @@ std::string CatalogPath(const std::string& data_dir);
 inline constexpr const char* kCatalogSuffixes[] = {"-wal", "-shm", ""};
 
 struct CatalogEntry {
-  std::string id;
-  std::string record;           // the owner's own bytes
+  std::string id{};
+  std::string record{};         // the owner's own bytes
   int attempts = 0;             // jobs: how often one was started
   int64_t created_unix_ms = 0;  // when it was first added; 0: not known
   int64_t expires_unix_ms = 0;  // when retention may remove it; 0: never
@@ -120,7 +121,8 @@ class Catalog {
   // Selects the rows of entries that `conditions`, the rest of the statement, is about.
   std::string Select(const char* conditions) const;
   // Runs a statement that changes the entry ?1, ?2; kNotFound when it changes none. `value`: ?3.
-  absl::Status Change(const char* sql, EntryKind kind, const std::string& id, int64_t value);
+  absl::Status Change(const char* sql, EntryKind kind, const std::string& id,
+                      std::optional<int64_t> value = std::nullopt);
 
   std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections
   std::unique_ptr<Database> writer_;
