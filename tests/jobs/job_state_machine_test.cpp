@@ -76,14 +76,14 @@ TEST(JobStateMachineTest, EstimatesTheEndAndNeverGoesBack) {
 TEST(JobStateMachineTest, TheFirstMomentsAndTheEndHaveNoEstimate) {
   double now = 0;
   JobStateMachine job(Draft(), 0, [&] { return now; });
-  ASSERT_TRUE(job.Start());
+  ASSERT_TRUE(job.Start(kNow));
   now = .5;
   job.Report({"rig", .1, {}});
   EXPECT_FALSE(job.snapshot().info.eta_seconds.has_value());
   now = 60;
   job.Report({"rig", .01, {}});
   EXPECT_DOUBLE_EQ(job.snapshot().info.eta_seconds.value(), 540);
-  ASSERT_TRUE(job.Succeed("model", {}));
+  ASSERT_TRUE(job.Succeed("model", {}, kNow));
   EXPECT_FALSE(job.snapshot().info.eta_seconds.has_value());
 }
 
