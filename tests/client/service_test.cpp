@@ -46,7 +46,7 @@ TEST(Service, CompletesIdsFromTheirFirstDigits) {
   std::vector<ModelInfo> infos(2);
   infos[0].id = "abc1";
   infos[1].id = "abd2";
-  ON_CALL(models, List).WillByDefault(testing::Return(infos));
+  ON_CALL(models, ListPage).WillByDefault(testing::Return(Page<ModelInfo>{infos, ""}));
   EXPECT_EQ(FindModel(models, "abc").value_or(""), "abc1");
   EXPECT_EQ(FindModel(models, "abd2").value_or(""), "abd2");
   EXPECT_TRUE(IsUsageError(FindModel(models, "ab").status()));
