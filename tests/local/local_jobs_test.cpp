@@ -63,7 +63,8 @@ class LocalJobsTest : public testing::Test {
     b_ = folder_.sequences().Upload(MakeSwayingTube(6, "b"), {})->id;
     jobs_ = std::make_unique<LocalJobs>(
         &folder_.files(), &folder_.sequences(),
-        JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1), 1);
+        JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1),
+        LocalJobsOptions{});
     EXPECT_THAT(jobs_->Start(), IsOk());
   }
   ~LocalJobsTest() override {
