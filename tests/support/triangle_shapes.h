@@ -100,9 +100,8 @@ struct Capsule {
   double start_radius, end_radius;
 };
 
-// The union of capsules, slightly rounded where they meet, cut off flat at the height `floor`.
-inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double cell,
-                                    double floor = -1e9) {
+// The union of capsules, slightly rounded where they meet.
+inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double cell) {
   Eigen::AlignedBox3d box;
   for (const Capsule& capsule : capsules) {
     const double radius = std::max(capsule.start_radius, capsule.end_radius) + 2 * cell;
@@ -121,7 +120,7 @@ inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double
           capsule.start_radius + share * (capsule.end_radius - capsule.start_radius);
       nearest = std::min(nearest, (capsule.start + share * axis - point).norm() - radius);
     }
-    return std::max(nearest, floor - point.y());
+    return nearest;
   };
   return PolygonizeShape(signed_distance, box, cell);
 }

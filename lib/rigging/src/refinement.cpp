@@ -1,10 +1,7 @@
 #include "pleat/rigging/refinement.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 #include "pleat/geometry/point_index.h"
 #include "pleat/skeleton/human_template.h"
@@ -36,18 +33,21 @@ class RefinementObjective {
         samples_(medial_samples),
         places_(PositionsOf(medial_samples), kSamplesPerLeaf) {}
 
-  // Returns the energy at `joints` and fills the Gauss-Newton system. Gradient and matrix are
-  // halves of the true ones, which leaves the step the same.
+  // Returns the energy at `joints` and fills the Gauss-Newton system when `hessian` is not null.
+  // Gradient and matrix are halves of the true ones, which leaves the step the same.
   double Evaluate(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
                   Eigen::VectorXd* gradient) const {
-    hessian->setZero(joints.size(), joints.size());
-    gradient->setZero(joints.size());
+    if (hessian) {
+      hessian->setZero(joints.size(), joints.size());
+      gradient->setZero(joints.size());
+    }
     double energy = 0;
     for (int b = 1; b < kNumHumanJoints; ++b) {
       energy += Centering(joints, b, hessian, gradient);
       energy += Shape(joints, b, hessian, gradient);
     }
     energy += Proportions(joints, hessian, gradient);
+    if (!hessian) return energy;
     for (const int j : options_.held_joints) {
       gradient->segment<3>(3 * j).setZero();
       hessian->middleCols<3>(3 * j).setZero();
@@ -82,6 +82,7 @@ class RefinementObjective {
           options_.centering / options_.samples_per_bone * clarity * clarity * across;
       const Eigen::Vector3d residual = point - sample.position;
       energy += residual.dot(metric * residual);
+      if (!hessian) continue;
       const int ends[2] = {Parent(b), b};
       const double factors[2] = {1 - share, share};
       for (int i = 0; i < 2; ++i) {
@@ -176,6 +177,7 @@ class RefinementObjective {
         (.5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg)) - *options_.hip_height) /
         template_leg;
     energy += options_.proportions * residual * residual;
+    if (!hessian) return energy;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(gradient->size());
     row[3 * kLeftUpperLeg + 1] = row[3 * kRightUpperLeg + 1] = .5 / template_leg;
     *gradient += options_.proportions * residual * row;
@@ -187,25 +189,14 @@ class RefinementObjective {
   static void AddRow(double weight, double residual, const std::vector<std::pair<int, int>>& bones,
                      const std::vector<Eigen::Vector3d>& slopes, Eigen::MatrixXd* hessian,
                      Eigen::VectorXd* gradient) {
-    std::vector<std::pair<int, Eigen::Vector3d>> row;  // of the few joints that it depends on
-    const auto add = [&](int joint, const Eigen::Vector3d& slope) {
-      const auto known = std::ranges::find(row, joint, &std::pair<int, Eigen::Vector3d>::first);
-      if (known == row.end()) {
-        row.emplace_back(joint, slope);
-      } else {
-        known->second += slope;
-      }
-    };
+    if (!hessian) return;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(gradient->size());
     for (size_t i = 0; i < bones.size(); ++i) {
-      add(bones[i].first, -slopes[i]);
-      add(bones[i].second, slopes[i]);
+      row.segment<3>(3 * bones[i].first) -= slopes[i];
+      row.segment<3>(3 * bones[i].second) += slopes[i];
     }
-    for (const auto& [i, slope] : row) {
-      gradient->segment<3>(3 * i) += weight * residual * slope;
-      for (const auto& [j, other] : row) {
-        hessian->block<3, 3>(3 * i, 3 * j) += weight * slope * other.transpose();
-      }
-    }
+    *gradient += weight * residual * row;
+    hessian->noalias() += weight * row * row.transpose();
   }
 
   const RefinementOptions& options_;
@@ -222,8 +213,8 @@ Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
                                  const RefinementOptions& options) {
   const RefinementObjective objective(template_joints, medial_samples, options);
   Eigen::Matrix3Xd current = joints;
-  Eigen::MatrixXd hessian, moved_hessian;
-  Eigen::VectorXd gradient, moved_gradient;
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
   double damping = 1e-3;
   double energy = objective.Evaluate(current, &hessian, &gradient);
   for (int iteration = 0; iteration < options.max_iterations && damping < 1e8; ++iteration) {
@@ -232,8 +223,7 @@ Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
     const Eigen::VectorXd step = damped.ldlt().solve(-gradient);
     const Eigen::Matrix3Xd moved =
         current + Eigen::Map<const Eigen::Matrix3Xd>(step.data(), 3, current.cols());
-    // Most steps are taken, so that the system there is needed.
-    const double moved_energy = objective.Evaluate(moved, &moved_hessian, &moved_gradient);
+    const double moved_energy = objective.Evaluate(moved, nullptr, nullptr);
     if (!(moved_energy < energy)) {
       damping *= 10;
       continue;
@@ -241,9 +231,7 @@ Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
     const bool converged = energy - moved_energy < 1e-6 * energy;
     current = moved;
     damping = std::max(1e-9, damping * 0.1);
-    energy = moved_energy;
-    std::swap(hessian, moved_hessian);
-    std::swap(gradient, moved_gradient);
+    energy = objective.Evaluate(current, &hessian, &gradient);
     if (converged) break;
   }
   return current;
