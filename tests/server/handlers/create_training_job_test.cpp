@@ -24,7 +24,7 @@ TEST(CreateTrainingJob, HandsOverAllThatWasAsked) {
   EXPECT_CALL(mock.jobs, CreateTraining)
       .WillOnce(testing::DoAll(testing::SaveArg<0>(&asked), testing::Return(info)));
   v1::CreateTrainingJobResponse response;
-  ASSERT_THAT(CreateTrainingJob(mock.context, GoodRequest(), &response), IsOk());
+  ASSERT_THAT(CreateTrainingJob(mock.context, "ada", GoodRequest(), &response), IsOk());
   EXPECT_EQ(response.job().id(), "job-1");
   EXPECT_EQ(response.job().state(), v1::JOB_STATE_QUEUED);
   EXPECT_THAT(asked.sequence_ids, testing::ElementsAre(kId, std::string(64, 'b')));
@@ -40,11 +40,11 @@ TEST(CreateTrainingJob, WhatIsWrongNeverReachesTheService) {
   v1::CreateTrainingJobResponse response;
   v1::CreateTrainingJobRequest bad_id = GoodRequest();
   bad_id.set_sequence_ids(1, kPathId);
-  EXPECT_THAT(CreateTrainingJob(mock.context, bad_id, &response),
+  EXPECT_THAT(CreateTrainingJob(mock.context, "ada", bad_id, &response),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("sequence_ids")));
   v1::CreateTrainingJobRequest long_name = GoodRequest();
   long_name.set_model_name(std::string(257, 'n'));
-  EXPECT_THAT(CreateTrainingJob(mock.context, long_name, &response),
+  EXPECT_THAT(CreateTrainingJob(mock.context, "ada", long_name, &response),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("model_name")));
 }
 
@@ -53,7 +53,7 @@ TEST(CreateTrainingJob, PassesOnThatTheQueueIsFull) {
   EXPECT_CALL(mock.jobs, CreateTraining)
       .WillOnce(testing::Return(absl::ResourceExhaustedError("full")));
   v1::CreateTrainingJobResponse response;
-  EXPECT_THAT(CreateTrainingJob(mock.context, GoodRequest(), &response),
+  EXPECT_THAT(CreateTrainingJob(mock.context, "ada", GoodRequest(), &response),
               HasStatus(absl::StatusCode::kResourceExhausted, "full"));
 }
 
