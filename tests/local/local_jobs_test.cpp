@@ -234,7 +234,8 @@ TEST_F(LocalJobsTest, ARecordThatCannotBeReadStopsNoStart) {
   jobs_->Shutdown();
   ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kJob, {"broken", "\xff\xff\xff"}), IsOk());
   LocalJobs again(&folder_.files(), &folder_.sequences(),
-                  JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1), 1);
+                  JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1),
+                  LocalJobsOptions{});
   EXPECT_THAT(again.Start(), IsOk());
   EXPECT_THAT(folder_.problems(), testing::ElementsAre(HasSubstr("the job 'broken'")));
 }
