@@ -165,7 +165,8 @@ TEST_F(AdmissionTest, TheHealthCheckNeedsNoToken) {
   tokens_.Add("Ada", "admin");
   grpc::GenericStub stub(mock_.channel);
   grpc::CompletionQueue queue;
-  grpc::ByteBuffer request, response;
+  const grpc::Slice nothing("");
+  grpc::ByteBuffer request(&nothing, 1), response;
   grpc::Status status;
   const auto call =
       stub.PrepareUnaryCall(&mock_.call, "/grpc.health.v1.Health/Check", request, &queue);

@@ -79,8 +79,10 @@ class TlsServerTest : public testing::Test {
 TEST_F(TlsServerTest, OldVersionsAreRefusedByTheServer) {
   const MockServer server({.tls = files_});
   EXPECT_EQ(Handshake(server.server->port(), TLS1_3_VERSION), 0);
-  EXPECT_EQ(Handshake(server.server->port(), TLS1_2_VERSION), SSL_R_TLSV1_ALERT_PROTOCOL_VERSION);
-  EXPECT_EQ(Handshake(server.server->port(), TLS1_1_VERSION), SSL_R_TLSV1_ALERT_PROTOCOL_VERSION);
+  // The server hangs up; gRPC sends no alert. A refusal by the client would have another reason.
+  for (const int version : {TLS1_2_VERSION, TLS1_1_VERSION}) {
+    EXPECT_EQ(Handshake(server.server->port(), version), SSL_R_UNEXPECTED_EOF_WHILE_READING);
+  }
 }
 
 TEST_F(TlsServerTest, AReplacedCertificateIsUsedWithoutARestart) {

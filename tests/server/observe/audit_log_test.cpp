@@ -44,7 +44,7 @@ TEST_F(AuditLogTest, OneLineSaysWhoDidWhat) {
                              .seconds = .25}),
               IsOk());
   ASSERT_EQ(Lines().size(), 1);
-  EXPECT_EQ(json::parse(Lines()[0]), json({{"time", "2026-11-30T12:00:00.123Z"},
+  EXPECT_EQ(json::parse(Lines()[0]), json({{"time", "2026-12-01T00:00:00.123Z"},
                                            {"rpc", "DeleteModel"},
                                            {"peer", "ipv4:10.0.0.7:52114"},
                                            {"token", "5d0f3a9b2c4e6871"},
@@ -64,7 +64,8 @@ TEST_F(AuditLogTest, NothingFromOutsideForgesALine) {
   ASSERT_EQ(Lines().size(), 1);
   const json line = json::parse(Lines()[0]);
   EXPECT_EQ(line["ids"][0], "x\"}\n{\"rpc\":\"DeleteModel\"");
-  for (const char c : Lines()[0]) EXPECT_TRUE(c >= ' ' && c < 127) << "byte " << int{c};
+  const std::string text = Lines()[0];
+  for (const char c : text) EXPECT_TRUE(c >= ' ' && c < 127) << "byte " << int{c};
 }
 
 TEST_F(AuditLogTest, GrowsOverRestartsAndLinesOfThreadsDoNotMix) {
