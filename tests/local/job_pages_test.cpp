@@ -27,7 +27,7 @@ class JobPagesTest : public testing::Test {
   void OpenJobs() {
     jobs_ = std::make_unique<LocalJobs>(
         &folder_.files(), &folder_.sequences(),
-        JobRunner(&folder_.files(), &folder_.sequences(), TrainCharacter, 1), 1);
+        JobRunner(&folder_.files(), &folder_.sequences(), TrainCharacter, 1), LocalJobsOptions{});
   }
   std::string Create() { return jobs_->CreateTraining({.sequence_ids = {sequence_id_}})->id; }
   uint64_t num_steps() { return folder_.files().catalog().num_page_steps(); }
