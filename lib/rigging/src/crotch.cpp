@@ -23,13 +23,13 @@ constexpr double kLegShare = .5;
 // The hips of the legs lie that much higher above the sole than the crotch.
 constexpr double kHipsPerCrotch = 1.1;
 // Short legs under a belly part low as well. So much above the crotch, as a share of the height,
-// the section of a belly is round (that of two legs which touch is twice as wide as deep) and holds
-// more than both legs; the hips lie in the middle of it.
-constexpr double kBellyAbove = .08, kLongestBelly = 1.75, kLegsPerBelly = .6, kHipsInBelly = .8;
+// the section of a belly is round (that of two legs which touch is twice as wide as deep), and it
+// narrows towards the crotch, as a hem does not. The hips lie in the middle of it.
+constexpr double kBellyAbove = .08, kLongestBelly = 1.75, kNarrowed = .7, kHipsInBelly = .8;
 
 // A part of a horizontal section.
 struct Patch {
-  double area = 0;    // in cells of the field
+  double area = 0;  // in cells of the field
   double aspect = 0;  // length per width, of the ellipse with the same moments
 };
 
@@ -76,9 +76,10 @@ class Section {
       places.col(static_cast<Eigen::Index>(k)) << cells[k] % size_, cells[k] / size_;
     }
     const Eigen::Matrix2Xd centered = places.colwise() - places.rowwise().mean();
-    const Eigen::Vector2d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
-                                        centered * centered.transpose(), Eigen::EigenvaluesOnly)
-                                        .eigenvalues();
+    const Eigen::Vector2d moments =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(centered * centered.transpose(),
+                                                       Eigen::EigenvaluesOnly)
+            .eigenvalues();
     patch.aspect = std::sqrt(moments[1] / std::max(moments[0], 1e-9));
     return patch;
   }
@@ -134,13 +135,14 @@ std::optional<Crotch> FindCrotch(const DistanceField& field,
   Section lower = section_at(y_below);
   const double legs = lower.PatchAround(PointOfLeg(joints, kLeftFoot, y_below)).area +
                       lower.PatchAround(PointOfLeg(joints, kRightFoot, y_below)).area;
-  if (!(legs > kLegShare * patch_above(kSliceShare).area)) return std::nullopt;
+  const double above = patch_above(kSliceShare).area;
   const double hips = .5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg));
   if (crotch - low >= kShortestLeg * (hips - low)) {
+    if (!(legs > kLegShare * above)) return std::nullopt;
     return Crotch{crotch, sole + kHipsPerCrotch * (crotch - sole)};
   }
   const Patch belly = patch_above(kBellyAbove);
-  if (!(belly.aspect < kLongestBelly && legs < kLegsPerBelly * belly.area)) return std::nullopt;
+  if (!(belly.aspect < kLongestBelly && above < kNarrowed * belly.area)) return std::nullopt;
   const double radius = field.spacing() * std::sqrt(belly.area / std::numbers::pi);
   return Crotch{crotch, crotch + kHipsInBelly * radius};
 }
