@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -293,7 +294,7 @@ TEST(Performer, RefusesOptionsOutOfRange) {
 }
 
 TEST(Performer, StopsWhenCancelledAndReportsRisingProgress) {
-  int num_checks = 0;
+  std::atomic<int> num_checks = 0;  // asked from any thread
   const Progress cancelled([](const ProgressUpdate&) {}, [&] { return ++num_checks > 5; });
   EXPECT_THAT(GeneratePerformer(SmallOptions(), cancelled),
               HasStatus(absl::StatusCode::kCancelled, ::testing::_));
