@@ -143,5 +143,13 @@ TEST(FrameFilesTest, NamesWithoutASeriesAreTakenAsTheySort) {
   EXPECT_THAT(Sort({"only_7.obj"}), IsOk());
 }
 
+// No file system has such names, but whoever calls the library may.
+TEST(SortFrameFilesTest, ZeroBytesAreNoNumbers) {
+  const std::string strange("a_-1.o-\0\0b", 10), other("a_1.o\0\0b", 8);
+  const auto files = SortFrameFiles({strange, other});
+  if (!files.ok()) return;
+  EXPECT_EQ(files->paths.size(), 2u);
+}
+
 }  // namespace
 }  // namespace pleat

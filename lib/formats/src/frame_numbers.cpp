@@ -61,7 +61,10 @@ NameParts TakeApart(const std::string& path) {
     parts.numbers.push_back(number);
     i += num_read;
   }
-  parts.pattern += absl::AsciiStrToLower(as_path.extension().string());
+  // The sign of a number must stand for numbers alone, in the ending too.
+  std::string ending = absl::AsciiStrToLower(as_path.extension().string());
+  std::ranges::replace(ending, kNumber, ' ');
+  parts.pattern += ending;
   return parts;
 }
 
