@@ -2,21 +2,19 @@
 
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/time/time.h"
+#include "pleat/base/wall_clock.h"
 
 namespace pleat {
 namespace {
 
 constexpr int kWarningDays = 30;
 
-template <typename Unit>
-int64_t UnixTime() {
-  return std::chrono::duration_cast<Unit>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
+int64_t UnixSeconds() { return absl::ToUnixSeconds(SystemTime()); }
+int64_t UnixMillis() { return absl::ToUnixMillis(SystemTime()); }
 
 void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, TokenRegistry* tokens,
            AuditLog* audit_log) {
@@ -45,14 +43,14 @@ void LogSlowCall(const CallFacts& facts, double seconds) {
 
 absl::StatusOr<std::unique_ptr<TokenRegistry>> OpenTokens(const std::string& path) {
   return TokenRegistry::Open(
-      {.path = path,
-       .clock = &UnixTime<std::chrono::seconds>,
-       .on_problem = [](const std::string& problem) { spdlog::error("{}", problem); }});
+      {.path = path, .clock = &UnixSeconds, .on_problem = [](const std::string& problem) {
+         spdlog::error("{}", problem);
+       }});
 }
 
 absl::StatusOr<std::unique_ptr<AuditLog>> OpenAuditLog(const std::string& path) {
   if (path.empty()) return std::unique_ptr<AuditLog>();
-  return AuditLog::Open(path, &UnixTime<std::chrono::milliseconds>);
+  return AuditLog::Open(path, &UnixMillis);
 }
 
 CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegistry* tokens,
@@ -79,7 +77,7 @@ void LogJob(const JobInfo& job) {
 
 void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry) {
   if (!certificate_expiry) return;
-  const int64_t days = (*certificate_expiry - UnixTime<std::chrono::seconds>()) / (24 * 3600);
+  const int64_t days = (*certificate_expiry - UnixSeconds()) / (24 * 3600);
   if (days < kWarningDays) spdlog::warn("the TLS certificate expires in {} days", days);
 }
 

@@ -1,5 +1,4 @@
 // token create | list | revoke: who may call the server of a data folder.
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "cli/show/text_table.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
+#include "pleat/base/wall_clock.h"
 #include "pleat/identity/token_file.h"
 
 namespace pleat {
@@ -29,11 +29,7 @@ struct TokenVerbOptions {
   int days = 0;
 };
 
-int64_t UnixSeconds() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
+int64_t UnixSeconds() { return absl::ToUnixSeconds(SystemTime()); }
 
 std::string TimeText(std::optional<int64_t> seconds) {
   if (!seconds) return "";

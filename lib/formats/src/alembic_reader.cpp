@@ -193,7 +193,7 @@ class FrameReader {
   const int num_vertices_;
   AlembicArchive& archive_;
   std::vector<int> needed_, changing_;  // transforms above the meshes, parents first
-  // Of the frame that is read; one for each transform, filled in where it is needed.
+  // These two belong to the frame that is read: one for each transform, filled in where needed.
   std::vector<AlembicXform::State> states_;
   std::vector<Eigen::Matrix4d> worlds_;
   std::vector<Eigen::Matrix3Xf> frames_;
