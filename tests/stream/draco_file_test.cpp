@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "draco/compression/expert_encode.h"
 #include "draco_bytes.h"
 #include "draco_encode.h"
@@ -114,6 +116,23 @@ TEST(DracoFileTest, FilesWithoutPositionsAreRefused) {
   EXPECT_THAT(DecodeDracoFile(DracoBytes(EncodeDracoResiduals, *cloud, 5).value()),
               HasStatus(absl::StatusCode::kDataLoss,
                         "malformed Draco frame: no positions of three coordinates"));
+}
+
+TEST(DracoFileTest, PositionsOfTruthValuesAreRefusedUnread) {
+  draco::PointCloud cloud;
+  cloud.set_num_points(2);
+  draco::GeometryAttribute attribute;
+  attribute.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_BOOL, false, 3, 0);
+  draco::PointAttribute* positions =
+      cloud.attribute(cloud.AddAttribute(attribute, /*identity_mapping=*/true, 2));
+  // A byte of 6 is no bool: whoever loads it as one is undefined, which a sanitizer says.
+  std::memset(positions->GetAddress(draco::AttributeValueIndex(0)), 6, 6);
+  draco::ExpertEncoder encoder(cloud);
+  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+  draco::EncoderBuffer buffer;
+  ASSERT_TRUE(encoder.EncodeToBuffer(&buffer).ok());
+  EXPECT_THAT(DecodeDracoFile({buffer.data(), buffer.size()}),
+              HasStatus(absl::StatusCode::kDataLoss, HasSubstr("true or false")));
 }
 
 TEST(DracoFileTest, EveryTruncationIsRefused) {

@@ -39,6 +39,11 @@ absl::StatusOr<const draco::PointAttribute*> FindPositions(const draco::PointClo
   if (positions == nullptr || positions->num_components() != 3) {
     return MalformedDraco("no positions of three coordinates");
   }
+  // ConvertValue reads each byte of such an attribute as a C++ bool, which is undefined for any
+  // byte but 0 and 1, and no program writes positions that are true or false.
+  if (positions->data_type() == draco::DT_BOOL) {
+    return MalformedDraco("positions that are true or false");
+  }
   return positions;
 }
 
