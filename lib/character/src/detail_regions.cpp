@@ -1,5 +1,7 @@
 #include "detail_regions.h"
 
+#include <algorithm>
+#include <cassert>
 #include <set>
 #include <utility>
 
@@ -68,17 +70,41 @@ std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& 
   std::vector<DetailRegion> regions;
   for (int bone = 0; bone < num_joints; ++bone) {
     if (weights[bone].isZero(0)) continue;
-    const std::set<int> near = Grown(skeleton, {bone});
-    const std::set<int> wider = Grown(skeleton, near);
     DetailRegion region{std::move(weights[bone]), {}};
-    for (std::set<int> moving : {all, wider, near}) {
+    for (std::set<int> moving : {all, Grown(skeleton, {bone}), std::set<int>{bone}}) {
       moving.erase(0);  // the root moves vertices but has no features
       if (moving.empty()) continue;
-      region.feature_sets.push_back(ColumnsOf(moving, num_joints, options));
+      std::vector<int> columns = ColumnsOf(moving, num_joints, options);
+      const auto& sets = region.feature_sets;
+      if (std::find(sets.begin(), sets.end(), columns) != sets.end()) continue;
+      region.feature_sets.push_back(std::move(columns));
     }
     regions.push_back(std::move(region));
   }
   return regions;
+}
+
+std::vector<int> RegionBones(const Rig& rig, const std::vector<int>& control_vertices) {
+  std::set<int> bones;
+  for (const int v : control_vertices) {
+    const VertexInfluences& influences = rig.weights.vertex(v);
+    for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
+      bones.insert(influences.bones[k]);
+    }
+  }
+  return {bones.begin(), bones.end()};
+}
+
+void AddSkinFeatureSets(const SkinFeatures& features, int first_column,
+                        std::vector<DetailRegion>* regions) {
+  assert(features.num_regions() == static_cast<int>(regions->size()));
+  for (int r = 0; r < features.num_regions(); ++r) {
+    std::vector<int> columns;
+    for (int i = features.region_begin(r); i < features.region_end(r); ++i) {
+      columns.push_back(first_column + i);
+    }
+    if (!columns.empty()) (*regions)[r].feature_sets.push_back(std::move(columns));
+  }
 }
 
 std::vector<std::vector<int>> FeatureGroups(int num_joints, const TrainOptions& options) {

@@ -63,7 +63,7 @@ double HeldOutError(const DetailModel& model, const LearningData& data,
   int count = 0;
   for (size_t i = 0; i < rows.size(); i += step, ++count) {
     const int t = rows[i];
-    model.Predict(data.features.row(t).transpose(), &workspace, predicted);
+    model.Predict(data.FeaturesOf(model, t), &workspace, predicted);
     const Eigen::VectorXd difference =
         data.DetailOf(data.details.scores.row(t).transpose()) - predicted.cast<double>();
     sum += difference.reshaped(3, difference.size() / 3).colwise().norm().mean();
@@ -76,6 +76,9 @@ DetailModelOptions ModelOptionsOf(LearnerChoice learner, const TrainOptions& opt
   DetailModelOptions result;
   result.regions = data.regions;
   result.gp.input_groups = data.feature_groups;
+  result.max_components = options.max_components;
+  result.pca_energy = options.detail_energy;
+  result.num_pose_features = static_cast<int>(data.features.cols());
   switch (learner) {
     case LearnerChoice::kAuto:  // refused by LearnDetails
       break;
@@ -102,6 +105,13 @@ DetailModelOptions ModelOptionsOf(LearnerChoice learner, const TrainOptions& opt
 
 }  // namespace
 
+Eigen::VectorXd LearningData::FeaturesOf(const DetailModel& model, int t) const {
+  Eigen::VectorXd row(model.num_features());
+  row.head(features.cols()) = features.row(t).transpose();
+  if (row.size() > features.cols()) row.tail(skin_rows.cols()) = skin_rows.row(t).transpose();
+  return row;
+}
+
 absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
                                                                 LearnerChoice learner,
                                                                 const TrainOptions& options,
@@ -117,9 +127,14 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
       return data.differential->DecodeColumns(columns);
     };
   }
+  Eigen::MatrixXd features = data.features;
+  if (learner == LearnerChoice::kRegional && data.skin_features) {
+    features.conservativeResize(Eigen::NoChange, data.features.cols() + data.skin_rows.cols());
+    features.rightCols(data.skin_rows.cols()) = data.skin_rows;
+  }
   PLEAT_ASSIGN_OR_RETURN(DetailModel model,
-                         TrainDetailModel(data.features, data.details, data.clip_starts,
-                                          model_options, nullptr, progress));
+                         TrainDetailModel(features, data.details, data.clip_starts, model_options,
+                                          nullptr, progress));
   const bool has_direct_gp = learner == LearnerChoice::kGp || learner == LearnerChoice::kRegional;
   if (direct_gp && has_direct_gp && !*direct_gp) *direct_gp = model.stages().front();
   return std::make_shared<const DetailModel>(std::move(model));
@@ -136,6 +151,8 @@ absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Trai
   // is the same for every candidate.
   LearningData part;
   part.features = data.features(split.train, Eigen::all);
+  part.skin_features = data.skin_features;
+  if (data.skin_features) part.skin_rows = data.skin_rows(split.train, Eigen::all);
   part.details = data.details;
   part.details.scores = data.details.scores(split.train, Eigen::all);
   part.clip_starts = split.train_clip_starts;

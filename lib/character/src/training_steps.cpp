@@ -122,6 +122,33 @@ absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track
   return absl::OkStatus();
 }
 
+// Returns how many components the basis of all details may have: what the regional learner asks
+// for, but no more than a gigabyte of them beyond what the options allow.
+int MaxFineComponents(const TrainOptions& options, Eigen::Index num_details) {
+  constexpr Eigen::Index kMaxBytes = Eigen::Index{1} << 30;
+  const Eigen::Index in_memory =
+      kMaxBytes / (static_cast<Eigen::Index>(sizeof(double)) * std::max<Eigen::Index>(num_details, 1));
+  return std::max(options.max_components,
+                  static_cast<int>(std::min<Eigen::Index>(
+                      RegionalBasisOptions().max_components, in_memory)));
+}
+
+// Computes what the regional learner knows about the skin.
+absl::Status ComputeSkinFeatures(const RiggedFrames& rigged, const PoseTrack& track,
+                                 const TrainResources& resources, LearningData* data) {
+  PLEAT_ASSIGN_OR_RETURN(
+      SkinFeatures features,
+      TrainSkinFeatures(rigged.frames.sequence.topology(), rigged.rig, track,
+                        RegionBones(rigged.rig, data->control_vertices),
+                        {.num_threads = resources.num_threads}));
+  if (features.num_features() == 0) return absl::OkStatus();
+  data->skin_rows =
+      features.ComputeTrack(rigged.rig.skeleton, track, resources.num_threads);
+  AddSkinFeatureSets(features, static_cast<int>(data->features.cols()), &data->regions);
+  data->skin_features = std::move(features);
+  return absl::OkStatus();
+}
+
 // Fills in the details and the upsampler of `data`, whose control vertices are known. The order is
 // explained at the top of this file.
 absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& track,
@@ -155,7 +182,7 @@ absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& 
   }
   if (data->differential) details = data->differential->Encode(details);
   data->details = ComputePca(
-      details, {.max_components = options.max_components, .min_energy = options.detail_energy});
+      details, {.max_components = MaxFineComponents(options, details.cols()), .min_energy = 1});
   if (num_basis == num_frames) return absl::OkStatus();
   details.resize(0, 0);
   return ProjectAllFrames(rigged, track, detail_options, progress, data);
@@ -280,6 +307,7 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
           .ComputeTrack(filled.track)(filled.rows, Eigen::all);
   data.regions = DetailRegions(rigged.rig, data.control_vertices, options);
   data.feature_groups = FeatureGroups(rigged.rig.skeleton.num_joints(), options);
+  PLEAT_RETURN_IF_ERROR(ComputeSkinFeatures(rigged, track, resources, &data));
   return data;
 }
 
@@ -296,8 +324,12 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
                               .feature_reference = data.feature_reference,
                               .control_vertices = data.control_vertices,
                               .upsampler = data.upsampler,
+                              .skin_features = {},
                               .detail_model = std::move(detail_model),
                               .record = {}};
+  if (parts.detail_model->num_features() > parts.detail_model->num_pose_features()) {
+    parts.skin_features = data.skin_features;
+  }
   parts.record.learner = ChoiceName(learner);
   parts.record.num_frames = sequence.num_frames();
   parts.record.rest_frame = rigged.rig_summary.rest_frame;

@@ -65,8 +65,12 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
 struct LearningData {
   Eigen::VectorXd feature_reference;  // PoseFeatures::Reference
   Eigen::MatrixXd features;           // T x D_S
+  // What the regional learner sees beside them; none where the mesh has no edges.
+  std::optional<SkinFeatures> skin_features;
+  Eigen::MatrixXd skin_rows;  // T x D_E
   // The details of the control vertices as T rows of scores (T x r) in a basis of 3C values, which
-  // are offsets in meters or what `differential` encodes.
+  // are offsets in meters or what `differential` encodes. The regional learner needs a finer basis
+  // than the others, which take its first components.
   PrincipalComponents details;
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
@@ -76,6 +80,8 @@ struct LearningData {
   std::vector<DetailRegion> regions;             // one for each bone that moves a control vertex
   std::vector<std::vector<int>> feature_groups;  // columns of `features`, by joint and pose
 
+  // Returns the features of frame t as `model` reads them.
+  Eigen::VectorXd FeaturesOf(const DetailModel& model, int t) const;
   // Returns the offsets (3C, meters) that one row of scores (r) stands for.
   Eigen::VectorXd DetailOf(const Eigen::VectorXd& scores) const;
 };

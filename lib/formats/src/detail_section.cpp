@@ -71,6 +71,8 @@ absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_un
 
 // Files before version 3 have one scale for all inputs, which stands before the matrices.
 constexpr uint32_t kFirstWithInputScales = 3;
+// Files before version 4 have one basis for all regions and all vertices.
+constexpr uint32_t kFirstWithParts = 4;
 
 absl::Status ReadOldInputScale(ByteReader* reader, uint32_t version, double* scale) {
   if (version >= kFirstWithInputScales) return absl::OkStatus();
@@ -130,10 +132,13 @@ void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
   WriteMatrix(regional.inputs, writer);
   WriteMatrix(regional.output_mean, writer);
   for (const RegionalGpParameters::Region& region : regional.regions) {
+    writer->Write(static_cast<uint32_t>(region.first_output));
+    writer->Write(static_cast<uint32_t>(region.alpha.cols()));
     writer->Write(region.bias);
     writer->Write(static_cast<uint32_t>(region.scales.size()));
     for (const RegionalGpParameters::Scale& scale : region.scales) {
-      const std::array<double, 3> numbers = {scale.inverse_width, scale.amplitude, scale.linear};
+      const std::array<double, 4> numbers = {scale.inverse_width, scale.amplitude, scale.linear,
+                                             scale.max_norm};
       writer->WriteArray(std::span<const double>(numbers));
       const std::vector<int32_t> columns(scale.columns.begin(), scale.columns.end());
       writer->Write(static_cast<uint32_t>(columns.size()));
@@ -143,13 +148,16 @@ void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
   }
 }
 
-absl::StatusOr<RegionalGpParameters::Scale> ReadScale(ByteReader* reader) {
+absl::StatusOr<RegionalGpParameters::Scale> ReadScale(ByteReader* reader, uint32_t version) {
   RegionalGpParameters::Scale scale;
-  std::array<double, 3> numbers;
-  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<double>(numbers), "scale"));
+  std::array<double, 4> numbers;
+  numbers[3] = scale.max_norm;
+  const size_t count = version >= kFirstWithParts ? 4 : 3;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<double>(numbers).first(count), "scale"));
   scale.inverse_width = numbers[0];
   scale.amplitude = numbers[1];
   scale.linear = numbers[2];
+  scale.max_norm = numbers[3];
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_columns, reader->Read<uint32_t>("column count"));
   std::vector<int32_t> columns;
   PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_columns, "columns of a scale", &columns));
@@ -170,13 +178,22 @@ absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader, uint32_t v
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &regional.output_mean));
   for (uint32_t r = 0; r < num_regions; ++r) {
     RegionalGpParameters::Region region;
+    std::array<uint32_t, 2> outputs = {0, num_outputs};
+    if (version >= kFirstWithParts) {
+      PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(outputs), "outputs of a region"));
+    }
+    if (outputs[0] > num_outputs || outputs[1] > num_outputs - outputs[0]) {
+      return absl::InvalidArgumentError(absl::StrCat("a region has ", outputs[1], " outputs from ",
+                                                     outputs[0], " on, of ", num_outputs));
+    }
+    region.first_output = static_cast<int>(outputs[0]);
     PLEAT_ASSIGN_OR_RETURN(region.bias, reader->Read<double>("bias of a region"));
     PLEAT_ASSIGN_OR_RETURN(const uint32_t num_scales, reader->Read<uint32_t>("scale count"));
     for (uint32_t s = 0; s < num_scales; ++s) {
-      PLEAT_ASSIGN_OR_RETURN(RegionalGpParameters::Scale scale, ReadScale(reader));
+      PLEAT_ASSIGN_OR_RETURN(RegionalGpParameters::Scale scale, ReadScale(reader, version));
       region.scales.push_back(std::move(scale));
     }
-    PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_outputs, "alpha", &region.alpha));
+    PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, outputs[1], "alpha", &region.alpha));
     regional.regions.push_back(std::move(region));
   }
   return regional;
@@ -238,6 +255,88 @@ absl::StatusOr<DetailBasisParameters> ReadFloatBasis(ByteReader* reader) {
   return rounded.parameters();
 }
 
+void WriteNumbers(const std::vector<int>& numbers, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(numbers.size()));
+  writer->WriteArray(std::span<const int>(numbers));
+}
+
+absl::Status ReadNumbers(ByteReader* reader, absl::string_view what, std::vector<int>* numbers) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>(what));
+  return ReadVector(reader, count, what, numbers);
+}
+
+void WriteParts(const PartedBasisParameters& basis, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(basis.num_coefficients));
+  writer->Write(static_cast<uint32_t>(basis.parts.size()));
+  for (const PartedBasisParameters::Part& part : basis.parts) {
+    WriteNumbers(part.vertices, writer);
+    WriteNumbers(part.coefficients, writer);
+    WriteBasis(part.basis, writer);
+  }
+}
+
+absl::StatusOr<PartedBasisParameters> ReadParts(ByteReader* reader) {
+  PartedBasisParameters basis;
+  std::array<uint32_t, 2> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "parts of the basis"));
+  // Whoever has a coefficient has its column of the fold, or of alpha, in the file as well; the
+  // limit stops counts that only want memory.
+  constexpr uint32_t kMaxCoefficients = 1 << 16;
+  if (counts[0] > kMaxCoefficients) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(counts[0], " coefficients, the limit is ", kMaxCoefficients));
+  }
+  basis.num_coefficients = static_cast<int>(counts[0]);
+  constexpr uint64_t kMinPartBytes = 5 * sizeof(uint32_t);
+  PLEAT_RETURN_IF_ERROR(reader->Require(counts[1], kMinPartBytes, "parts of the basis"));
+  for (uint32_t i = 0; i < counts[1]; ++i) {
+    PartedBasisParameters::Part part;
+    PLEAT_RETURN_IF_ERROR(ReadNumbers(reader, "vertices of a part", &part.vertices));
+    PLEAT_RETURN_IF_ERROR(ReadNumbers(reader, "coefficients of a part", &part.coefficients));
+    PLEAT_ASSIGN_OR_RETURN(part.basis, ReadBasis(reader));
+    basis.parts.push_back(std::move(part));
+  }
+  return basis;
+}
+
+absl::StatusOr<PartedBasisParameters> ReadAnyBasis(ByteReader* reader, uint32_t version) {
+  if (version >= kFirstWithParts) return ReadParts(reader);
+  PLEAT_ASSIGN_OR_RETURN(DetailBasisParameters basis,
+                         version == 1 ? ReadFloatBasis(reader) : ReadBasis(reader));
+  return PartedBasisParameters::Whole(std::move(basis));
+}
+
+void WriteFold(const std::vector<CoefficientFoldBlock>& fold, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(fold.size()));
+  for (const CoefficientFoldBlock& block : fold) {
+    const std::array<uint32_t, 4> numbers = {static_cast<uint32_t>(block.first_input),
+                                             static_cast<uint32_t>(block.first_output),
+                                             static_cast<uint32_t>(block.weights.rows()),
+                                             static_cast<uint32_t>(block.weights.cols())};
+    writer->WriteArray(std::span<const uint32_t>(numbers));
+    WriteMatrix(block.weights, writer);
+  }
+}
+
+absl::StatusOr<std::vector<CoefficientFoldBlock>> ReadFold(ByteReader* reader) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>("blocks of the fold"));
+  PLEAT_RETURN_IF_ERROR(reader->Require(count, 4 * sizeof(uint32_t), "blocks of the fold"));
+  std::vector<CoefficientFoldBlock> fold(count);
+  for (CoefficientFoldBlock& block : fold) {
+    std::array<uint32_t, 4> numbers;
+    PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(numbers), "block of the fold"));
+    constexpr uint32_t kMax = 1 << 30;
+    if (numbers[0] > kMax || numbers[1] > kMax) {
+      return absl::InvalidArgumentError("a block of the fold begins out of range");
+    }
+    block.first_input = static_cast<int>(numbers[0]);
+    block.first_output = static_cast<int>(numbers[1]);
+    PLEAT_RETURN_IF_ERROR(
+        ReadMatrix(reader, numbers[2], numbers[3], "block of the fold", &block.weights));
+  }
+  return fold;
+}
+
 absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
   for (const Learner learner : kAllLearners) {
     if (LearnerName(learner) == name) return learner;
@@ -250,12 +349,13 @@ absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
 void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer) {
   writer->WriteString(LearnerName(parameters.learner));
   writer->Write(parameters.fade_confidence);
-  WriteBasis(parameters.basis, writer);
+  WriteParts(parameters.basis, writer);
   writer->Write(static_cast<uint32_t>(parameters.stages.size()));
   for (const GpRegressionParameters& stage : parameters.stages) WriteStage(stage, writer);
   if (parameters.regional) {
     writer->Write(parameters.regional_share);
     WriteRegional(*parameters.regional, writer);
+    WriteFold(parameters.fold, writer);
   }
 }
 
@@ -265,8 +365,7 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t ve
   PLEAT_ASSIGN_OR_RETURN(const std::string learner, reader->ReadString(64, "learner"));
   PLEAT_ASSIGN_OR_RETURN(parameters.learner, LearnerFromName(learner));
   PLEAT_ASSIGN_OR_RETURN(parameters.fade_confidence, reader->Read<double>("fade confidence"));
-  PLEAT_ASSIGN_OR_RETURN(parameters.basis,
-                         version == 1 ? ReadFloatBasis(reader) : ReadBasis(reader));
+  PLEAT_ASSIGN_OR_RETURN(parameters.basis, ReadAnyBasis(reader, version));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_stages, reader->Read<uint32_t>("stage count"));
   if (num_stages == 0 || num_stages > kMaxStages) {
     return absl::InvalidArgumentError(
@@ -280,6 +379,9 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t ve
   if (parameters.learner == Learner::kRegional) {
     PLEAT_ASSIGN_OR_RETURN(parameters.regional_share, reader->Read<double>("share of the regions"));
     PLEAT_ASSIGN_OR_RETURN(parameters.regional, ReadRegional(reader, version));
+    if (version >= kFirstWithParts) {
+      PLEAT_ASSIGN_OR_RETURN(parameters.fold, ReadFold(reader));
+    }
   }
   return parameters;
 }
