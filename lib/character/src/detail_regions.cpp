@@ -51,27 +51,40 @@ std::vector<int> ColumnsOf(const std::set<int>& bones, int num_joints,
   return columns;
 }
 
-}  // namespace
-
-std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& control_vertices,
-                                        const TrainOptions& options) {
-  const Skeleton& skeleton = rig.skeleton;
-  const int num_joints = skeleton.num_joints();
-  std::vector<Eigen::VectorXd> weights(num_joints,
-                                       Eigen::VectorXd::Zero(3 * control_vertices.size()));
+// Returns a region's shares of the details of the control vertices, times `share`.
+DetailRegion SharesOfControl(const BodyRegion& region, const std::vector<int>& control_vertices,
+                             double share) {
+  DetailRegion result;
+  std::vector<double> weights;
+  size_t i = 0;
   for (size_t c = 0; c < control_vertices.size(); ++c) {
-    const VertexInfluences& influences = rig.weights.vertex(control_vertices[c]);
-    for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
-      weights[influences.bones[k]].segment<3>(3 * c).array() += influences.weights[k];
+    while (i < region.vertices.size() && region.vertices[i] < control_vertices[c]) ++i;
+    if (i == region.vertices.size()) break;
+    if (region.vertices[i] != control_vertices[c]) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      result.rows.push_back(3 * static_cast<int>(c) + axis);
+      weights.push_back(share * region.weights[i]);
     }
   }
+  result.weights =
+      Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
+  return result;
+}
+
+}  // namespace
+
+std::vector<DetailRegion> DetailRegions(const std::vector<BodyRegion>& body,
+                                        const Skeleton& skeleton,
+                                        const std::vector<int>& control_vertices, double share,
+                                        const TrainOptions& options) {
+  const int num_joints = skeleton.num_joints();
   std::set<int> all;
   for (int bone = 1; bone < num_joints; ++bone) all.insert(bone);
   std::vector<DetailRegion> regions;
-  for (int bone = 0; bone < num_joints; ++bone) {
-    if (weights[bone].isZero(0)) continue;
-    DetailRegion region{std::move(weights[bone]), {}};
-    for (std::set<int> moving : {all, Grown(skeleton, {bone}), std::set<int>{bone}}) {
+  for (const BodyRegion& part : body) {
+    DetailRegion region = SharesOfControl(part, control_vertices, share);
+    region.max_components = part.max_components;
+    for (std::set<int> moving : {all, Grown(skeleton, part.bones), part.bones}) {
       moving.erase(0);  // the root moves vertices but has no features
       if (moving.empty()) continue;
       std::vector<int> columns = ColumnsOf(moving, num_joints, options);
@@ -82,17 +95,6 @@ std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& 
     regions.push_back(std::move(region));
   }
   return regions;
-}
-
-std::vector<int> RegionBones(const Rig& rig, const std::vector<int>& control_vertices) {
-  std::set<int> bones;
-  for (const int v : control_vertices) {
-    const VertexInfluences& influences = rig.weights.vertex(v);
-    for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
-      bones.insert(influences.bones[k]);
-    }
-  }
-  return {bones.begin(), bones.end()};
 }
 
 void AddSkinFeatureSets(const SkinFeatures& features, int first_column,

@@ -70,6 +70,12 @@ SkinFeaturesParameters SkinFeatures::parameters() const {
   return p;
 }
 
+SkinFeatures SkinFeatures::FirstRegions(const Rig& rig, int count) const {
+  SkinFeaturesParameters p = parameters();
+  p.regions.resize(static_cast<size_t>(count));
+  return FromParameters(rig, std::move(p)).value();
+}
+
 size_t SkinFeatures::memory_bytes() const {
   size_t bytes = edges_.memory_bytes() + projection_.memory_bytes();
   for (const std::vector<int>& edges : region_edges_) bytes += edges.size() * sizeof(int);

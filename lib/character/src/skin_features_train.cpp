@@ -3,12 +3,13 @@
 // for each region, those of the edges that lie in it, weighted by how much they do, give principal
 // components. Weights, mean and the last scaling are folded into one matrix and one offset, so that
 // a query is one product.
+#include "skin_features_train.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
-#include "pleat/character/skin_features.h"
 #include "pleat/geometry/surface_cells.h"
 #include "pleat/math/pca.h"
 
@@ -43,27 +44,24 @@ Eigen::MatrixXd ValuesOf(const SkinEdges& edges, const Skeleton& skeleton, const
   return values;
 }
 
-float WeightOf(const VertexInfluences& influences, int bone) {
-  float weight = 0;
-  for (int k = 0; k < kMaxInfluences; ++k) {
-    if (influences.bones[k] == bone) weight += influences.weights[k];
-  }
-  return weight;
-}
-
-// The edges of a region and, for each, how much it lies in it: the mean weight of its ends.
+// The edges of a region and, for each, how much it lies in it: the mean share of its ends.
 struct RegionEdges {
   std::vector<int> edges;
   std::vector<double> weights;
 };
 
-RegionEdges EdgesOfBone(const SkinEdgesParameters& p, const SkinWeights& weights, int bone,
-                        double smallest_weight) {
+RegionEdges EdgesOf(const SkinEdgesParameters& p, const BodyRegion& region,
+                    double smallest_weight) {
+  std::vector<double> shares;  // of the points
+  for (const int v : p.vertices) {
+    const auto found = std::ranges::lower_bound(region.vertices, v);
+    const bool has_share = found != region.vertices.end() && *found == v;
+    shares.push_back(has_share ? region.weights[found - region.vertices.begin()] : 0);
+  }
   RegionEdges result;
   for (size_t e = 0; e < p.edges.size(); ++e) {
     const auto [first, second] = p.edges[e];
-    const double weight = .5 * (WeightOf(weights.vertex(p.vertices[first]), bone) +
-                                WeightOf(weights.vertex(p.vertices[second]), bone));
+    const double weight = .5 * (shares[first] + shares[second]);
     if (!(weight > smallest_weight)) continue;
     result.edges.push_back(static_cast<int>(e));
     result.weights.push_back(weight);
@@ -73,8 +71,8 @@ RegionEdges EdgesOfBone(const SkinEdgesParameters& p, const SkinWeights& weights
 
 // The components of one region. values: frames x 3E.
 SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values,
-                                           const RegionEdges& region,
-                                           const SkinFeaturesOptions& options) {
+                                           const RegionEdges& region, int max_components,
+                                           double whitening) {
   const auto num_edges = static_cast<Eigen::Index>(region.edges.size());
   Eigen::VectorXd weights(3 * num_edges);
   Eigen::MatrixXd data(values.rows(), 3 * num_edges);
@@ -83,7 +81,7 @@ SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values,
     data.middleCols<3>(3 * e) =
         region.weights[e] * values.middleCols<3>(3 * static_cast<Eigen::Index>(region.edges[e]));
   }
-  const PrincipalComponents pca = ComputePca(data, {.max_components = options.max_components});
+  const PrincipalComponents pca = ComputePca(data, {.max_components = max_components});
   SkinFeaturesParameters::Region result{region.edges, {}, {}};
   if (pca.basis.cols() == 0) {  // the skin never moves here: one component that stays zero
     result.weights = Eigen::MatrixXf::Zero(3 * num_edges, 1);
@@ -92,7 +90,7 @@ SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values,
   }
   const Eigen::VectorXd deviations =
       (pca.scores.colwise().squaredNorm() / double(pca.scores.rows())).cwiseSqrt().transpose();
-  const Eigen::VectorXd factors = deviations.array().pow(-options.whitening);
+  const Eigen::VectorXd factors = deviations.array().pow(-whitening);
   // One unit for the region: rows of mean squared norm 1.
   const double unit = deviations.cwiseProduct(factors).norm();
   const Eigen::MatrixXd projection =
@@ -107,7 +105,7 @@ SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values,
 
 absl::StatusOr<SkinFeatures> TrainSkinFeatures(const Topology& topology, const Rig& rig,
                                                const PoseTrack& track,
-                                               const std::vector<int>& region_bones,
+                                               const std::vector<BodyRegion>& regions,
                                                const SkinFeaturesOptions& options) {
   SkinFeaturesParameters parameters;
   const SurfaceCells cells = MakeSurfaceCells(topology, rig.rest_positions, options.num_points);
@@ -123,11 +121,12 @@ absl::StatusOr<SkinFeatures> TrainSkinFeatures(const Topology& topology, const R
   const Eigen::MatrixXd values =
       ValuesOf(edges, rig.skeleton, track, SpreadFrames(track.num_frames(), options.max_frames),
                options.num_threads);
-  parameters.regions.resize(region_bones.size());
-  ParallelFor(static_cast<int>(region_bones.size()), options.num_threads, [&](int r) {
-    const RegionEdges region =
-        EdgesOfBone(parameters.edges, rig.weights, region_bones[r], options.smallest_weight);
-    if (!region.edges.empty()) parameters.regions[r] = TrainRegion(values, region, options);
+  parameters.regions.resize(regions.size());
+  ParallelFor(static_cast<int>(regions.size()), options.num_threads, [&](int r) {
+    const RegionEdges own = EdgesOf(parameters.edges, regions[r], options.smallest_weight);
+    if (own.edges.empty()) return;
+    parameters.regions[r] =
+        TrainRegion(values, own, regions[r].max_skin_features, options.whitening);
   });
   return SkinFeatures::FromParameters(rig, std::move(parameters));
 }

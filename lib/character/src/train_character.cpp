@@ -120,9 +120,9 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
   LearnerValidation validation;
   PLEAT_ASSIGN_OR_RETURN(
       const LearnerChoice learner,
-      ChooseLearner(data, options, diagonal_m, &validation, progress.Stage("validate", .33, .68)));
+      ChooseLearner(data, rigged.rig, options, diagonal_m, &validation, progress.Stage("validate", .33, .68)));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> detail_model,
-                         LearnDetails(data, learner, options, progress.Stage("learn", .68, .97)));
+                         LearnDetails(data, rigged.rig, learner, options, progress.Stage("learn", .68, .97)));
 
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> unmeasured,
                          AssembleModel(rigged, data, options, learner, detail_model, diagonal_m));

@@ -133,22 +133,6 @@ int MaxFineComponents(const TrainOptions& options, Eigen::Index num_details) {
                       RegionalBasisOptions().max_components, in_memory)));
 }
 
-// Computes what the regional learner knows about the skin.
-absl::Status ComputeSkinFeatures(const RiggedFrames& rigged, const PoseTrack& track,
-                                 const TrainResources& resources, LearningData* data) {
-  PLEAT_ASSIGN_OR_RETURN(
-      SkinFeatures features,
-      TrainSkinFeatures(rigged.frames.sequence.topology(), rigged.rig, track,
-                        RegionBones(rigged.rig, data->control_vertices),
-                        {.num_threads = resources.num_threads}));
-  if (features.num_features() == 0) return absl::OkStatus();
-  data->skin_rows =
-      features.ComputeTrack(rigged.rig.skeleton, track, resources.num_threads);
-  AddSkinFeatureSets(features, static_cast<int>(data->features.cols()), &data->regions);
-  data->skin_features = std::move(features);
-  return absl::OkStatus();
-}
-
 // Fills in the details and the upsampler of `data`, whose control vertices are known. The order is
 // explained at the top of this file.
 absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& track,
@@ -305,9 +289,11 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   data.features =
       PoseFeatures(feature_options, rigged.rig.skeleton.num_joints(), data.feature_reference)
           .ComputeTrack(filled.track)(filled.rows, Eigen::all);
-  data.regions = DetailRegions(rigged.rig, data.control_vertices, options);
   data.feature_groups = FeatureGroups(rigged.rig.skeleton.num_joints(), options);
-  PLEAT_RETURN_IF_ERROR(ComputeSkinFeatures(rigged, track, resources, &data));
+  PLEAT_ASSIGN_OR_RETURN(
+      data.regional,
+      ComputeRegionalData(sequence.topology(), rigged.rig, track, data.control_vertices,
+                          static_cast<int>(data.features.cols()), options, resources.num_threads));
   return data;
 }
 
@@ -327,8 +313,10 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
                               .skin_features = {},
                               .detail_model = std::move(detail_model),
                               .record = {}};
-  if (parts.detail_model->num_features() > parts.detail_model->num_pose_features()) {
-    parts.skin_features = data.skin_features;
+  if (learner == LearnerChoice::kRegional) {
+    parts.skin_features = data.regional.skin_features;
+  } else if (learner == LearnerChoice::kRegionalFast) {
+    parts.skin_features = data.regional.WithoutPatches(rigged.rig).skin_features;
   }
   parts.record.learner = ChoiceName(learner);
   parts.record.num_frames = sequence.num_frames();

@@ -122,6 +122,27 @@ absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint32_t ve
   return stage;
 }
 
+// Writes a matrix as floats where they say it exactly, after a flag: 1 for floats, 0 for doubles.
+void WriteAsFloats(const Eigen::MatrixXd& matrix, ByteWriter* writer) {
+  const Eigen::MatrixXf floats = matrix.cast<float>();
+  const bool exact = floats.cast<double>() == matrix;
+  writer->Write(static_cast<uint32_t>(exact));
+  exact ? WriteMatrix(floats, writer) : WriteMatrix(matrix, writer);
+}
+
+absl::Status ReadFloatsOrDoubles(ByteReader* reader, uint64_t rows, uint64_t columns,
+                                 absl::string_view what, Eigen::MatrixXd* matrix) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t are_floats, reader->Read<uint32_t>(what));
+  if (are_floats > 1) {
+    return absl::InvalidArgumentError(absl::StrCat("unknown flag of the ", what));
+  }
+  if (are_floats == 0) return ReadMatrix(reader, rows, columns, what, matrix);
+  Eigen::MatrixXf floats;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, rows, columns, what, &floats));
+  *matrix = floats.cast<double>();
+  return absl::OkStatus();
+}
+
 void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(regional.inputs.rows()));
   writer->Write(static_cast<uint32_t>(regional.inputs.cols()));
@@ -129,7 +150,7 @@ void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(regional.regions.size()));
   WriteMatrix(regional.input_mean, writer);
   WriteMatrix(regional.input_scales, writer);
-  WriteMatrix(regional.inputs, writer);
+  WriteAsFloats(regional.inputs, writer);
   WriteMatrix(regional.output_mean, writer);
   for (const RegionalGpParameters::Region& region : regional.regions) {
     writer->Write(static_cast<uint32_t>(region.first_output));
@@ -174,7 +195,10 @@ absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader, uint32_t v
   PLEAT_RETURN_IF_ERROR(ReadOldInputScale(reader, version, &old_scale));
   PLEAT_RETURN_IF_ERROR(ReadMeanAndScales(reader, version, num_inputs, old_scale,
                                           &regional.input_mean, &regional.input_scales));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_inputs, "inputs", &regional.inputs));
+  PLEAT_RETURN_IF_ERROR(
+      version >= kFirstWithParts
+          ? ReadFloatsOrDoubles(reader, num_rows, num_inputs, "inputs", &regional.inputs)
+          : ReadMatrix(reader, num_rows, num_inputs, "inputs", &regional.inputs));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &regional.output_mean));
   for (uint32_t r = 0; r < num_regions; ++r) {
     RegionalGpParameters::Region region;

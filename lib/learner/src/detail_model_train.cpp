@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -47,10 +48,21 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
     return absl::InvalidArgumentError("the regional learner needs regions");
   }
   for (const DetailRegion& region : options.regions) {
-    if (region.weights.size() != num_details) {
-      return absl::InvalidArgumentError(absl::StrCat("a region has ", region.weights.size(),
-                                                     " weights for ", num_details, " details"));
+    if (region.rows.empty() ||
+        region.weights.size() != static_cast<Eigen::Index>(region.rows.size()) ||
+        region.rows.front() < 0 || region.rows.back() >= num_details ||
+        std::adjacent_find(region.rows.begin(), region.rows.end(), std::greater_equal<>()) !=
+            region.rows.end()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "a region has ", region.weights.size(), " weights for ", region.rows.size(),
+          " details, or they do not ascend below ", num_details));
     }
+  }
+  if (options.num_part_regions < 0 ||
+      options.num_part_regions > static_cast<int>(options.regions.size())) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(options.num_part_regions, " of ", options.regions.size(),
+                     " regions make the parts"));
   }
   return CheckClipStarts(clip_starts, features.rows());
 }

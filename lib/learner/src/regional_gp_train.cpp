@@ -205,6 +205,8 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
   const double unit = PositiveRoot(normalized.squaredNorm() / static_cast<double>(inputs.rows()));
   p.input_scales *= unit;
   normalized /= unit;
+  // The rows are kept as floats, in the file and in memory, so they are learned as such.
+  normalized = normalized.cast<float>().cast<double>();
   const auto learning_rows = SpreadRows(inputs.rows(), options.max_hyperparameter_rows);
   const bool exact = inputs.rows() <= options.max_exact_rows;
   const auto rows = SpreadRows(inputs.rows(), exact ? inputs.rows() : options.max_rows);

@@ -29,6 +29,7 @@ namespace {
 struct RegionBasis {
   std::vector<Eigen::Index> rows;
   Eigen::MatrixXd basis;    // rows x r_R, coordinates of Y_M
+  Eigen::VectorXd rms;      // r_R, of the scores
   Eigen::MatrixXd outputs;  // N x r_R
 };
 
@@ -47,32 +48,40 @@ void MapRegion(const DetailModelOptions& options, Eigen::Index num_rows, RegionB
 }
 
 RegionBasis BasisOfRegion(const DetailRegion& region, const PrincipalComponents& details,
-                          const ScorePca& pca, const RegionalBasisOptions& options) {
+                          const ScorePca& pca, const RegionalBasisOptions& options,
+                          double detail_rms) {
   RegionBasis result;
-  for (Eigen::Index d = 0; d < region.weights.size(); ++d) {
-    if (region.weights[d] != 0) result.rows.push_back(d);
-  }
+  result.rows.assign(region.rows.begin(), region.rows.end());
   const Eigen::MatrixXd share =
-      region.weights(result.rows).asDiagonal() * details.basis(result.rows, Eigen::all);
-  result.basis = pca.Compute(share, options.max_region_components, options.region_energy).basis;
+      region.weights.asDiagonal() * details.basis(result.rows, Eigen::all);
+  const int max_components =
+      region.max_components > 0 ? region.max_components : options.max_region_components;
+  ScorePca::Components components =
+      pca.Compute(share, max_components, options.region_rest * detail_rms);
+  result.basis = std::move(components.basis);
+  result.rms = std::move(components.rms);
   result.outputs = details.scores * (share.transpose() * result.basis);
   result.outputs.rowwise() -= result.outputs.colwise().mean().eval();
   return result;
 }
 
-// The vertices of every part: those in which a region has the largest share, regions without any
-// left out. One part without a list when rows are not those of vertices.
-std::vector<std::vector<int>> PartsOf(const std::vector<DetailRegion>& regions,
-                                      Eigen::Index num_rows) {
-  if (num_rows % 3 != 0 || num_rows != regions[0].weights.size()) return {{}};
-  std::vector<std::vector<int>> parts(regions.size());
-  for (int v = 0; v < num_rows / 3; ++v) {
-    size_t largest = 0;
-    for (size_t r = 1; r < regions.size(); ++r) {
-      if (regions[r].weights[3 * v] > regions[largest].weights[3 * v]) largest = r;
+// The vertices of every part: those in which a region of the first `num_regions` has the largest
+// share, regions without any left out. One part without a list when rows are not those of vertices.
+std::vector<std::vector<int>> PartsOf(const std::vector<DetailRegion>& regions, size_t num_regions,
+                                      Eigen::Index num_details, Eigen::Index num_rows) {
+  if (num_rows % 3 != 0 || num_rows != num_details) return {{}};
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(num_rows / 3);
+  std::vector<size_t> part_of(static_cast<size_t>(num_rows / 3), 0);
+  for (size_t r = 0; r < num_regions; ++r) {
+    for (size_t i = 0; i < regions[r].rows.size(); ++i) {
+      const int v = regions[r].rows[i] / 3;
+      if (!(regions[r].weights[static_cast<Eigen::Index>(i)] > largest[v])) continue;
+      largest[v] = regions[r].weights[static_cast<Eigen::Index>(i)];
+      part_of[v] = r;
     }
-    parts[largest].push_back(v);
   }
+  std::vector<std::vector<int>> parts(num_regions);
+  for (size_t v = 0; v < part_of.size(); ++v) parts[part_of[v]].push_back(static_cast<int>(v));
   std::erase_if(parts, [](const std::vector<int>& part) { return part.empty(); });
   return parts;
 }
@@ -107,7 +116,8 @@ absl::StatusOr<PartBasis> AddPart(const std::vector<int>& vertices, const Eigen:
   const RegionalBasisOptions& caps = options.regional_basis;
   PartBasis part{RowsOf(vertices, mean.size()), {}, training->basis.num_coefficients};
   const Eigen::MatrixXd own = basis(part.rows, Eigen::all);
-  part.components = pca.Compute(own, caps.max_part_components, caps.part_energy);
+  part.components =
+      pca.Compute(own, caps.max_part_components, caps.part_rest * detail_rms);
   const Eigen::MatrixXd& components = part.components.basis;
   PLEAT_ASSIGN_OR_RETURN(
       const DetailBasis rounded,
@@ -125,11 +135,13 @@ absl::StatusOr<PartBasis> AddPart(const std::vector<int>& vertices, const Eigen:
   return part;
 }
 
-// Adds the blocks that express the basis of a region in those of the parts. first_input: its first
-// output of the regional GP; rows, basis: in the coordinates of the predictions.
-void AddFold(const std::vector<PartBasis>& parts, int first_input,
-             const std::vector<Eigen::Index>& rows, const Eigen::MatrixXd& basis,
-             std::vector<CoefficientFoldBlock>* fold) {
+// Adds the blocks that express the basis of a region in those of the parts. A region whose skinning
+// weights have long tails moves far parts by next to nothing, a root mean square of less than
+// `smallest_rms` per entry, and has no block for them. first_input: its first output of the regional
+// GP.
+void AddFold(const std::vector<PartBasis>& parts, int first_input, const RegionBasis& region,
+             double smallest_rms, std::vector<CoefficientFoldBlock>* fold) {
+  const std::vector<Eigen::Index>& rows = region.rows;
   for (const PartBasis& part : parts) {
     std::vector<Eigen::Index> in_region, in_part;  // places of the rows that both have
     for (size_t r = 0, p = 0; r < rows.size() && p < part.rows.size();) {
@@ -143,8 +155,11 @@ void AddFold(const std::vector<PartBasis>& parts, int first_input,
       }
     }
     if (in_region.empty()) continue;
-    const Eigen::MatrixXd product = basis(in_region, Eigen::all).transpose() *
-                                    part.components.basis(in_part, Eigen::all);
+    const Eigen::MatrixXd moved = region.basis(in_region, Eigen::all);
+    const double square = (moved * region.rms.asDiagonal()).squaredNorm();
+    if (square < smallest_rms * smallest_rms * double(part.rows.size())) continue;
+    const Eigen::MatrixXd product =
+        moved.transpose() * part.components.basis(in_part, Eigen::all);
     fold->push_back({first_input, part.first_coefficient, product.cast<float>()});
   }
 }
@@ -167,10 +182,11 @@ absl::StatusOr<RegionalTraining> TrainRegional(
     const Eigen::VectorXd& input_scales, const DetailModelOptions& options,
     const Progress& progress) {
   const ScorePca pca(details.scores);
+  const double own_rms = DetailRms(details.basis, details.scores);
   std::vector<GpRegion> regions;
   std::vector<RegionBasis> bases;
   for (const DetailRegion& region : options.regions) {
-    bases.push_back(BasisOfRegion(region, details, pca, options.regional_basis));
+    bases.push_back(BasisOfRegion(region, details, pca, options.regional_basis, own_rms));
     regions.push_back({region.feature_sets, std::move(bases.back().outputs)});
     PLEAT_RETURN_IF_ERROR(progress.Stage("regions", 0, .1).Report(
         static_cast<double>(bases.size()) / static_cast<double>(options.regions.size())));
@@ -189,15 +205,18 @@ absl::StatusOr<RegionalTraining> TrainRegional(
   const Eigen::MatrixXd basis = Mapped(options, details.basis);
   const double detail_rms = DetailRms(basis, details.scores);
   std::vector<PartBasis> parts;
-  for (const std::vector<int>& vertices : PartsOf(options.regions, basis.rows())) {
+  const size_t num_part_regions =
+      options.num_part_regions > 0 ? options.num_part_regions : options.regions.size();
+  for (const std::vector<int>& vertices :
+       PartsOf(options.regions, num_part_regions, details.basis.rows(), basis.rows())) {
     PLEAT_ASSIGN_OR_RETURN(PartBasis part, AddPart(vertices, Mapped(options, mean), basis, pca,
                                                    options, detail_rms, &training));
     parts.push_back(std::move(part));
   }
   for (size_t r = 0; r < bases.size(); ++r) {
     MapRegion(options, details.basis.rows(), &bases[r]);
-    AddFold(parts, training.regional.regions[r].first_output, bases[r].rows, bases[r].basis,
-            &training.fold);
+    AddFold(parts, training.regional.regions[r].first_output, bases[r],
+            options.regional_basis.fold_rest * detail_rms, &training.fold);
   }
   return training;
 }

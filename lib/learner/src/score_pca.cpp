@@ -17,7 +17,7 @@ ScorePca::ScorePca(const Eigen::MatrixXd& scores) : num_rows_(double(scores.rows
 }
 
 ScorePca::Components ScorePca::Compute(const Eigen::MatrixXd& map, int max_components,
-                                       double min_energy) const {
+                                       double largest_rest) const {
   Components result;
   const Eigen::MatrixXd data = root_ * map.transpose();  // k x n
   if (!(data.squaredNorm() > 0)) {
@@ -27,11 +27,12 @@ ScorePca::Components ScorePca::Compute(const Eigen::MatrixXd& map, int max_compo
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(data * data.transpose());
   const Eigen::VectorXd values = solver.eigenvalues().reverse().cwiseMax(0);
-  const double total = values.sum();
+  const double enough = largest_rest * largest_rest * num_rows_ * double(map.rows());
   Eigen::Index count = 0;
-  for (double kept = 0; count < std::min<Eigen::Index>(values.size(), max_components) &&
-                        kept < min_energy * total && values[count] > 1e-12 * values[0];) {
-    kept += values[count++];
+  for (double rest = values.sum(); count < std::min<Eigen::Index>(values.size(), max_components) &&
+                                   (count == 0 || rest > enough) &&
+                                   values[count] > 1e-12 * values[0];) {
+    rest -= values[count++];
   }
   result.basis.resize(map.rows(), count);
   result.rms = (values.head(count) / num_rows_).cwiseSqrt();

@@ -17,9 +17,10 @@ class ScorePca {
     Eigen::MatrixXd basis;  // n x r, orthonormal columns, by falling variance
     Eigen::VectorXd rms;    // r: root mean square of each component's score
   };
-  // At most max_components, and as many as the share min_energy of the variance needs; at least one,
-  // which is zero where the data do not vary. Signs are fixed as in ComputePca.
-  Components Compute(const Eigen::MatrixXd& map, int max_components, double min_energy) const;
+  // As many components as leave out a root mean square of at most `largest_rest` per entry of the
+  // data, but at most max_components; at least one, which is zero where the data do not vary. Signs
+  // are fixed as in ComputePca.
+  Components Compute(const Eigen::MatrixXd& map, int max_components, double largest_rest) const;
 
  private:
   Eigen::MatrixXd root_;  // H, k x K

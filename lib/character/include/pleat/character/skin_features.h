@@ -9,7 +9,6 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/learner/coefficient_fold.h"
-#include "pleat/mesh/topology.h"
 #include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/skin_edges.h"
 
@@ -50,6 +49,9 @@ class SkinFeatures {
   int region_end(int region) const { return region_ends_[region]; }
   size_t memory_bytes() const;
 
+  // Returns the features of the first `count` regions alone. rig: the one that they were made with.
+  SkinFeatures FirstRegions(const Rig& rig, int count) const;
+
   // Writes the features (D_E) of a pose, without an allocation after the first call. transforms: of
   // the rig's skeleton, without stretched bones.
   void Compute(const BoneTransforms& transforms, Workspace* workspace,
@@ -69,22 +71,5 @@ class SkinFeatures {
   Eigen::VectorXf offset_;      // D_E
   int num_features_ = 0;
 };
-
-struct SkinFeaturesOptions {
-  int num_points = 400;
-  int max_components = 48;          // of a region
-  double smallest_weight = .02;     // of an edge, for it to count in a region
-  // Components are divided by this power of their deviation: weaker ones say more than their size.
-  double whitening = .25;
-  int max_frames = 1000;  // that the components are learned from, spread evenly
-  int num_threads = 0;
-};
-
-// Learns the features from the poses of the training. region_bones: the bone whose skinning weights
-// say where each region is. Deterministic, whatever the number of threads.
-absl::StatusOr<SkinFeatures> TrainSkinFeatures(const Topology& topology, const Rig& rig,
-                                               const PoseTrack& track,
-                                               const std::vector<int>& region_bones,
-                                               const SkinFeaturesOptions& options = {});
 
 }  // namespace pleat

@@ -43,19 +43,23 @@ inline constexpr std::array kAllLearners = {Learner::kGp, Learner::kSgplvm, Lear
 
 // A part of the body that the regional learner predicts by itself.
 struct DetailRegion {
-  // D_M: the share of every entry of Y_M that belongs to the region; over all regions the sum is 1.
-  Eigen::VectorXd weights;
+  std::vector<int> rows;    // entries of Y_M that the region has a share in, ascending
+  Eigen::VectorXd weights;  // the share of each; over all regions the sum of an entry's shares is 1
   std::vector<std::vector<int>> feature_sets;  // columns of Y_S, as in GpRegion
+  int max_components = 0;  // of its basis; 0: as RegionalBasisOptions has it
 };
 
 // The bases of the regional learner. A region's own basis spans its share of the details; a part of
 // the body is the vertices of which one region has the largest share, and its basis is what a query
-// expands. Caps and shares of energy as for pca_energy below; measured in docs/performance.md.
+// expands. Measured in docs/performance.md.
 struct RegionalBasisOptions {
-  int max_region_components = 64;
-  double region_energy = .9995;
-  int max_part_components = 48;
-  double part_energy = .99999;
+  int max_region_components = 128;
+  // What a region's basis may leave out: a root mean square per entry, as a share of that of all
+  // details. What is left out of large details matters; small ones need no exact basis.
+  double region_rest = .003;
+  int max_part_components = 128;
+  double part_rest = .005;
+  double fold_rest = .005;  // what of a region a part may leave out altogether, as the others
   // Of the basis of all details, from which those of regions and parts are made.
   int max_components = 256;
 };
@@ -71,6 +75,7 @@ struct DetailModelOptions {
   RegionalGpOptions regional{};         // of the regional learner
   RegionalBasisOptions regional_basis{};
   std::vector<DetailRegion> regions{};  // what it needs; may be empty for the others
+  int num_part_regions = 0;             // so many leading ones make the parts; 0: all
   // Only so many leading features describe the pose; those behind describe the skin, and only the
   // regional learner reads them. 0: all.
   int num_pose_features = 0;
