@@ -1,7 +1,9 @@
 #include "crotch.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "pleat/skeleton/human_template.h"
@@ -18,9 +20,20 @@ constexpr double kShortestLeg = .35;
 // Legs that make up this share of the section above them end in a crotch (.65 to 1 in people),
 // thinner ones in a hem (.11 to .18).
 constexpr double kLegShare = .5;
+// The hips of the legs lie that much higher above the sole than the crotch.
+constexpr double kHipsPerCrotch = 1.1;
+// Short legs under a belly part low as well. So much above the crotch, as a share of the height,
+// the section of a belly is round (that of two legs which touch is twice as wide as deep) and holds
+// more than both legs; the hips lie in the middle of it.
+constexpr double kBellyAbove = .08, kLongestBelly = 1.75, kLegsPerBelly = .6, kHipsInBelly = .8;
 
-// The area of the parts of a horizontal section that hold one of the `seeds`, in cells of the
-// field.
+// A part of a horizontal section.
+struct Patch {
+  double area = 0;    // in cells of the field
+  double aspect = 0;  // length per width, of the ellipse with the same moments
+};
+
+// A horizontal section of the body, in cells of the field.
 class Section {
  public:
   Section(const DistanceField& field, const Eigen::Matrix3d& input_from_upright,
@@ -36,29 +49,38 @@ class Section {
     }
   }
 
-  // Cells counted once are not counted again.
-  int AreaAround(const Eigen::Vector3d& seed) {
+  // Returns the part that holds `seed`, empty outside. Cells counted once are not counted again.
+  Patch PatchAround(const Eigen::Vector3d& seed) {
     const int i = static_cast<int>(std::lround((seed.x() - origin_.x()) / spacing_));
     const int j = static_cast<int>(std::lround((seed.z() - origin_.z()) / spacing_));
-    if (i < 0 || j < 0 || i >= size_ || j >= size_) return 0;
-    std::vector<int> stack;
+    Patch patch;
+    if (i < 0 || j < 0 || i >= size_ || j >= size_) return patch;
+    std::vector<int> cells;
     const auto visit = [&](int at) {
       if (inside_[at] == 0) return;
       inside_[at] = 0;
-      stack.push_back(at);
+      cells.push_back(at);
     };
     visit(i + size_ * j);
-    int area = 0;
-    while (!stack.empty()) {
-      const int at = stack.back();
-      stack.pop_back();
-      ++area;
+    for (size_t k = 0; k < cells.size(); ++k) {
+      const int at = cells[k];
       if (at % size_ > 0) visit(at - 1);
       if (at % size_ + 1 < size_) visit(at + 1);
       if (at >= size_) visit(at - size_);
       if (at + size_ < size_ * size_) visit(at + size_);
     }
-    return area;
+    patch.area = static_cast<double>(cells.size());
+    if (cells.size() < 2) return patch;
+    Eigen::Matrix2Xd places(2, static_cast<Eigen::Index>(cells.size()));
+    for (size_t k = 0; k < cells.size(); ++k) {
+      places.col(static_cast<Eigen::Index>(k)) << cells[k] % size_, cells[k] / size_;
+    }
+    const Eigen::Matrix2Xd centered = places.colwise() - places.rowwise().mean();
+    const Eigen::Vector2d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+                                        centered * centered.transpose(), Eigen::EigenvaluesOnly)
+                                        .eigenvalues();
+    patch.aspect = std::sqrt(moments[1] / std::max(moments[0], 1e-9));
+    return patch;
   }
 
  private:
@@ -79,10 +101,12 @@ Eigen::Vector3d PointOfLeg(const Eigen::Matrix3Xd& joints, int ankle, double y) 
 
 }  // namespace
 
-std::optional<double> CrotchHeight(const DistanceField& field,
-                                   const Eigen::Matrix3d& upright_from_input,
-                                   const Eigen::Matrix3Xd& joints, double height) {
+std::optional<Crotch> FindCrotch(const DistanceField& field,
+                                 const Eigen::Matrix3d& upright_from_input,
+                                 const Eigen::Matrix3Xd& joints,
+                                 const Eigen::AlignedBox3d& bounds) {
   const Eigen::Matrix3d input_from_upright = upright_from_input.transpose();
+  const double height = bounds.sizes().y(), sole = bounds.min().y();
   const double low = std::max(joints(1, kLeftFoot), joints(1, kRightFoot)) + kFootShare * height;
   const double high = joints(1, kChest);
   const auto middle = [&](double y) -> Eigen::Vector3d {
@@ -97,20 +121,28 @@ std::optional<double> CrotchHeight(const DistanceField& field,
     crotch = low + (high - low) * step / kNumSteps;
     if (field.SignedDistance(input_from_upright * middle(crotch)) > 0) break;
   }
-  const double hips = .5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg));
-  if (step < 0 || step == kNumSteps || crotch - low < kShortestLeg * (hips - low)) {
-    return std::nullopt;
-  }
+  if (step < 0 || step == kNumSteps) return std::nullopt;
   const double reach = kSectionReach * height;
-  const Eigen::Vector3d above = middle(crotch + kSliceShare * height);
+  const auto section_at = [&](double y) {
+    return Section(field, input_from_upright, middle(y), reach);
+  };
+  const auto patch_above = [&](double share) {
+    const double y = crotch + share * height;
+    return section_at(y).PatchAround(middle(y));
+  };
   const double y_below = crotch - kSliceShare * height;
-  Section upper(field, input_from_upright, above, reach);
-  Section lower(field, input_from_upright, middle(y_below), reach);
-  const double whole = upper.AreaAround(above);
-  const double legs = lower.AreaAround(PointOfLeg(joints, kLeftFoot, y_below)) +
-                      lower.AreaAround(PointOfLeg(joints, kRightFoot, y_below));
-  if (!(legs > kLegShare * whole)) return std::nullopt;
-  return crotch;
+  Section lower = section_at(y_below);
+  const double legs = lower.PatchAround(PointOfLeg(joints, kLeftFoot, y_below)).area +
+                      lower.PatchAround(PointOfLeg(joints, kRightFoot, y_below)).area;
+  if (!(legs > kLegShare * patch_above(kSliceShare).area)) return std::nullopt;
+  const double hips = .5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg));
+  if (crotch - low >= kShortestLeg * (hips - low)) {
+    return Crotch{crotch, sole + kHipsPerCrotch * (crotch - sole)};
+  }
+  const Patch belly = patch_above(kBellyAbove);
+  if (!(belly.aspect < kLongestBelly && legs < kLegsPerBelly * belly.area)) return std::nullopt;
+  const double radius = field.spacing() * std::sqrt(belly.area / std::numbers::pi);
+  return Crotch{crotch, crotch + kHipsInBelly * radius};
 }
 
 }  // namespace pleat

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -103,6 +105,10 @@ class RestFrameSearch {
     EmbeddingOptions embedding = options_.embedding;
     embedding.upright_from_input = upright;
     embedding.placed = options_.placed_joints;
+    // What must be refused need not be searched for.
+    if (options_.placed_joints.empty()) {
+      embedding.search.max_bound = std::min(embedding.search.max_bound, options_.refused_residual);
+    }
     if (has_folded_arms_) embedding.penalties.most_forearm_mismatch = kFoldedForearm;
     if (options_.yaw_degrees) {
       embedding.yaws_degrees = {*options_.yaw_degrees};
@@ -111,30 +117,27 @@ class RestFrameSearch {
     return embedding;
   }
 
-  // The surface of the frame looked at last is kept, since it serves every grid, and so is the last
-  // full volume, which serves every orientation.
+  // The surface of a frame serves both grids, and a full volume every orientation of its frame.
   absl::StatusOr<std::shared_ptr<const BodyVolume>> VolumeOf(int frame, int resolution) {
     const bool is_full = resolution == options_.volume.resolution;
-    if (is_full && full_volume_ != nullptr && full_frame_ == frame) return full_volume_;
+    if (is_full && full_volumes_.contains(frame)) return full_volumes_.at(frame);
     BodyVolumeOptions options = options_.volume;
     options.num_threads = options_.num_threads;
     options.resolution = resolution;
-    if (surface_ == nullptr || surface_frame_ != frame) {
+    std::shared_ptr<const BodySurface>& surface = surfaces_[frame];
+    if (surface == nullptr) {
       // The gaps of a mesh are about the same in all frames.
-      if (surface_ != nullptr && surface_->is_repaired) options.outer.growth = surface_->growth;
-      surface_ = nullptr;
-      PLEAT_ASSIGN_OR_RETURN(BodySurface surface, PrepareBodySurface(sequence_.topology(),
-                                                                     sequence_.FrameAsDouble(frame),
-                                                                     options, progress_));
-      surface_ = std::make_shared<const BodySurface>(std::move(surface));
-      surface_frame_ = frame;
+      if (growth_) options.outer.growth = *growth_;
+      PLEAT_ASSIGN_OR_RETURN(
+          BodySurface prepared,
+          PrepareBodySurface(sequence_.topology(), sequence_.FrameAsDouble(frame), options,
+                             progress_));
+      if (prepared.is_repaired) growth_ = prepared.growth;
+      surface = std::make_shared<const BodySurface>(std::move(prepared));
     }
-    PLEAT_ASSIGN_OR_RETURN(BodyVolume computed, ComputeBodyVolume(surface_, options, progress_));
+    PLEAT_ASSIGN_OR_RETURN(BodyVolume computed, ComputeBodyVolume(surface, options, progress_));
     auto volume = std::make_shared<const BodyVolume>(std::move(computed));
-    if (is_full) {
-      full_volume_ = volume;
-      full_frame_ = frame;
-    }
+    if (is_full) full_volumes_[frame] = volume;
     return std::shared_ptr<const BodyVolume>(std::move(volume));
   }
 
@@ -312,9 +315,9 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  std::shared_ptr<const BodySurface> surface_;
-  std::shared_ptr<const BodyVolume> full_volume_;
-  int surface_frame_ = -1, full_frame_ = -1;
+  std::map<int, std::shared_ptr<const BodySurface>> surfaces_;     // by frame; of the few tried
+  std::map<int, std::shared_ptr<const BodyVolume>> full_volumes_;  // of one or two of them
+  std::optional<int> growth_;  // BodySurface::growth of the first repaired surface
   double least_residual_ = std::numeric_limits<double>::infinity();  // over all frames tried
   bool has_folded_arms_ = false;
   std::vector<int> probed_;              // best first
