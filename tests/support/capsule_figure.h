@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "pleat/skeleton/human_template.h"
@@ -39,12 +40,14 @@ struct CapsuleFigureOptions {
   double sleeve = 0;      // radius of the sleeves at the wrists, share of the height; 0 = none
   double leg_length = 1;  // share of a whole leg; what is above it comes down
   double girth = 1;       // of the trunk
+  double head = 1;        // size of the head: cartoons have large ones
+  bool fingers = false;   // five thin ones, spread
   double cell_m = 0.02;
 };
 
 // Places elbow and hand of the left arm; those of the right one mirror them.
 inline void PoseLeftArm(ArmPose pose, double arm_length, Eigen::Matrix3Xd* joints) {
-  Eigen::Vector3d upper, fore;  // directions
+  Eigen::Vector3d upper = Eigen::Vector3d::Zero(), fore = upper;  // directions
   switch (pose) {
     case ArmPose::kStraight:
       return;
@@ -131,6 +134,20 @@ void AddRobe(const CapsuleFigureOptions& options, const Add& add) {
   }
 }
 
+// Adds a palm with five spread fingers by add(start, end, radius, radius).
+template <typename Add>
+void AddFingers(const Eigen::Vector3d& elbow, const Eigen::Vector3d& hand, const Add& add) {
+  const Eigen::Vector3d along = (hand - elbow).normalized();
+  const Eigen::Vector3d across = along.cross(Eigen::Vector3d::UnitY()).normalized();
+  const Eigen::Vector3d knuckles = hand + .045 * along;
+  add(hand, knuckles, .02, .018);
+  for (int k = -2; k <= 2; ++k) {
+    const double angle = 22 * k * EIGEN_PI / 180;
+    const Eigen::Vector3d direction = std::cos(angle) * along + std::sin(angle) * across;
+    add(knuckles + .006 * k * across, knuckles + .006 * k * across + .05 * direction, .007, .006);
+  }
+}
+
 // The parts of the figure, which overlap where it bends.
 inline std::vector<Capsule> CapsuleFigureParts(const CapsuleFigureOptions& options = {}) {
   const Eigen::Matrix3d turn =
@@ -145,7 +162,9 @@ inline std::vector<Capsule> CapsuleFigureParts(const CapsuleFigureOptions& optio
   add(joints.col(kHips), joints.col(kSpine), girth * .085, girth * .08);
   add(joints.col(kSpine), joints.col(kChest), girth * .08, .085);
   add(joints.col(kChest), joints.col(kHead), .035, .035);
-  add(joints.col(kHead), joints.col(kHead) + Eigen::Vector3d(0, .005, .01), .06, .065);
+  // The bottom of the head stays where it is.
+  const Eigen::Vector3d head = joints.col(kHead) + Eigen::Vector3d(0, .06 * (options.head - 1), 0);
+  add(head, head + Eigen::Vector3d(0, .005, .01), options.head * .06, options.head * .065);
   for (const auto& [hip, knee, ankle, toes, shoulder, elbow, hand] :
        {std::array{kLeftUpperLeg, kLeftLowerLeg, kLeftFoot, kLeftToes, kLeftUpperArm, kLeftLowerArm,
                    kLeftHand},
@@ -158,7 +177,11 @@ inline std::vector<Capsule> CapsuleFigureParts(const CapsuleFigureOptions& optio
     add(joints.col(shoulder), joints.col(elbow), .036, .027);
     add(joints.col(elbow), joints.col(hand), .026, .022);
     const Eigen::Vector3d tip = joints.col(hand) + .25 * (joints.col(hand) - joints.col(elbow));
-    add(joints.col(hand), tip, .022, .022);
+    if (options.fingers) {
+      AddFingers(joints.col(elbow), joints.col(hand), add);
+    } else {
+      add(joints.col(hand), tip, .022, .022);
+    }
     if (options.sleeve > 0) add(joints.col(elbow), joints.col(hand), .03, options.sleeve);
   }
   if (options.skirt) add({0, .5, 0}, {0, .40, 0}, .095, .13);
