@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "rigging/test_bodies.h"
 #include "support/capsule_figure.h"
 
@@ -37,6 +40,21 @@ TEST(HiddenLegsTest, LegsThatTouchAreSeen) {
     capsules.push_back({{side, .9, 0}, {side, .06, 0}, .08, .058});
   }
   const BodyVolume volume = VolumeOf(MakeCapsuleBody(capsules, .025));
+  EXPECT_FALSE(AreLegsHidden(volume, FindMainBody(volume, Eigen::Matrix3d::Identity()),
+                             Eigen::Matrix3d::Identity()));
+}
+
+// Two large feet side by side with a trunk right above them: a cartoon, no robe.
+TEST(HiddenLegsTest, FeetUnderATrunkAreSeen) {
+  const auto distance = [](const Eigen::Vector3d& point) {
+    const Eigen::Vector3d foot(std::abs(point.x()) - .08, point.y() - .06, point.z());
+    const double feet = (foot.cwiseAbs() - Eigen::Vector3d(.07, .07, .09)).maxCoeff();
+    const Eigen::Vector3d axis(0, std::clamp(point.y(), .26, .8), 0);
+    return std::min(feet, (point - axis).norm() - .14);
+  };
+  const TriangleMesh mesh =
+      PolygonizeShape(distance, {Eigen::Vector3d(-.2, -.04, -.2), Eigen::Vector3d(.2, 1, .2)}, .01);
+  const BodyVolume volume = ComputeBodyVolume(MakeTopology(mesh), mesh.positions).value();
   EXPECT_FALSE(AreLegsHidden(volume, FindMainBody(volume, Eigen::Matrix3d::Identity()),
                              Eigen::Matrix3d::Identity()));
 }
