@@ -44,6 +44,17 @@ TEST(CrotchTest, IsNotTheHemOfASkirt) {
   EXPECT_FALSE(CrotchOf({.skirt = true, .cell_m = .025}).has_value());
 }
 
+// The legs part low, and far below the hips that the proportions of people make: a belly hangs
+// there. Its hips are in it, not at its bottom.
+TEST(CrotchTest, LiesUnderABelly) {
+  for (const double girth : {1.4, 1.8}) {
+    const CapsuleFigureOptions fat = {.leg_length = .4, .girth = girth, .cell_m = .025};
+    const std::optional<Crotch> crotch = CrotchOf(fat, .12);
+    ASSERT_TRUE(crotch.has_value()) << girth;
+    EXPECT_NEAR(crotch->hips, CapsuleFigureJoints(fat)(1, kLeftUpperLeg), .05) << girth;
+  }
+}
+
 // Legs that touch from the knees on are no low crotch.
 TEST(CrotchTest, IsNotWhereLegsTouch) {
   std::vector<Capsule> capsules = {{{0, .9, 0}, {0, 1.5, 0}, .15, .14}};

@@ -18,14 +18,17 @@ constexpr double kFootShare = .02, kSectionReach = .25, kSliceShare = .02;
 // Legs that part below this share of the way to the hips cross or touch.
 constexpr double kShortestLeg = .35;
 // Legs that make up this share of the section above them end in a crotch (.65 to 1 in people),
-// thinner ones in a hem (.11 to .18).
+// thinner ones in a hem (.11 to .18) or in a belly.
 constexpr double kLegShare = .5;
-// The hips of the legs lie that much higher above the sole than the crotch.
-constexpr double kHipsPerCrotch = 1.1;
-// Short legs under a belly part low as well. So much above the crotch, as a share of the height,
-// the section of a belly is round (that of two legs which touch is twice as wide as deep) and holds
-// more than both legs; the hips lie in the middle of it.
-constexpr double kBellyAbove = .08, kLongestBelly = 1.75, kLegsPerBelly = .6, kHipsInBelly = .8;
+// So much above the crotch, as a share of the height, the section is that of the pelvis.
+constexpr double kPelvisAbove = .08;
+// A belly is round there (two legs that touch are twice as wide as deep), and it narrows towards
+// the crotch to less than that share of its area. A hem grows wider instead, and the pelvis of
+// people keeps .75 to 1.
+constexpr double kLongestBelly = 1.75, kNarrowed = .7;
+// The hips of the legs lie that many radii of the pelvis above the crotch. Five bodies that artists
+// rigged have -.1, .7, .8, .9 and 1.4.
+constexpr double kHipsInPelvis = .8;
 
 // A part of a horizontal section.
 struct Patch {
@@ -106,7 +109,7 @@ std::optional<Crotch> FindCrotch(const DistanceField& field,
                                  const Eigen::Matrix3Xd& joints,
                                  const Eigen::AlignedBox3d& bounds) {
   const Eigen::Matrix3d input_from_upright = upright_from_input.transpose();
-  const double height = bounds.sizes().y(), sole = bounds.min().y();
+  const double height = bounds.sizes().y();
   const double low = std::max(joints(1, kLeftFoot), joints(1, kRightFoot)) + kFootShare * height;
   const double high = joints(1, kChest);
   const auto middle = [&](double y) -> Eigen::Vector3d {
@@ -134,15 +137,14 @@ std::optional<Crotch> FindCrotch(const DistanceField& field,
   Section lower = section_at(y_below);
   const double legs = lower.PatchAround(PointOfLeg(joints, kLeftFoot, y_below)).area +
                       lower.PatchAround(PointOfLeg(joints, kRightFoot, y_below)).area;
-  if (!(legs > kLegShare * patch_above(kSliceShare).area)) return std::nullopt;
+  const double above = patch_above(kSliceShare).area;
+  const Patch pelvis = patch_above(kPelvisAbove);
+  const bool is_belly = pelvis.aspect < kLongestBelly && above < kNarrowed * pelvis.area;
   const double hips = .5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg));
-  if (crotch - low >= kShortestLeg * (hips - low)) {
-    return Crotch{crotch, sole + kHipsPerCrotch * (crotch - sole)};
-  }
-  const Patch belly = patch_above(kBellyAbove);
-  if (!(belly.aspect < kLongestBelly && legs < kLegsPerBelly * belly.area)) return std::nullopt;
-  const double radius = field.spacing() * std::sqrt(belly.area / std::numbers::pi);
-  return Crotch{crotch, crotch + kHipsInBelly * radius};
+  const bool are_legs = legs > kLegShare * above && crotch - low >= kShortestLeg * (hips - low);
+  if (!is_belly && !are_legs) return std::nullopt;
+  const double radius = field.spacing() * std::sqrt(pelvis.area / std::numbers::pi);
+  return Crotch{crotch, crotch + kHipsInPelvis * radius};
 }
 
 }  // namespace pleat
