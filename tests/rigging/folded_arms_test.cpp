@@ -43,7 +43,7 @@ class ForearmTest : public ::testing::Test {
 };
 
 TEST_F(ForearmTest, IsFollowedToTheWrist) {
-  const std::optional<FoldedArm> arm = FollowForearm(graph_, 0, {1, 0, 0, 0, 0, 1}, shoulder_);
+  const std::optional<FoldedArm> arm = FollowForearm(graph_, 0, .04, {1, 0, 0, 0, 0, 1}, shoulder_);
   ASSERT_TRUE(arm.has_value());
   EXPECT_EQ(arm->elbow, Eigen::Vector3d(0, 0, 0));
   EXPECT_NEAR(arm->hand.norm(), .97 * .28, 1e-9);
@@ -51,8 +51,8 @@ TEST_F(ForearmTest, IsFollowedToTheWrist) {
 }
 
 TEST_F(ForearmTest, IsNeitherTheTrunkNorAnotherChainNorTooShort) {
-  EXPECT_FALSE(FollowForearm(graph_, 0, {1, 1, 0, 0, 0, 1}, shoulder_).has_value());
-  EXPECT_FALSE(FollowForearm(graph_, 0, {1, 0, 1, 0, 0, 1}, shoulder_).has_value());
+  EXPECT_FALSE(FollowForearm(graph_, 0, .04, {1, 1, 0, 0, 0, 1}, shoulder_).has_value());
+  EXPECT_FALSE(FollowForearm(graph_, 0, .04, {1, 0, 1, 0, 0, 1}, shoulder_).has_value());
 }
 
 }  // namespace

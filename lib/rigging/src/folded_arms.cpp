@@ -17,7 +17,8 @@ constexpr double kArmShare = .5;
 // people, .65 up to the elbow.
 constexpr double kArmPerTrunk = .8;
 constexpr double kShortArm = .05;  // of the shortfall: such arms end early
-// Radii of a forearm's spheres, in those of the elbow: what is thicker belongs to the trunk.
+// Radii of a forearm's spheres, in that of the arm at the elbow: what is thicker belongs to the
+// trunk.
 constexpr double kThickest = 1.5;
 // Lengths in those of the upper arm: to the tip of the hand at most, to the wrist, and what is too
 // short to be a forearm.
@@ -49,10 +50,11 @@ bool EndsEarly(const Eigen::Matrix3Xd& joints, int shoulder) {
          LimbLength(joints, shoulder) < kArmPerTrunk * trunk;
 }
 
-std::optional<FoldedArm> FollowForearm(const SphereGraph& graph, int elbow,
+std::optional<FoldedArm> FollowForearm(const SphereGraph& graph, int elbow, double radius,
                                        const std::vector<char>& is_taken,
                                        const Eigen::Vector3d& shoulder) {
   const Sphere& start = graph.sphere(elbow);
+  const double thickest = kThickest * radius;
   const double upper_arm = (start.center - shoulder).norm();
   // Dijkstra among thin spheres; ties go to the lower index.
   std::vector<double> lengths(graph.size(), std::numeric_limits<double>::infinity());
@@ -74,8 +76,8 @@ std::optional<FoldedArm> FollowForearm(const SphereGraph& graph, int elbow,
     for (const int j : graph.neighbors(i)) {
       const Sphere& next = graph.sphere(j);
       const double through = length + (next.center - graph.sphere(i).center).norm();
-      if (is_taken[j] != 0 || next.radius > kThickest * start.radius ||
-          through > kLongest * upper_arm || !(through < lengths[j])) {
+      if (is_taken[j] != 0 || next.radius > thickest || through > kLongest * upper_arm ||
+          !(through < lengths[j])) {
         continue;
       }
       lengths[j] = through;
@@ -101,8 +103,14 @@ void UnfoldArms(const SphereGraph& graph, const SearchTree& tree, const std::vec
       return known.joint == elbow || known.joint == hand;
     });
     if (is_placed) continue;
+    // The last sphere may be a small one beside the others.
+    const std::vector<int> path = graph.Path(spheres[tree[k].parent], spheres[k]);
+    double radius = 0;
+    for (size_t i = path.size() < 3 ? 0 : path.size() - 3; i < path.size(); ++i) {
+      radius = std::max(radius, graph.sphere(path[i]).radius);
+    }
     const std::optional<FoldedArm> arm =
-        FollowForearm(graph, spheres[k], is_taken, joints->col(shoulder));
+        FollowForearm(graph, spheres[k], radius, is_taken, joints->col(shoulder));
     if (!arm) continue;
     joints->col(elbow) = arm->elbow;
     joints->col(hand) = arm->hand;

@@ -26,8 +26,9 @@ struct FoldedArm {
 
 // Follows the forearm from the elbow, on which the search put the hand: through spheres that are
 // as thin as an arm and that no chain runs through, straight, and about as far as the upper arm is
-// long. is_taken: per sphere of the graph. None when there is no such way.
-std::optional<FoldedArm> FollowForearm(const SphereGraph& graph, int elbow,
+// long. radius: of the arm at the elbow; is_taken: per sphere of the graph. None when there is no
+// such way.
+std::optional<FoldedArm> FollowForearm(const SphereGraph& graph, int elbow, double radius,
                                        const std::vector<char>& is_taken,
                                        const Eigen::Vector3d& shoulder);
 
