@@ -26,7 +26,7 @@ constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .
 // human feet or knees: most beasts on their hind legs have not.
 constexpr double kHumanEvidence = .4;
 constexpr double kSoupShare = .05;  // components per triangle: few triangles have a neighbor
-constexpr Eigen::Index kManyVertices = 150'000;
+constexpr Eigen::Index kManyVertices = 50'000;
 constexpr double kUpCosine = .9;  // 26 degrees: a character that leans is no reason for a warning
 
 FacingEvidence EvidenceOf(const MeshSequence& sequence, const BodyShell& shell,

@@ -16,7 +16,7 @@ namespace {
 constexpr double kLongestSide = 0.9;
 // A surface of so many triangles is replaced by its outer surface even when it is clean, whose
 // count follows from the grid.
-constexpr int kManyTriangles = 200'000;
+constexpr int kManyTriangles = 100'000;
 // A clean surface has at most this share of its area inside of itself (hands on hips), which is
 // looked at in so many triangles.
 constexpr double kMostBuried = .01;
