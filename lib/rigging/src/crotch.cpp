@@ -26,6 +26,9 @@ constexpr double kPelvisAbove = .08;
 // the crotch to less than that share of its area. A hem grows wider instead, and the pelvis of
 // people keeps .75 to 1.
 constexpr double kLongestBelly = 1.75, kNarrowed = .7;
+// Half way up to the chest a fat body has at least that share of its area; a skirt whose hem is
+// drawn in, like a balloon, ends at a waist of half of it.
+constexpr double kWaist = .65;
 // The hips of the legs lie that many radii of the pelvis above the crotch. Five bodies that artists
 // rigged have -.1, .7, .8, .9 and 1.4.
 constexpr double kHipsInPelvis = .8;
@@ -129,17 +132,15 @@ std::optional<Crotch> FindCrotch(const DistanceField& field,
   const auto section_at = [&](double y) {
     return Section(field, input_from_upright, middle(y), reach);
   };
-  const auto patch_above = [&](double share) {
-    const double y = crotch + share * height;
-    return section_at(y).PatchAround(middle(y));
-  };
+  const auto patch_at = [&](double y) { return section_at(y).PatchAround(middle(y)); };
   const double y_below = crotch - kSliceShare * height;
   Section lower = section_at(y_below);
   const double legs = lower.PatchAround(PointOfLeg(joints, kLeftFoot, y_below)).area +
                       lower.PatchAround(PointOfLeg(joints, kRightFoot, y_below)).area;
-  const double above = patch_above(kSliceShare).area;
-  const Patch pelvis = patch_above(kPelvisAbove);
-  const bool is_belly = pelvis.aspect < kLongestBelly && above < kNarrowed * pelvis.area;
+  const double above = patch_at(crotch + kSliceShare * height).area;
+  const Patch pelvis = patch_at(crotch + kPelvisAbove * height);
+  const bool is_belly = pelvis.aspect < kLongestBelly && above < kNarrowed * pelvis.area &&
+                        patch_at(.5 * (crotch + high)).area > kWaist * pelvis.area;
   const double hips = .5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg));
   const bool are_legs = legs > kLegShare * above && crotch - low >= kShortestLeg * (hips - low);
   if (!is_belly && !are_legs) return std::nullopt;
