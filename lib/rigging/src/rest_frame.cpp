@@ -117,10 +117,10 @@ class RestFrameSearch {
     return embedding;
   }
 
-  // The surface of a frame serves both grids, and a full volume every orientation of its frame.
+  // The surface of a frame serves both grids, and a volume every orientation of its frame.
   absl::StatusOr<std::shared_ptr<const BodyVolume>> VolumeOf(int frame, int resolution) {
-    const bool is_full = resolution == options_.volume.resolution;
-    if (is_full && full_volumes_.contains(frame)) return full_volumes_.at(frame);
+    std::shared_ptr<const BodyVolume>& volume = volumes_[{frame, resolution}];
+    if (volume != nullptr) return volume;
     BodyVolumeOptions options = options_.volume;
     options.num_threads = options_.num_threads;
     options.resolution = resolution;
@@ -136,9 +136,8 @@ class RestFrameSearch {
       surface = std::make_shared<const BodySurface>(std::move(prepared));
     }
     PLEAT_ASSIGN_OR_RETURN(BodyVolume computed, ComputeBodyVolume(surface, options, progress_));
-    auto volume = std::make_shared<const BodyVolume>(std::move(computed));
-    if (is_full) full_volumes_[frame] = volume;
-    return std::shared_ptr<const BodyVolume>(std::move(volume));
+    volume = std::make_shared<const BodyVolume>(std::move(computed));
+    return volume;
   }
 
   absl::StatusOr<FrameEmbedding> Embed(int frame, int resolution, const Eigen::Matrix3d& upright) {
@@ -220,12 +219,12 @@ class RestFrameSearch {
     std::vector<int> frames = {first_frame};
     if (!probed_.empty()) frames.push_back(probed_[0]);
     for (size_t k = 0; k < frames.size() && k < kMaxTurnedFrames; ++k) {
-      const absl::StatusOr<std::shared_ptr<const BodyVolume>> volume =
-          VolumeOf(frames[k], options_.volume.resolution);
-      if (absl::IsCancelled(volume.status())) return volume.status();
-      if (!volume.ok()) continue;
-      PLEAT_ASSIGN_OR_RETURN(const std::optional<Eigen::Matrix3d> upright,
-                             FindOrientation(**volume));
+      PLEAT_ASSIGN_OR_RETURN(std::optional<Eigen::Matrix3d> upright,
+                             FindOrientationOn(frames[k], options_.volume.resolution));
+      // As in TryFully, either grid may miss a way.
+      if (!upright) {
+        PLEAT_ASSIGN_OR_RETURN(upright, FindOrientationOn(frames[k], options_.probe_resolution));
+      }
       if (!upright) continue;
       FrameEmbedding as_it_stands = std::move(best_);
       best_ = {};
@@ -240,6 +239,14 @@ class RestFrameSearch {
       best_ = std::move(as_it_stands);
     }
     return absl::OkStatus();
+  }
+
+  // Returns none as well where the frame has no volume.
+  absl::StatusOr<std::optional<Eigen::Matrix3d>> FindOrientationOn(int frame, int resolution) {
+    const absl::StatusOr<std::shared_ptr<const BodyVolume>> volume = VolumeOf(frame, resolution);
+    if (absl::IsCancelled(volume.status())) return volume.status();
+    if (!volume.ok()) return std::optional<Eigen::Matrix3d>();
+    return FindOrientation(**volume);
   }
 
   // Looks at a frame again as if its forearms may point anywhere: arms folded before the chest.
@@ -315,8 +322,9 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  std::map<int, std::shared_ptr<const BodySurface>> surfaces_;     // by frame; of the few tried
-  std::map<int, std::shared_ptr<const BodyVolume>> full_volumes_;  // of one or two of them
+  std::map<int, std::shared_ptr<const BodySurface>> surfaces_;  // by frame; of the few tried
+  // By frame and resolution; the full ones are of one or two frames.
+  std::map<std::pair<int, int>, std::shared_ptr<const BodyVolume>> volumes_;
   std::optional<int> growth_;  // BodySurface::growth of the first repaired surface
   double least_residual_ = std::numeric_limits<double>::infinity();  // over all frames tried
   bool has_folded_arms_ = false;
