@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "glb_container.h"
 #include "json_depth.h"
-#include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
@@ -116,12 +116,6 @@ absl::Status JoinBuffers(const std::string& path, const MeshLimits& limits, json
   return absl::OkStatus();
 }
 
-void WriteChunk(uint32_t kind, std::string_view bytes, ByteWriter* writer) {
-  writer->Write(static_cast<uint32_t>(bytes.size()));
-  writer->Write(kind);
-  writer->WriteRaw(bytes);
-}
-
 }  // namespace
 
 bool IsGltfText(std::string_view bytes) {
@@ -141,14 +135,28 @@ absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& p
   std::string binary;
   PLEAT_RETURN_IF_ERROR(JoinBuffers(path, limits, &root, &binary));
   std::string document = root.dump(-1, ' ', false, json::error_handler_t::replace);
+  return JoinGlb(std::move(document), binary);
+}
+
+std::string JoinGlb(std::string document, std::string_view binary) {
   document.resize((document.size() + 3) / 4 * 4, ' ');
-  ByteWriter writer;
-  writer.Write(kMagic);
-  writer.Write(uint32_t{2});
-  writer.Write(static_cast<uint32_t>(28 + document.size() + binary.size()));
-  WriteChunk(kJsonChunk, document, &writer);
-  WriteChunk(kBinaryChunk, binary, &writer);
-  return writer.Release();
+  std::string bytes;
+  bytes.reserve(28 + document.size() + binary.size() + 3);
+  const auto append = [&](uint32_t value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  const auto binary_bytes = static_cast<uint32_t>((binary.size() + 3) / 4 * 4);
+  append(kMagic);
+  append(2);
+  append(static_cast<uint32_t>(28 + document.size()) + binary_bytes);
+  append(static_cast<uint32_t>(document.size()));
+  append(kJsonChunk);
+  bytes.append(document);
+  append(binary_bytes);
+  append(kBinaryChunk);
+  bytes.append(binary);
+  bytes.resize((bytes.size() + 3) / 4 * 4);
+  return bytes;
 }
 
 }  // namespace pleat

@@ -18,4 +18,11 @@ bool IsGltfText(std::string_view bytes);
 absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& path,
                                      const MeshLimits& limits);
 
+// The bytes of the file `path` as a GLB, whichever form it has. What is neither is returned as it
+// is, for the reader of GLB to refuse.
+absl::StatusOr<std::string> ReadGltfBytes(const std::string& path, const MeshLimits& limits);
+
+// A GLB of two chunks: the JSON and one buffer. Both together have less than 4 GiB.
+std::string JoinGlb(std::string document, std::string_view binary);
+
 }  // namespace pleat

@@ -18,6 +18,23 @@ void AddMember(const std::string& key, const char* name, const std::string& arra
   zip->Add((key.empty() ? std::string(name) : key) + ".npy", array);
 }
 
+// Of all frames, without putting them together first.
+void AddPositions(const MeshSequence& sequence, const NpzKeys& keys, ZipWriter* zip) {
+  const std::string header = NpyHeader("<f4", {sequence.num_frames(), sequence.num_vertices(), 3});
+  std::vector<std::string_view> parts = {header};
+  size_t num_bytes = 0;
+  for (int t = 0; t < sequence.num_frames(); ++t) {
+    const Eigen::Matrix3Xf& frame = sequence.frame(t);
+    parts.emplace_back(reinterpret_cast<const char*>(frame.data()),
+                       static_cast<size_t>(frame.size()) * sizeof(float));
+    num_bytes += parts.back().size();
+  }
+  constexpr size_t kRoomForHeaders = 65536;
+  zip->Reserve(num_bytes + kRoomForHeaders +
+               sequence.topology().corner_vertices().size() * 2 * sizeof(int32_t));
+  zip->Add((keys.positions.empty() ? std::string("positions") : keys.positions) + ".npy", parts);
+}
+
 void AddFaces(const Topology& topology, const NpzKeys& keys, ZipWriter* zip) {
   const std::vector<int32_t>& corners = topology.corner_vertices();
   std::vector<int32_t> sizes;
@@ -71,7 +88,7 @@ std::string EncodeNpy(const MeshSequence& sequence) {
 std::string EncodeNpz(const MeshSequence& sequence, const NpzWriteOptions& options) {
   ZipWriter zip({.deflates = options.compressed});
   const NpzKeys& keys = options.keys;
-  AddMember(keys.positions, "positions", EncodeNpy(sequence), &zip);
+  AddPositions(sequence, keys, &zip);
   AddFaces(sequence.topology(), keys, &zip);
   const FrameRate rate = sequence.frame_rate();
   const int32_t fraction[] = {rate.numerator, rate.denominator};

@@ -98,11 +98,16 @@ std::string EncodePointCache(const PointCache& cache) {
   writer.Write(cache.start_frame);
   writer.Write(cache.sample_rate);
   writer.Write(static_cast<int32_t>(cache.frames.size()));
+  std::string bytes = writer.Release();
+  const MeshCounts counts = {.num_vertices = cache.frames[0].cols(),
+                             .num_frames = static_cast<int64_t>(cache.frames.size())};
+  bytes.reserve(bytes.size() + counts.position_bytes());
   for (const Eigen::Matrix3Xf& frame : cache.frames) {
     assert(frame.cols() == cache.frames[0].cols());
-    writer.WriteArray(std::span(frame.data(), static_cast<size_t>(frame.size())));
+    bytes.append(reinterpret_cast<const char*>(frame.data()),
+                 static_cast<size_t>(frame.size()) * sizeof(float));
   }
-  return writer.Release();
+  return bytes;
 }
 
 absl::Status WritePointCache(const std::string& path, const PointCache& cache) {

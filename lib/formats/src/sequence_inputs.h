@@ -42,6 +42,9 @@ absl::StatusOr<MeshSequence> ReadFrameFiles(const std::vector<std::string>& path
                                             const std::string& name, const std::string& input,
                                             const InputReading& reading);
 
+// A glTF file: the frames of its animation, or one where nothing moves.
+absl::StatusOr<MeshSequence> ReadGltfSequence(const std::string& path, const InputReading& reading);
+
 // A point cache (.pc2, .mdd) with the mesh beside it.
 absl::StatusOr<MeshSequence> ReadPointCacheSequence(const std::string& path,
                                                     const InputReading& reading);

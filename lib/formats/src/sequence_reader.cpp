@@ -84,7 +84,8 @@ absl::StatusOr<MeshSequence> WithoutObject(absl::StatusOr<MeshSequence> sequence
 absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
   const std::string extension = LowerExtension(path);
   if (extension == ".abc") return ReadAlembicSequence(path, reading);
-  if (IsMeshFile(path) || IsGltfFile(path)) {
+  if (IsGltfFile(path)) return WithoutObject(ReadGltfSequence(path, reading), path, reading);
+  if (IsMeshFile(path)) {
     return WithoutObject(ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading),
                          path, reading);
   }
@@ -129,6 +130,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
                                                    "such as '",
                                                    caches[0], "', or a pattern for its meshes"));
   }
+  if (meshes.empty() && gltf_files.size() == 1) return ReadOneFile(gltf_files[0], reading);
   if (meshes.empty()) meshes = std::move(gltf_files);
   if (meshes.empty()) {
     return absl::NotFoundError(

@@ -58,9 +58,10 @@ absl::Status ReadWideSizes(std::string_view extra, ZipMember* member) {
   return absl::OkStatus();
 }
 
-uint32_t ChecksumOf(std::string_view bytes) {
+// before: the checksum of what comes before these bytes.
+uint32_t ChecksumOf(std::string_view bytes, uint32_t before = 0) {
   return static_cast<uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+      crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 // Fills `inflated` as far as the data go. Says whether they end there; then its size fits.
@@ -241,17 +242,26 @@ std::string ZipArchive::Start(const ZipMember& member, uint64_t num_bytes) const
   return start;
 }
 
-void ZipWriter::Add(const std::string& name, std::string_view bytes) {
-  ZipMember member{.name = name, .bytes = bytes.size(), .header = bytes_.size()};
-  member.crc = ChecksumOf(bytes);
-  std::string deflated;
-  if (options_.deflates) {
-    member.method = kDeflated;
-    deflated = Deflate(bytes);
+void ZipWriter::Add(const std::string& name, std::span<const std::string_view> parts) {
+  ZipMember member{.name = name, .header = bytes_.size()};
+  for (const std::string_view part : parts) {
+    member.bytes += part.size();
+    member.crc = ChecksumOf(part, member.crc);
   }
-  const std::string_view data = options_.deflates ? std::string_view(deflated) : bytes;
-  member.compressed_bytes = data.size();
-  const bool is_wide = std::max(data.size(), bytes.size()) >= options_.wide_from;
+  member.compressed_bytes = member.bytes;
+  std::string deflated;
+  std::string_view deflated_part;
+  if (options_.deflates) {
+    std::string whole;
+    whole.reserve(member.bytes);
+    for (const std::string_view part : parts) whole.append(part);
+    deflated = Deflate(whole);
+    deflated_part = deflated;
+    parts = std::span(&deflated_part, 1);
+    member.method = kDeflated;
+    member.compressed_bytes = deflated.size();
+  }
+  const bool is_wide = std::max(member.compressed_bytes, member.bytes) >= options_.wide_from;
   ByteWriter writer;
   writer.Write(kLocalMagic);
   WriteCommonFields(member, is_wide, &writer);
@@ -264,7 +274,7 @@ void ZipWriter::Add(const std::string& name, std::string_view bytes) {
     writer.Write(member.compressed_bytes);
   }
   bytes_.append(writer.bytes());
-  bytes_.append(data);
+  for (const std::string_view part : parts) bytes_.append(part);
   members_.push_back(std::move(member));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,8 +60,11 @@ class ZipWriter {
  public:
   explicit ZipWriter(ZipWriterOptions options = {}) : options_(options) {}
 
-  // Members need names that differ.
-  void Add(const std::string& name, std::string_view bytes);
+  // Makes room for an archive of that many bytes.
+  void Reserve(size_t num_bytes) { bytes_.reserve(num_bytes); }
+  // Members need names that differ. The parts are its bytes, one after the other.
+  void Add(const std::string& name, std::span<const std::string_view> parts);
+  void Add(const std::string& name, std::string_view bytes) { Add(name, std::span(&bytes, 1)); }
   std::string Finish();
 
  private:

@@ -17,8 +17,9 @@
 namespace pleat {
 
 struct ReadSequenceOptions {
-  // Unset: the rate of the input where it has one (.pseq, .abc, .mdd, .npz), otherwise 30 fps. The "rate" of a
-  // point cache is frames of its host's timeline per sample; it is named in a note and not used.
+  // Unset: the rate of the input where it has one (.pseq, .abc, .mdd, .npz), otherwise 30 fps. The
+  // "rate" of a point cache is frames of its host's timeline per sample; it is named in a note and
+  // not used.
   std::optional<FrameRate> frame_rate{};
   // The object of an Alembic archive that is read: a mesh, or one with meshes below it. Empty: all
   // meshes that move. A note says when the input is no archive.
