@@ -24,11 +24,11 @@ TEST(GlbWriterTest, PositionsComeBackBitByBitInTheirOrder) {
   // Coordinates that pass zero, where the sum of mesh and target loses the last bits.
   std::vector<Eigen::Matrix3Xf> frames;
   const MeshSequence box = PaintedBox(1, true);
-  for (int t = 0; t < 40; ++t) {
+  for (int t = 0; t < 400; ++t) {
     Eigen::Matrix3Xf frame = box.frame(0);
     for (Eigen::Index i = 0; i < frame.size(); ++i) {
       frame.data()[i] = std::sin(1.7f * static_cast<float>(t + 3 * i)) *
-                        std::exp(-static_cast<float>((t * 7 + i) % 12));
+                        (t % 2 == 0 ? std::exp(-static_cast<float>((t * 7 + i) % 12)) : 1.f);
     }
     if (t == 5) frame(1, 1) = -0.f;
     frames.push_back(frame);
@@ -38,9 +38,9 @@ TEST(GlbWriterTest, PositionsComeBackBitByBitInTheirOrder) {
                             {.frame_rate = {4115, 226}, .appearance = box.appearance()});
   InputReport report;
   PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence back, ThroughGlb(sequence, &report));
-  ASSERT_EQ(back.num_frames(), 40);
+  ASSERT_EQ(back.num_frames(), 400);
   ASSERT_EQ(back.num_vertices(), sequence.num_vertices());
-  for (int t = 0; t < 40; ++t) {
+  for (int t = 0; t < 400; ++t) {
     EXPECT_EQ(std::memcmp(back.frame(t).data(), sequence.frame(t).data(),
                           static_cast<size_t>(back.frame(t).size()) * 4),
               0)

@@ -47,7 +47,7 @@ std::optional<GlbRemainders> ReadGlbRemainders(const GlbContainer& glb, const Gl
 
 void ApplyGlbRemainders(const GlbRemainders& remainders, const std::vector<float>& weights,
                         const Eigen::Matrix3Xd& base, Eigen::Matrix3Xf* frame) {
-  constexpr double kRounding = 1e-7;
+  constexpr double kRounding = 2.5e-7;  // two roundings to float32, of the sum and of the delta
   const auto one = std::ranges::find(weights, 1.f);
   const auto target = static_cast<size_t>(one - weights.begin());
   if (one == weights.end() || weights.size() + 1 != remainders.begins.size() ||
