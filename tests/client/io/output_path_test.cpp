@@ -136,10 +136,10 @@ TEST_F(OutputPathTest, EveryVerbRefusesAnUnknownEndingBeforeItReads) {
       {{"rig", none}, ".json"},
       {{"train", none}, ".pleat"},
       {{"motion", none, none}, ".json"},
-      {{"pose", none, "--motion", none}, ".pc2, .abc, .pseq"},
+      {{"pose", none, "--motion", none}, ".pc2, .mdd, .abc"},
       {{"render", none}, ".png"},
       {{"compress", none, "--kg", "1"}, ".plt"},
-      {{"decompress", none}, ".pc2, .abc, .pseq"},
+      {{"decompress", none}, ".pc2, .mdd, .abc"},
       {{"generate", "performer"}, "none"},
       {{"models", "download", "a"}, ".pleat"},
       {{"compressed", "download", "a"}, ".plt"}};
