@@ -125,7 +125,7 @@ int Run(const std::string& folder, int num_frames, int num_vertices) {
        [&] { return ReadPointCache(stem + "pc2").ok(); }},
       {"MDD", stem + "mdd", [&] { return WriteMdd(stem + "mdd", mdd).ok(); },
        [&] { return ReadMdd(stem + "mdd").ok(); }},
-      {"NPZ", stem + "npz", [&] { return WriteFile(stem + "npz", EncodeNpz(sequence)).ok(); },
+      {"NPZ", stem + "npz", [&] { return WriteNpz(stem + "npz", sequence).ok(); },
        [&] { return read_npz(stem + "npz"); }},
       {"NPZ, deflated", folder + "/deflated.npz",
        [&] {

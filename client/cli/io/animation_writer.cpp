@@ -12,7 +12,6 @@
 #include "absl/strings/str_join.h"
 #include "cli/exit_code.h"
 #include "cli/io/draco_folder.h"
-#include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/alembic_writer.h"
 #include "pleat/formats/glb_writer.h"
@@ -72,12 +71,12 @@ WriteSequence WriterOf(AnimationFormat format) {
     case AnimationFormat::kNpy:
       return [](const auto& path, const auto& sequence, const auto&) -> absl::Status {
         PLEAT_RETURN_IF_ERROR(WriteMeshBeside(path, sequence));
-        return WriteFile(path, EncodeNpy(sequence));
+        return WriteNpy(path, sequence);
       };
     case AnimationFormat::kNpz:
       return [](const auto& path, const auto& sequence, const auto& options) {
-        return WriteFile(path, EncodeNpz(sequence, {.keys = options.npz_keys,
-                                                    .first_frame = options.first_frame}));
+        return WriteNpz(path, sequence,
+                        {.keys = options.npz_keys, .first_frame = options.first_frame});
       };
     case AnimationFormat::kAbc:
       return [](const auto& path, const auto& sequence, const auto& options) {

@@ -5,6 +5,7 @@
 
 #include "npy_array.h"
 #include "npz_arrays.h"
+#include "pleat/base/file_parts.h"
 #include "pleat/formats/npz.h"
 #include "zip_archive.h"
 
@@ -18,21 +19,16 @@ void AddMember(const std::string& key, const char* name, const std::string& arra
   zip->Add((key.empty() ? std::string(name) : key) + ".npy", array);
 }
 
-// Of all frames, without putting them together first.
-void AddPositions(const MeshSequence& sequence, const NpzKeys& keys, ZipWriter* zip) {
-  const std::string header = NpyHeader("<f4", {sequence.num_frames(), sequence.num_vertices(), 3});
-  std::vector<std::string_view> parts = {header};
-  size_t num_bytes = 0;
+// A header, which `kept` keeps, and a view of each frame.
+std::vector<std::string_view> PositionParts(const MeshSequence& sequence, std::string* kept) {
+  *kept = NpyHeader("<f4", {sequence.num_frames(), sequence.num_vertices(), 3});
+  std::vector<std::string_view> parts = {*kept};
   for (int t = 0; t < sequence.num_frames(); ++t) {
     const Eigen::Matrix3Xf& frame = sequence.frame(t);
     parts.emplace_back(reinterpret_cast<const char*>(frame.data()),
                        static_cast<size_t>(frame.size()) * sizeof(float));
-    num_bytes += parts.back().size();
   }
-  constexpr size_t kRoomForHeaders = 65536;
-  zip->Reserve(num_bytes + kRoomForHeaders +
-               sequence.topology().corner_vertices().size() * 2 * sizeof(int32_t));
-  zip->Add((keys.positions.empty() ? std::string("positions") : keys.positions) + ".npy", parts);
+  return parts;
 }
 
 void AddFaces(const Topology& topology, const NpzKeys& keys, ZipWriter* zip) {
@@ -70,34 +66,49 @@ void AddAppearance(const MeshAppearance& appearance, ZipWriter* zip) {
   }
 }
 
+// header: keeps bytes that the archive refers to.
+void AddMembers(const MeshSequence& sequence, const NpzKeys& keys, double first_frame,
+                std::string* header, ZipWriter* zip) {
+  zip->Add((keys.positions.empty() ? std::string("positions") : keys.positions) + ".npy",
+           PositionParts(sequence, header));
+  AddFaces(sequence.topology(), keys, zip);
+  const FrameRate rate = sequence.frame_rate();
+  const int32_t fraction[] = {rate.numerator, rate.denominator};
+  AddMember(keys.frame_rate, "frame_rate", EncodeNpyIntegers(fraction, {2}), zip);
+  const auto first = static_cast<float>(first_frame);
+  zip->Add("first_frame.npy", EncodeNpyFloats(std::span(&first, 1), {}));
+  if (!sequence.name().empty()) zip->Add("name.npy", EncodeNpyTexts({sequence.name()}));
+  AddAppearance(sequence.appearance(), zip);
+}
+
 }  // namespace
 
 std::string EncodeNpy(const MeshSequence& sequence) {
-  std::string bytes = NpyHeader("<f4", {sequence.num_frames(), sequence.num_vertices(), 3});
-  bytes.reserve(bytes.size() + MeshCounts{.num_vertices = sequence.num_vertices(),
-                                          .num_frames = sequence.num_frames()}
-                                   .position_bytes());
-  for (int t = 0; t < sequence.num_frames(); ++t) {
-    const Eigen::Matrix3Xf& frame = sequence.frame(t);
-    bytes.append(reinterpret_cast<const char*>(frame.data()),
-                 static_cast<size_t>(frame.size()) * sizeof(float));
-  }
+  std::string header, bytes;
+  const std::vector<std::string_view> parts = PositionParts(sequence, &header);
+  bytes.reserve(header.size() + (parts.size() - 1) * parts[1].size());
+  for (const std::string_view part : parts) bytes.append(part);
   return bytes;
+}
+
+absl::Status WriteNpy(const std::string& path, const MeshSequence& sequence) {
+  std::string header;
+  return WriteFileParts(path, PositionParts(sequence, &header));
 }
 
 std::string EncodeNpz(const MeshSequence& sequence, const NpzWriteOptions& options) {
   ZipWriter zip({.deflates = options.compressed});
-  const NpzKeys& keys = options.keys;
-  AddPositions(sequence, keys, &zip);
-  AddFaces(sequence.topology(), keys, &zip);
-  const FrameRate rate = sequence.frame_rate();
-  const int32_t fraction[] = {rate.numerator, rate.denominator};
-  AddMember(keys.frame_rate, "frame_rate", EncodeNpyIntegers(fraction, {2}), &zip);
-  const auto first_frame = static_cast<float>(options.first_frame);
-  zip.Add("first_frame.npy", EncodeNpyFloats(std::span(&first_frame, 1), {}));
-  if (!sequence.name().empty()) zip.Add("name.npy", EncodeNpyTexts({sequence.name()}));
-  AddAppearance(sequence.appearance(), &zip);
+  std::string header;
+  AddMembers(sequence, options.keys, options.first_frame, &header, &zip);
   return zip.Finish();
+}
+
+absl::Status WriteNpz(const std::string& path, const MeshSequence& sequence,
+                      const NpzWriteOptions& options) {
+  ZipWriter zip({.deflates = options.compressed});
+  std::string header;
+  AddMembers(sequence, options.keys, options.first_frame, &header, &zip);
+  return WriteFileParts(path, zip.FinishParts());
 }
 
 }  // namespace pleat

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/bytes.h"
@@ -243,21 +244,19 @@ std::string ZipArchive::Start(const ZipMember& member, uint64_t num_bytes) const
 }
 
 void ZipWriter::Add(const std::string& name, std::span<const std::string_view> parts) {
-  ZipMember member{.name = name, .header = bytes_.size()};
+  ZipMember member{.name = name, .header = num_bytes_};
   for (const std::string_view part : parts) {
     member.bytes += part.size();
     member.crc = ChecksumOf(part, member.crc);
   }
   member.compressed_bytes = member.bytes;
   std::string deflated;
-  std::string_view deflated_part;
   if (options_.deflates) {
     std::string whole;
     whole.reserve(member.bytes);
     for (const std::string_view part : parts) whole.append(part);
     deflated = Deflate(whole);
-    deflated_part = deflated;
-    parts = std::span(&deflated_part, 1);
+    parts = {};
     member.method = kDeflated;
     member.compressed_bytes = deflated.size();
   }
@@ -273,14 +272,36 @@ void ZipWriter::Add(const std::string& name, std::span<const std::string_view> p
     writer.Write(member.bytes);
     writer.Write(member.compressed_bytes);
   }
-  bytes_.append(writer.bytes());
-  for (const std::string_view part : parts) bytes_.append(part);
+  Append(writer.Release());
+  if (options_.deflates) Append(std::move(deflated));
+  for (const std::string_view part : parts) {
+    parts_.push_back(part);
+    num_bytes_ += part.size();
+  }
   members_.push_back(std::move(member));
 }
 
+void ZipWriter::Add(const std::string& name, std::string bytes) {
+  const std::string_view part = kept_.emplace_back(std::move(bytes));
+  Add(name, std::span(&part, 1));
+}
+
+void ZipWriter::Append(std::string bytes) {
+  parts_.emplace_back(kept_.emplace_back(std::move(bytes)));
+  num_bytes_ += parts_.back().size();
+}
+
 std::string ZipWriter::Finish() {
+  std::string bytes;
+  const std::vector<std::string_view> parts = FinishParts();
+  bytes.reserve(num_bytes_);
+  for (const std::string_view part : parts) bytes.append(part);
+  return bytes;
+}
+
+std::vector<std::string_view> ZipWriter::FinishParts() {
   ByteWriter list;
-  const uint64_t begin = bytes_.size();
+  const uint64_t begin = num_bytes_;
   const bool is_wide = begin >= options_.wide_from || members_.size() >= 0xffff;
   for (const ZipMember& member : members_) {
     list.Write(kListMagic);
@@ -320,8 +341,8 @@ std::string ZipWriter::Finish() {
   list.Write(is_wide ? kIsWide : static_cast<uint32_t>(size));
   list.Write(is_wide ? kIsWide : static_cast<uint32_t>(begin));
   list.Write(uint16_t{0});
-  bytes_.append(list.bytes());
-  return std::move(bytes_);
+  Append(list.Release());
+  return parts_;
 }
 
 }  // namespace pleat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,16 +61,21 @@ class ZipWriter {
  public:
   explicit ZipWriter(ZipWriterOptions options = {}) : options_(options) {}
 
-  // Makes room for an archive of that many bytes.
-  void Reserve(size_t num_bytes) { bytes_.reserve(num_bytes); }
-  // Members need names that differ. The parts are its bytes, one after the other.
+  // Members need names that differ. The parts are its bytes, one after the other; stored ones are
+  // not copied and must outlive the writer.
   void Add(const std::string& name, std::span<const std::string_view> parts);
-  void Add(const std::string& name, std::string_view bytes) { Add(name, std::span(&bytes, 1)); }
+  void Add(const std::string& name, std::string bytes);
   std::string Finish();
+  // The archive in parts, which live as long as this object and what was added.
+  std::vector<std::string_view> FinishParts();
 
  private:
+  void Append(std::string bytes);  // which are kept here
+
   ZipWriterOptions options_;
-  std::string bytes_;
+  std::deque<std::string> kept_;
+  std::vector<std::string_view> parts_;
+  uint64_t num_bytes_ = 0;
   std::vector<ZipMember> members_;
 };
 

@@ -46,7 +46,10 @@ struct NpzWriteOptions {
   bool compressed = false;
 };
 std::string EncodeNpz(const MeshSequence& sequence, const NpzWriteOptions& options = {});
+absl::Status WriteNpz(const std::string& path, const MeshSequence& sequence,
+                      const NpzWriteOptions& options = {});
 // The positions alone, float32 of shape (T, V, 3).
 std::string EncodeNpy(const MeshSequence& sequence);
+absl::Status WriteNpy(const std::string& path, const MeshSequence& sequence);
 
 }  // namespace pleat
