@@ -113,6 +113,7 @@ int Run(const std::string& folder, int num_frames, int num_vertices) {
   const MeshSequence sequence = MakeTorus(num_frames, num_vertices);
   const std::vector<Eigen::Matrix3Xf> frames = FramesOf(sequence);
   const std::string stem = folder + "/torus.";
+  const PointCache cache{.frames = frames};
   MddCache mdd{.times_s = {}, .frames = frames};
   for (int t = 0; t < num_frames; ++t) mdd.times_s.push_back(static_cast<float>(t) / 30);
   if (!WriteObj(stem + "obj", sequence.topology(), frames[0]).ok()) return 1;
@@ -121,7 +122,7 @@ int Run(const std::string& folder, int num_frames, int num_vertices) {
     return bytes.ok() && DecodeNpz(*bytes, path).ok();
   };
   const std::vector<Row> rows = {
-      {"PC2", stem + "pc2", [&] { return WritePointCache(stem + "pc2", {.frames = frames}).ok(); },
+      {"PC2", stem + "pc2", [&] { return WritePointCache(stem + "pc2", cache).ok(); },
        [&] { return ReadPointCache(stem + "pc2").ok(); }},
       {"MDD", stem + "mdd", [&] { return WriteMdd(stem + "mdd", mdd).ok(); },
        [&] { return ReadMdd(stem + "mdd").ok(); }},

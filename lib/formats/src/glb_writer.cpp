@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "gltf_file.h"
-#include "pleat/base/file.h"
+#include "pleat/base/file_parts.h"
 #include "pleat/base/status.h"
 #include "split_vertices.h"
 
@@ -31,6 +32,10 @@ class BufferWriter {
   // Appends elements of one accessor and returns its index. target: 0 = none.
   template <typename T>
   size_t Add(const std::vector<T>& values, const char* type, int num_components, int target) {
+    return Add(std::span<const T>(values), type, num_components, target);
+  }
+  template <typename T>
+  size_t Add(std::span<const T> values, const char* type, int num_components, int target) {
     json view = {
         {"buffer", 0}, {"byteOffset", binary_.size()}, {"byteLength", values.size() * sizeof(T)}};
     if (target != 0) view["target"] = target;
@@ -44,8 +49,8 @@ class BufferWriter {
     return accessors_.size() - 1;
   }
   size_t AddPoints(const Eigen::Matrix3Xf& points) {
-    const size_t index = Add(std::vector<float>(points.data(), points.data() + points.size()),
-                             "VEC3", 3, kVertexBuffer);
+    const std::span<const float> values(points.data(), static_cast<size_t>(points.size()));
+    const size_t index = Add(values, "VEC3", 3, kVertexBuffer);
     const Eigen::Vector3f low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
     accessors_[index]["min"] = {low.x(), low.y(), low.z()};
     accessors_[index]["max"] = {high.x(), high.y(), high.z()};
@@ -56,11 +61,13 @@ class BufferWriter {
     accessors_[accessor]["max"] = {high};
   }
 
-  std::string Finish(json root) {
+  // The binary chunk is what `binary` receives; everything before it is returned.
+  std::string Finish(json root, std::string* binary) {
     root["bufferViews"] = std::move(views_);
     root["accessors"] = std::move(accessors_);
     root["buffers"] = json::array({{{"byteLength", binary_.size()}}});
-    return JoinGlb(root.dump(-1, ' ', false, json::error_handler_t::replace), binary_);
+    *binary = std::move(binary_);  // whole numbers of 4 bytes
+    return GlbStart(root.dump(-1, ' ', false, json::error_handler_t::replace), binary->size());
   }
 
  private:
@@ -83,7 +90,8 @@ class MorphWriter {
         split_(SplitAtSeams(sequence.topology(), sequence.appearance())),
         num_targets_(sequence.num_frames() - 1) {}
 
-  absl::StatusOr<std::string> Encode() {
+  // Returns what comes before the binary chunk.
+  absl::StatusOr<std::string> Encode(std::string* binary) {
     const uint64_t num_frames = static_cast<uint64_t>(sequence_.num_frames());
     const uint64_t num_bytes = num_frames * split_.sources.size() * 12 +
                                num_frames * num_frames * 4 + split_.sources.size() * 12 +
@@ -109,7 +117,7 @@ class MorphWriter {
     const std::vector<std::string>& names = sequence_.appearance().material_names;
     for (const std::string& name : names) root["materials"].push_back({{"name", name}});
     if (num_targets_ > 0) root["animations"] = json::array({Animation()});
-    return buffers_.Finish(std::move(root));
+    return buffers_.Finish(std::move(root), binary);
   }
 
  private:
@@ -240,12 +248,16 @@ class MorphWriter {
 }  // namespace
 
 absl::StatusOr<std::string> EncodeGlb(const MeshSequence& sequence) {
-  return MorphWriter(sequence).Encode();
+  std::string binary;
+  PLEAT_ASSIGN_OR_RETURN(const std::string start, MorphWriter(sequence).Encode(&binary));
+  return start + binary;
 }
 
 absl::Status WriteGlb(const std::string& path, const MeshSequence& sequence) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string bytes, EncodeGlb(sequence));
-  return WriteFile(path, bytes);
+  std::string binary;
+  PLEAT_ASSIGN_OR_RETURN(const std::string start, MorphWriter(sequence).Encode(&binary));
+  const std::string_view parts[] = {start, binary};
+  return WriteFileParts(path, parts);
 }
 
 }  // namespace pleat

@@ -135,27 +135,28 @@ absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& p
   std::string binary;
   PLEAT_RETURN_IF_ERROR(JoinBuffers(path, limits, &root, &binary));
   std::string document = root.dump(-1, ' ', false, json::error_handler_t::replace);
-  return JoinGlb(std::move(document), binary);
-}
-
-std::string JoinGlb(std::string document, std::string_view binary) {
-  document.resize((document.size() + 3) / 4 * 4, ' ');
-  std::string bytes;
-  bytes.reserve(28 + document.size() + binary.size() + 3);
-  const auto append = [&](uint32_t value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
-  };
-  const auto binary_bytes = static_cast<uint32_t>((binary.size() + 3) / 4 * 4);
-  append(kMagic);
-  append(2);
-  append(static_cast<uint32_t>(28 + document.size()) + binary_bytes);
-  append(static_cast<uint32_t>(document.size()));
-  append(kJsonChunk);
-  bytes.append(document);
-  append(binary_bytes);
-  append(kBinaryChunk);
+  std::string bytes = GlbStart(std::move(document), binary.size());
   bytes.append(binary);
   bytes.resize((bytes.size() + 3) / 4 * 4);
+  return bytes;
+}
+
+std::string GlbStart(std::string document, size_t binary_bytes) {
+  document.resize((document.size() + 3) / 4 * 4, ' ');
+  std::string bytes;
+  const auto append = [&](uint64_t value) {
+    const auto narrow = static_cast<uint32_t>(value);
+    bytes.append(reinterpret_cast<const char*>(&narrow), sizeof(narrow));
+  };
+  const uint64_t padded_bytes = (uint64_t{binary_bytes} + 3) / 4 * 4;
+  append(kMagic);
+  append(2);
+  append(28 + document.size() + padded_bytes);
+  append(document.size());
+  append(kJsonChunk);
+  bytes.append(document);
+  append(padded_bytes);
+  append(kBinaryChunk);
   return bytes;
 }
 

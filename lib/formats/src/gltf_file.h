@@ -22,7 +22,8 @@ absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& p
 // is, for the reader of GLB to refuse.
 absl::StatusOr<std::string> ReadGltfBytes(const std::string& path, const MeshLimits& limits);
 
-// A GLB of two chunks: the JSON and one buffer. Both together have less than 4 GiB.
-std::string JoinGlb(std::string document, std::string_view binary);
+// What comes before the binary chunk of a GLB of two chunks. That chunk must be padded with zeros
+// to a multiple of 4 bytes, and both together have less than 4 GiB.
+std::string GlbStart(std::string document, size_t binary_bytes);
 
 }  // namespace pleat
