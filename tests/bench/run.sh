@@ -65,6 +65,10 @@ build/bin/compress_curves build/bench "${curves[@]}"
 echo "== obj_folder"
 build/bin/obj_folder "$out/obj"
 
+echo "== file_formats"
+mkdir -p "$out/formats"
+build/bin/file_formats "$out/formats"
+
 echo "== refinement"
 build/bin/refine_table "${inputs[@]}"
 
