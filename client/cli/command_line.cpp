@@ -19,8 +19,8 @@ namespace {
 std::unique_ptr<CLI::App> MakeParser(Session& session) {
   auto app = std::make_unique<CLI::App>(
       "Pleat: from a captured mesh sequence to an editable character.\n"
-      "INPUT is a folder or quoted glob of .obj, .ply or .drc files, a .pc2 beside its .obj, an "
-      ".abc (Alembic), a .pseq, or one .glb or .gltf.",
+      "INPUT is a folder or quoted glob of .obj, .ply or .drc files, a .pc2, .mdd or .npy beside "
+      "its .obj, an .npz, an .abc (Alembic), a .pseq, or one .glb or .gltf.",
       "pleat");
   app->require_subcommand(1);
   app->footer(std::string("\n") + ExitCodeHelp());
@@ -32,6 +32,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddEvaluateVerb(*app, session);
   AddRenderVerb(*app, session);
   AddCompareVerb(*app, session);
+  AddConvertVerb(*app, session);
   AddCompressVerb(*app, session);
   AddDecompressVerb(*app, session);
   AddGenerateVerb(*app, session);

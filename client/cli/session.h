@@ -4,6 +4,7 @@
 #include <functional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 
@@ -29,9 +30,10 @@ struct Session {
   std::string token_file;  // --token-file: holds the token; empty = PLEAT_TOKEN
   bool json = false;
   bool quiet = false;
-  bool force = false;   // existing files may be replaced
-  bool strict = false;  // warnings are errors
-  std::string object;   // --object: of Alembic inputs, empty = all meshes that move
+  bool force = false;                 // existing files may be replaced
+  bool strict = false;                // warnings are errors
+  std::string object;                 // --object: of Alembic inputs, empty = all meshes that move
+  std::vector<std::string> npz_keys;  // --key: "ROLE=NAME", the arrays of .npz inputs
 
   // The callback of the chosen verb in the parser sets these two.
   std::string verb;

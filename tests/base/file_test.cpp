@@ -1,7 +1,9 @@
 #include "pleat/base/file.h"
 
 #include <filesystem>
+#include <vector>
 
+#include "pleat/base/file_parts.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
 
@@ -29,6 +31,15 @@ TEST(FileTest, OverwritesAndLeavesNothingElseBehind) {
     ++num_files;
   }
   EXPECT_EQ(num_files, 1);
+}
+
+TEST(FileTest, PartsAreWrittenOneAfterTheOther) {
+  const TemporaryFolder folder;
+  const std::vector<std::string_view> parts = {"ab", "", "c"};
+  ASSERT_THAT(WriteFileParts(folder.File("f"), parts), IsOk());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string read, ReadFile(folder.File("f")));
+  EXPECT_EQ(read, "abc");
+  EXPECT_FALSE(WriteFileParts("/dev/null/f", parts).ok());
 }
 
 TEST(FileTest, ALinkThatLeadsInACircleIsBadInput) {

@@ -1,11 +1,14 @@
 // The automatic rig of many bodies, one row each: rig_bodies [--joints] [--orientations]
-// [--pictures FOLDER] INPUT[=TRUTH.json]... The input `performer` is generated. The truth is found
-// beside an input, as <stem>_truth.json. The table of docs/performance.md.
+// [--repeat N] [--pictures FOLDER] INPUT[=TRUTH.json]... The input `performer` is generated. The
+// truth is found beside an input, as <stem>_truth.json. Times are the least of N. The table of
+// docs/performance.md.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,9 +20,9 @@
 #include "pleat/formats/sequence_reader.h"
 #include "pleat/mesh/bounds.h"
 #include "pleat/performer/performer.h"
-#include "pleat/render/contact_sheet.h"
 #include "pleat/rigging/auto_rig.h"
 #include "pleat/skeleton/human_template.h"
+#include "rig_picture.h"
 
 namespace pleat {
 namespace {
@@ -46,6 +49,7 @@ AutoRigOptions OneThread() {
 
 struct Arguments {
   bool joints = false, orientations = false;
+  int repeat = 1;
   std::string pictures;
   std::vector<std::string> inputs;
 };
@@ -142,47 +146,16 @@ void PrintOrientations(const Body& body, const Eigen::Matrix3Xd& expected, doubl
   }
 }
 
-// Front and left side.
-void Draw(const Body& body, const Rig& rig, const AutoRigSummary& summary,
-          const std::string& path) {
-  std::vector<SheetTile> tiles;
-  std::vector<int> parents;
-  std::vector<BodySide> sides;
-  for (int j = 0; j < kNumHumanJoints; ++j) {
-    parents.push_back(HumanTemplate().parent(j));
-    sides.push_back(HumanMirror()[j] == j  ? BodySide::kMiddle
-                    : HumanMirror()[j] > j ? BodySide::kLeft
-                                           : BodySide::kRight);
-  }
-  const Eigen::Matrix3d upright =
-      Eigen::Quaterniond::FromTwoVectors(summary.up, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  for (const double turn_degrees : {0., 90.}) {
-    const Eigen::Matrix3d turn =
-        Eigen::AngleAxisd(-(summary.yaw_degrees + turn_degrees) * EIGEN_PI / 180,
-                          Eigen::Vector3d::UnitY()) *
-        upright;
-    SheetTile tile;
-    tile.positions = turn * rig.rest_positions;
-    tile.triangles = &body.sequence.topology().triangles();
-    tile.vertex_colors.assign(tile.positions.cols(), Rgb{224, 226, 232});
-    tile.skeleton = SkeletonOverlay{turn * rig.skeleton.RestPositions(), parents, sides};
-    tile.label = absl::StrCat(body.name, turn_degrees == 0 ? " front" : " left");
-    tiles.push_back(std::move(tile));
-  }
-  ContactSheetOptions sheet;
-  sheet.num_columns = 2;
-  sheet.view.width = 320;
-  sheet.view.height = 400;
-  const absl::StatusOr<Image> image = RenderContactSheet(tiles, sheet);
-  if (image.ok()) (void)WriteFile(absl::StrCat(path, "/", body.name, ".png"), EncodePng(*image));
-}
-
 // Returns the mean joint error in % of the height where it is known.
 std::optional<double> PrintBody(const Body& body, const Arguments& arguments) {
   AutoRigSummary summary;
-  const double start = CpuSeconds();
-  const absl::StatusOr<Rig> rig = AutoRig(body.sequence, OneThread(), &summary);
-  const double seconds = CpuSeconds() - start;
+  absl::StatusOr<Rig> rig;
+  double seconds = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < arguments.repeat; ++k) {
+    const double start = CpuSeconds();
+    rig = AutoRig(body.sequence, OneThread(), &summary);
+    seconds = std::min(seconds, CpuSeconds() - start);
+  }
   std::printf("%-24s %7d ", body.name.c_str(), body.sequence.num_vertices());
   if (!rig.ok()) {
     std::printf("refused %34.2f s  %s\n", seconds, std::string(rig.status().message()).c_str());
@@ -213,7 +186,9 @@ std::optional<double> PrintBody(const Body& body, const Arguments& arguments) {
     PrintJoints(body, joints, height);
   }
   if (arguments.orientations) PrintOrientations(body, joints, height);
-  if (!arguments.pictures.empty()) Draw(body, *rig, summary, arguments.pictures);
+  if (!arguments.pictures.empty()) {
+    DrawRig(body.name, body.sequence.topology().triangles(), *rig, summary, arguments.pictures);
+  }
   return mean;
 }
 
@@ -225,6 +200,8 @@ int Main(int argc, char** argv) {
       arguments.joints = true;
     } else if (word == "--orientations") {
       arguments.orientations = true;
+    } else if (word == "--repeat" && i + 1 < argc) {
+      arguments.repeat = std::max(1, std::atoi(argv[++i]));
     } else if (word == "--pictures" && i + 1 < argc) {
       arguments.pictures = argv[++i];
     } else {

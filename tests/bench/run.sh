@@ -39,6 +39,10 @@ done
 [ ${#meshes[@]} -eq 0 ] || "$pleat" rig "${meshes[@]}" --threads 1 2>/dev/null || true
 build/bin/rig_bodies performer "${meshes[@]}"
 build/bin/rig_bodies --orientations performer
+build/bin/rig_figures
+for words in "girth 1 legs 1 arms 50" "animals: horse" "animals: bear" "robe 0.17 arms 50"; do
+  build/bin/rig_figures --all --split 3 "$words"
+done
 
 inputs=()
 for name in samba crane; do
@@ -60,6 +64,10 @@ build/bin/compress_curves build/bench "${curves[@]}"
 
 echo "== obj_folder"
 build/bin/obj_folder "$out/obj"
+
+echo "== file_formats"
+mkdir -p "$out/formats"
+build/bin/file_formats "$out/formats"
 
 echo "== refinement"
 build/bin/refine_table "${inputs[@]}"

@@ -241,7 +241,7 @@ TEST_F(SequenceReaderTest, UnknownInputListsWhatIsKnown) {
   Write("a.fbx", "Kaydara");
   EXPECT_THAT(Read("a.fbx"),
               HasStatus(kInvalid, AllOf(HasSubstr("'.fbx'"),
-                                        HasSubstr(".obj, .ply, .drc, .glb, .gltf, .pc2, .abc"))));
+                                        HasSubstr(".obj, .ply, .drc, .glb, .gltf, .pc2, .mdd"))));
   EXPECT_THAT(Read(""), HasStatus(absl::StatusCode::kNotFound,
                                   AllOf(HasSubstr(".obj, .ply"), HasSubstr("'.fbx'"))));
   EXPECT_THAT(Read("*.fbx"), HasStatus(kInvalid, HasSubstr("unknown extension")));

@@ -61,6 +61,31 @@ TEST(DistanceFieldTest, ThreadsDoNotChangeIt) {
   }
 }
 
+// Two bodies that overlap, a cavity, and thin walls: the same field, with few winding numbers.
+TEST(DistanceFieldTest, KnowingThatASurfaceIsClosedChangesNothing) {
+  TriangleMesh cavity = MakeSphere({.1, .1, 0}, .5, 20);
+  cavity.triangles.row(0).swap(cavity.triangles.row(1));
+  const TriangleMesh mesh =
+      JoinMeshes(JoinMeshes(MakeSphere({0, 0, 0}, 1, 30), MakeSphere({1.2, .3, 0}, .6, 20)),
+                 JoinMeshes(cavity, MakeBox({-1, 1.2, -1}, {1, 1.204, 1})));
+  const TriangleTree tree(mesh.positions, mesh.triangles);
+  const WindingNumber winding_number(tree);
+  DistanceFieldOptions options;
+  options.resolution = 60;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DistanceField expected,
+                             DistanceField::Compute(tree, winding_number, options));
+  options.is_closed = true;
+  PLEAT_ASSERT_OK_AND_ASSIGN(const DistanceField field,
+                             DistanceField::Compute(tree, winding_number, options));
+  for (int n = 0; n < field.num_nodes().prod(); ++n) {
+    ASSERT_NEAR(field.node_distance(n), expected.node_distance(n), 1e-6) << n;
+    // Where two surface points are equally near, either may be found.
+    if (field.node_direction(n).isZero() != expected.node_direction(n).isZero()) {
+      ADD_FAILURE() << n;
+    }
+  }
+}
+
 TEST(DistanceFieldTest, RefusesWhatHasNoExtent) {
   EXPECT_THAT(FieldOf({Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xi(3, 0)}, 32),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("at least one triangle")));

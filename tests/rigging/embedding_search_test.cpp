@@ -30,19 +30,28 @@ SphereGraph RandomGraph(uint64_t seed, int num_spheres) {
   return SphereGraph(spheres, edges);
 }
 
-double BruteForce(const PenaltyModel& model, std::vector<int>* spheres, double cost) {
-  const int j = static_cast<int>(spheres->size());
+// The spheres of the first joints, of which candidate each is said.
+std::vector<int> SpheresOf(const PenaltyModel& model, const std::vector<size_t>& placed) {
+  std::vector<int> spheres;
+  for (size_t j = 0; j < placed.size(); ++j) {
+    spheres.push_back(model.candidates(static_cast<int>(j))[placed[j]]);
+  }
+  return spheres;
+}
+
+double BruteForce(const PenaltyModel& model, std::vector<size_t>* placed, double cost) {
+  const int j = static_cast<int>(placed->size());
   if (j == static_cast<int>(model.tree().size())) return cost;
   double best = std::numeric_limits<double>::infinity();
-  const PlacementContext context = model.MakeContext(j, *spheres);
-  for (int sphere : model.candidates(j)) {
+  const PlacementContext context = model.MakeContext(j, SpheresOf(model, *placed));
+  for (size_t c = 0; c < model.candidates(j).size(); ++c) {
     double step = 0;
-    if (j > 0) step = model.PairPenalty(j, sphere, (*spheres)[model.tree()[j].parent]);
-    if (std::isfinite(step)) step += model.ContextPenalty(context, sphere);
+    if (j > 0) step = model.PairPenalty(j, c, (*placed)[model.tree()[j].parent]);
+    if (std::isfinite(step)) step += model.ContextPenalty(context, model.candidates(j)[c]);
     if (!std::isfinite(step)) continue;
-    spheres->push_back(sphere);
-    best = std::min(best, BruteForce(model, spheres, cost + step));
-    spheres->pop_back();
+    placed->push_back(c);
+    best = std::min(best, BruteForce(model, placed, cost + step));
+    placed->pop_back();
   }
   return best;
 }
@@ -56,8 +65,8 @@ TEST(EmbeddingSearchTest, FindsTheCheapestPlacementOfAll) {
     penalties.max_deep_candidates = 4;
     penalties.template_scale = .3;
     const PenaltyModel model(graph, tree, 0, 1, penalties);
-    std::vector<int> spheres;
-    const double truth = BruteForce(model, &spheres, 0);
+    std::vector<size_t> placed;
+    const double truth = BruteForce(model, &placed, 0);
     SearchOptions options;
     options.max_bound = 10.24;
     const absl::StatusOr<SearchResult> found = SearchEmbedding(model, options);
@@ -81,11 +90,15 @@ TEST(EmbeddingSearchTest, NoPenaltyIsNegative) {
     const PenaltyModel model(graph, tree, 0, 1);
     int num_finite = 0;
     for (int trial = 0; trial < 300; ++trial) {
-      std::vector<int> spheres;
-      for (size_t j = 0; j < tree.size(); ++j) spheres.push_back(random.UniformInt(12));
+      std::vector<size_t> placed;
+      for (size_t j = 0; j < tree.size(); ++j) {
+        placed.push_back(
+            random.UniformInt(static_cast<int>(model.candidates(static_cast<int>(j)).size())));
+      }
+      const std::vector<int> spheres = SpheresOf(model, placed);
       for (size_t k = 1; k < tree.size(); ++k) {
         const int j = static_cast<int>(k);
-        const double pair = model.PairPenalty(j, spheres[k], spheres[tree[k].parent]);
+        const double pair = model.PairPenalty(j, placed[k], placed[tree[k].parent]);
         EXPECT_GE(pair, 0);
         if (!std::isfinite(pair)) continue;
         const std::vector<int> before(spheres.begin(), spheres.begin() + j);

@@ -9,7 +9,7 @@ namespace pleat {
 namespace {
 
 MainBody BodyOf(const BodyVolume& volume) {
-  return FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
+  return FindMainBody(volume, Eigen::Matrix3d::Identity());
 }
 
 // A search ends at the tip of the foot, and refinement leaves the ankle too low.

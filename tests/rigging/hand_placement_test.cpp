@@ -15,7 +15,7 @@ class HandPlacementTest : public testing::Test {
   const BodyVolume volume_ =
       ComputeBodyVolume(MakeTopology(figure_.mesh), figure_.mesh.positions, {.resolution = 64})
           .value();
-  const MainBody body_ = FindMainBody(volume_, 400, Eigen::Matrix3d::Identity());
+  const MainBody body_ = FindMainBody(volume_, Eigen::Matrix3d::Identity());
   const double body_size_ = body_.bounds.sizes().maxCoeff();
 
   Eigen::Matrix3Xd UnitJoints() const { return volume_.UnitFromWorld(figure_.joints); }

@@ -14,7 +14,7 @@ TEST(MainBodyTest, WhatFloatsBesideTheCharacterIsLeftOut) {
   const TriangleMesh figure = MakeCapsuleFigure({.cell_m = .03}).mesh;
   const TriangleMesh box = MakeBox({.9, .1, -.05}, {1.0, .2, .05});  // a prop
   const BodyVolume volume = VolumeOf(JoinMeshes(figure, box));
-  const MainBody body = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
+  const MainBody body = FindMainBody(volume, Eigen::Matrix3d::Identity());
   // The box is right of everything else.
   const double box_left = volume.UnitFromWorld(Eigen::Vector3d(.9, 0, 0))(0, 0);
   EXPECT_LT(body.bounds.max().x(), box_left);
@@ -23,7 +23,7 @@ TEST(MainBodyTest, WhatFloatsBesideTheCharacterIsLeftOut) {
 
 TEST(MainBodyTest, EverySphereCanBeReachedFromEveryOther) {
   const BodyVolume volume = VolumeOf(MakeCapsuleFigure({.cell_m = .03}).mesh);
-  const MainBody body = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
+  const MainBody body = FindMainBody(volume, Eigen::Matrix3d::Identity());
   ASSERT_GT(body.graph.size(), 20);
   for (int i = 0; i < body.graph.size(); ++i) {
     EXPECT_TRUE(std::isfinite(body.graph.PathLength(0, i))) << i;
@@ -34,8 +34,8 @@ TEST(MainBodyTest, TurningStandsEverythingUpright) {
   const BodyVolume volume = VolumeOf(MakeCapsuleFigure({.cell_m = .03}).mesh);
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  const MainBody straight = FindMainBody(volume, 400, Eigen::Matrix3d::Identity());
-  const MainBody turned = FindMainBody(volume, 400, turn);
+  const MainBody straight = FindMainBody(volume, Eigen::Matrix3d::Identity());
+  const MainBody turned = FindMainBody(volume, turn);
   EXPECT_LT((turned.shell.positions - turn * straight.shell.positions).cwiseAbs().maxCoeff(),
             1e-12);
   ASSERT_EQ(turned.graph.size(), straight.graph.size());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -79,6 +80,32 @@ TEST(SphereGraphTest, ShortestPathsOfRandomGraphsAreShortest) {
       }
     }
   }
+}
+
+// Two chains, the second one with more spheres but less volume.
+TEST(SphereGraphTest, TheLargestGroupKeepsOrderAndPaths) {
+  const std::vector<Sphere> spheres = {{{9, 0, 0}, .1}, {{0, 0, 0}, .3}, {{9, 1, 0}, .1},
+                                       {{2, 0, 0}, .2}, {{9, 2, 0}, .1}, {{5, 0, 0}, .2}};
+  const SphereGraph whole(spheres, {{0, 2}, {2, 4}, {1, 3}, {3, 5}});
+  const SphereGraph group = whole.LargestGroup();
+  ASSERT_EQ(group.size(), 3);
+  for (const auto& [own, before] : {std::pair(0, 1), {1, 3}, {2, 5}}) {
+    EXPECT_EQ(group.sphere(own).center, spheres[before].center);
+  }
+  EXPECT_THAT(group.neighbors(1), ElementsAre(0, 2));
+  EXPECT_THAT(group.Path(0, 2), ElementsAre(0, 1, 2));
+  EXPECT_EQ(group.PathLength(2, 0), 5);
+  EXPECT_EQ(group.Predecessor(0, 0), -1);
+  EXPECT_EQ(group.LargestGroup().size(), 3);
+}
+
+TEST(SphereGraphTest, TurningKeepsTheLengths) {
+  const SphereGraph graph({{{1, 0, 0}, .1}, {{3, 0, 0}, .2}}, {{0, 1}});
+  const SphereGraph turned =
+      graph.Turned(Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix());
+  EXPECT_LT((turned.sphere(1).center - Eigen::Vector3d(0, 3, 0)).norm(), 1e-12);
+  EXPECT_EQ(turned.sphere(1).radius, .2);
+  EXPECT_EQ(turned.PathLength(0, 1), 2);
 }
 
 TEST(SphereGraphTest, JoinsOverlapsAndClearSightOnly) {

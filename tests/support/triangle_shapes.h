@@ -100,8 +100,9 @@ struct Capsule {
   double start_radius, end_radius;
 };
 
-// The union of capsules, slightly rounded where they meet.
-inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double cell) {
+// The union of capsules, slightly rounded where they meet, cut off flat at the height `floor`.
+inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double cell,
+                                    double floor = -1e9) {
   Eigen::AlignedBox3d box;
   for (const Capsule& capsule : capsules) {
     const double radius = std::max(capsule.start_radius, capsule.end_radius) + 2 * cell;
@@ -120,7 +121,7 @@ inline TriangleMesh MakeCapsuleBody(const std::vector<Capsule>& capsules, double
           capsule.start_radius + share * (capsule.end_radius - capsule.start_radius);
       nearest = std::min(nearest, (capsule.start + share * axis - point).norm() - radius);
     }
-    return nearest;
+    return std::max(nearest, floor - point.y());
   };
   return PolygonizeShape(signed_distance, box, cell);
 }

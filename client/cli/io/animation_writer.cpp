@@ -1,57 +1,114 @@
 #include "cli/io/animation_writer.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "cli/exit_code.h"
 #include "cli/io/draco_folder.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/alembic_writer.h"
+#include "pleat/formats/glb_writer.h"
+#include "pleat/formats/mdd.h"
 #include "pleat/formats/obj_writer.h"
 #include "pleat/formats/pc2.h"
 #include "pleat/formats/ply_writer.h"
 #include "pleat/formats/sequence_file.h"
+#include "pleat/formats/usda_writer.h"
 
 namespace pleat {
 namespace {
 
 absl::Status NoFrames() { return absl::InvalidArgumentError("there are no frames to write"); }
 
-class PointCacheWriter : public AnimationWriter {
- public:
-  PointCacheWriter(std::string path, const Topology& topology, AnimationOptions options)
-      : path_(std::move(path)), topology_(topology), options_(std::move(options)) {}
+// How a format writes a whole sequence.
+using WriteSequence = std::function<absl::Status(const std::string& path, const MeshSequence&,
+                                                 const AnimationOptions&)>;
 
-  absl::Status AddFrame(const Eigen::Matrix3Xf& positions) override {
-    cache_.frames.push_back(positions);
-    return absl::OkStatus();
+// The topology of a format that holds positions alone.
+absl::Status WriteMeshBeside(const std::string& path, const MeshSequence& sequence) {
+  return WriteObj(std::filesystem::path(path).replace_extension(".obj").string(),
+                  sequence.topology(), sequence.frame(0), sequence.appearance());
+}
+
+std::vector<Eigen::Matrix3Xf> FramesOf(const MeshSequence& sequence) {
+  std::vector<Eigen::Matrix3Xf> frames;
+  for (int t = 0; t < sequence.num_frames(); ++t) frames.push_back(sequence.frame(t));
+  return frames;
+}
+
+absl::Status WritePc2WithMesh(const std::string& path, const MeshSequence& sequence,
+                              const AnimationOptions& options) {
+  PLEAT_RETURN_IF_ERROR(WriteMeshBeside(path, sequence));
+  return WritePointCache(
+      path, {.start_frame = static_cast<float>(options.first_frame), .frames = FramesOf(sequence)});
+}
+
+absl::Status WriteMddWithMesh(const std::string& path, const MeshSequence& sequence,
+                              const AnimationOptions& options) {
+  MddCache cache{.times_s = {}, .frames = FramesOf(sequence)};
+  const FrameRate rate = sequence.frame_rate();
+  for (int t = 0; t < sequence.num_frames(); ++t) {
+    cache.times_s.push_back(
+        static_cast<float>((options.first_frame + t) * rate.denominator / rate.numerator));
   }
-  absl::Status Finish() override {
-    if (cache_.frames.empty()) return NoFrames();
-    const std::string mesh_path = std::filesystem::path(path_).replace_extension(".obj").string();
-    PLEAT_RETURN_IF_ERROR(WriteObj(mesh_path, topology_, cache_.frames[0], options_.appearance));
-    return WritePointCache(path_, cache_);
+  PLEAT_RETURN_IF_ERROR(WriteMeshBeside(path, sequence));
+  return WriteMdd(path, cache);
+}
+
+WriteSequence WriterOf(AnimationFormat format) {
+  switch (format) {
+    case AnimationFormat::kPc2:
+      return WritePc2WithMesh;
+    case AnimationFormat::kMdd:
+      return WriteMddWithMesh;
+    case AnimationFormat::kNpy:
+      return [](const auto& path, const auto& sequence, const auto&) -> absl::Status {
+        PLEAT_RETURN_IF_ERROR(WriteMeshBeside(path, sequence));
+        return WriteNpy(path, sequence);
+      };
+    case AnimationFormat::kNpz:
+      return [](const auto& path, const auto& sequence, const auto& options) {
+        return WriteNpz(path, sequence,
+                        {.keys = options.npz_keys, .first_frame = options.first_frame});
+      };
+    case AnimationFormat::kAbc:
+      return [](const auto& path, const auto& sequence, const auto& options) {
+        return WriteAlembic(path, sequence, options.first_frame);
+      };
+    case AnimationFormat::kGlb:
+      return [](const auto& path, const auto& sequence, const auto&) {
+        return WriteGlb(path, sequence);
+      };
+    case AnimationFormat::kUsda:
+      return [](const auto& path, const auto& sequence, const auto& options) {
+        return WriteUsda(path, sequence,
+                         {.meters_per_unit = options.space.unit_m,
+                          .is_z_up = options.space.up == UpAxis::kZ,
+                          .first_frame = options.first_frame});
+      };
+    default:
+      return [](const auto& path, const auto& sequence, const auto&) {
+        return WriteSequenceFile(path, sequence);
+      };
   }
+}
 
- private:
-  std::string path_;
-  Topology topology_;
-  AnimationOptions options_;
-  PointCache cache_;
-};
-
-// Collects a whole sequence for one file, a .pseq or an .abc.
+// Collects a whole sequence for one file.
 class SequenceFileWriter : public AnimationWriter {
  public:
-  using Write = absl::Status (*)(const std::string& path, const MeshSequence& sequence);
-
   SequenceFileWriter(std::string path, const Topology& topology, AnimationOptions options,
-                     Write write)
-      : path_(std::move(path)), topology_(topology), options_(std::move(options)), write_(write) {}
+                     WriteSequence write)
+      : path_(std::move(path)),
+        topology_(topology),
+        options_(std::move(options)),
+        write_(std::move(write)) {}
 
   absl::Status AddFrame(const Eigen::Matrix3Xf& positions) override {
     frames_.push_back(positions);
@@ -59,20 +116,19 @@ class SequenceFileWriter : public AnimationWriter {
   }
   absl::Status Finish() override {
     if (frames_.empty()) return NoFrames();
-    MeshSequenceOptions options;
-    options.name = options_.name;
-    options.frame_rate = options_.frame_rate;
-    options.appearance = options_.appearance;
     PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
-                           MeshSequence::Create(topology_, std::move(frames_), options));
-    return write_(path_, sequence);
+                           MeshSequence::Create(topology_, std::move(frames_),
+                                                {.name = options_.name,
+                                                 .frame_rate = options_.frame_rate,
+                                                 .appearance = options_.appearance}));
+    return write_(path_, sequence, options_);
   }
 
  private:
   std::string path_;
   Topology topology_;
   AnimationOptions options_;
-  Write write_;
+  WriteSequence write_;
   std::vector<Eigen::Matrix3Xf> frames_;
 };
 
@@ -139,41 +195,72 @@ class DracoWriter : public AnimationWriter {
 
 }  // namespace
 
+const std::vector<AnimationFormatInfo>& AnimationFormats() {
+  using enum AnimationFormat;
+  static const std::vector<AnimationFormatInfo>& formats =
+      *new std::vector<AnimationFormatInfo>{{kPc2, "pc2", true, true},
+                                            {kMdd, "mdd", true, true},
+                                            {kAbc, "abc"},
+                                            {kGlb, "glb"},
+                                            {kUsda, "usda"},
+                                            {kNpz, "npz"},
+                                            {kNpy, "npy", true, true},
+                                            {kPseq, "pseq"},
+                                            {kObj, "obj", false},
+                                            {kPly, "ply", false},
+                                            {kDraco, "drc", false}};
+  return formats;
+}
+
+const AnimationFormatInfo& InfoOf(AnimationFormat format) {
+  return *std::ranges::find(AnimationFormats(), format, &AnimationFormatInfo::format);
+}
+
+std::string AnimationEndings() {
+  std::vector<std::string> endings;
+  for (const AnimationFormatInfo& info : AnimationFormats()) {
+    if (info.is_file) endings.push_back("." + info.name);
+  }
+  return absl::StrJoin(endings, ", ");
+}
+
+std::string FormatFlagHelp(const std::string& folder_format) {
+  std::vector<std::string> names;
+  for (const AnimationFormatInfo& info : AnimationFormats()) names.push_back(info.name);
+  const std::string last = names.back();
+  names.pop_back();
+  return absl::StrCat("auto (by the ending of OUT; a folder gets ", folder_format, "), ",
+                      absl::StrJoin(names, ", "), " or ", last);
+}
+
 absl::StatusOr<AnimationFormat> ChooseAnimationFormat(const std::string& name,
                                                       const std::string& path,
                                                       AnimationFormat folder_format) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (name == "pc2" || (name == "auto" && extension == ".pc2")) return AnimationFormat::kPc2;
-  if (name == "abc" || (name == "auto" && extension == ".abc")) return AnimationFormat::kAbc;
-  if (name == "pseq" || (name == "auto" && extension == ".pseq")) return AnimationFormat::kPseq;
-  if (name == "obj") return AnimationFormat::kObj;
-  if (name == "ply") return AnimationFormat::kPly;
-  if (name == "drc") return AnimationFormat::kDraco;
+  std::vector<std::string> names;
+  for (const AnimationFormatInfo& info : AnimationFormats()) {
+    if (name == info.name) return info.format;
+    if (name == "auto" && info.is_file && extension == "." + info.name) return info.format;
+    names.push_back(info.name);
+  }
   if (name == "auto") return folder_format;
   return UsageError(
-      absl::StrCat("format '", name, "' is unknown; choose auto, pc2, abc, pseq, obj, ply or drc"));
+      absl::StrCat("format '", name, "' is unknown; choose auto, ", absl::StrJoin(names, ", ")));
 }
 
 std::unique_ptr<AnimationWriter> MakeAnimationWriter(AnimationFormat format,
                                                      const std::string& path,
                                                      const Topology& topology,
                                                      AnimationOptions options) {
-  switch (format) {
-    case AnimationFormat::kPc2:
-      return std::make_unique<PointCacheWriter>(path, topology, std::move(options));
-    case AnimationFormat::kPseq:
-      return std::make_unique<SequenceFileWriter>(path, topology, std::move(options),
-                                                  WriteSequenceFile);
-    case AnimationFormat::kAbc:
-      return std::make_unique<SequenceFileWriter>(path, topology, std::move(options), WriteAlembic);
-    case AnimationFormat::kObj:
-    case AnimationFormat::kPly:
-      return std::make_unique<MeshFolderWriter>(path, topology, std::move(options),
-                                                format == AnimationFormat::kPly);
-    case AnimationFormat::kDraco:
-      break;
+  if (InfoOf(format).is_file) {
+    return std::make_unique<SequenceFileWriter>(path, topology, std::move(options),
+                                                WriterOf(format));
   }
-  return std::make_unique<DracoWriter>(path, topology, std::move(options));
+  if (format == AnimationFormat::kDraco) {
+    return std::make_unique<DracoWriter>(path, topology, std::move(options));
+  }
+  return std::make_unique<MeshFolderWriter>(path, topology, std::move(options),
+                                            format == AnimationFormat::kPly);
 }
 
 }  // namespace pleat

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "cli/exit_code.h"
 #include "cli/io/draco_folder.h"
 #include "cli/io/draco_process.h"
 #include "cli/io/frame_rate.h"
@@ -20,12 +21,20 @@ absl::StatusOr<MeshSequence> ReadWithProgress(const Session& session, const std:
                                               const std::string& fps, InputReport* report) {
   ReadSequenceOptions options;
   options.object = session.object;
+  for (const std::string& key : session.npz_keys) {
+    if (absl::Status status = SetNpzKey(key, &options.npz_keys); !status.ok()) {
+      return UsageError(absl::StrCat("--key: ", status.message()));
+    }
+  }
   if (!fps.empty()) {
     PLEAT_ASSIGN_OR_RETURN(options.frame_rate, ParseFrameRate(fps));
   }
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   const Progress progress = InterruptibleProgress(&display).Stage("read", 0, 1);
-  if (IsDracoFolder(input)) return ReadDracoFolder(input, progress);
+  if (IsDracoFolder(input)) {
+    report->has_frame_rate = true;
+    return ReadDracoFolder(input, progress);
+  }
   options.read_draco = [&progress](const std::string& path) {
     return ReadDracoMesh(path, progress);
   };
@@ -35,7 +44,8 @@ absl::StatusOr<MeshSequence> ReadWithProgress(const Session& session, const std:
 }  // namespace
 
 absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string& input,
-                                       const std::string& fps, std::vector<InputNote>* notes) {
+                                       const std::string& fps, std::vector<InputNote>* notes,
+                                       InputReport* wanted) {
   InputReport report;
   absl::StatusOr<MeshSequence> sequence = ReadWithProgress(session, input, fps, &report);
   if (!sequence.ok()) return sequence;
@@ -43,6 +53,7 @@ absl::StatusOr<MeshSequence> ReadInput(const Session& session, const std::string
     report.notes.push_back(std::move(jump));
   }
   SayNotes(session, report.notes, notes);
+  if (wanted != nullptr) *wanted = report;
   const auto refused = std::ranges::count_if(report.notes, IsRefusedWhenStrict);
   if (!session.strict || refused == 0) return sequence;
   return absl::FailedPreconditionError(

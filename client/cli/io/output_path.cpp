@@ -98,20 +98,19 @@ absl::Status CheckOutputFolder(const Session& session, const std::string& flag,
 
 absl::Status CheckAnimationOutput(const Session& session, const std::string& path,
                                   AnimationFormat format, const std::string& format_name) {
-  if (format == AnimationFormat::kPc2) {
-    const std::string mesh_path = fs::path(path).replace_extension(".obj").string();
-    return CheckOutputFiles(session, {{"-o", path, {".pc2"}}, {"-o", mesh_path, {".obj"}}});
-  }
-  if (format == AnimationFormat::kAbc) return CheckOutputFiles(session, {{"-o", path, {".abc"}}});
-  if (format == AnimationFormat::kPseq) {
-    return CheckOutputFiles(session, {{"-o", path, {".pseq"}}});
+  if (const AnimationFormatInfo& info = InfoOf(format); info.is_file) {
+    std::vector<OutputFile> files = {{"-o", path, {"." + info.name}}};
+    if (info.has_mesh_beside) {
+      files.push_back({"-o", fs::path(path).replace_extension(".obj").string(), {".obj"}});
+    }
+    return CheckOutputFiles(session, files);
   }
   if (format_name != "auto" && EndingOf(path) == "." + format_name) {
     return CheckContents(session, "-o", path);
   }
   if (format_name == "auto" && !EndingOf(path).empty() && !IsFolder(path)) {
     return UnknownEnding("-o", path,
-                         ".pc2, .abc, .pseq, and none for a folder; or write a / at its end");
+                         AnimationEndings() + ", and none for a folder; or write a / at its end");
   }
   return CheckOutputFolder(session, "-o", path);
 }

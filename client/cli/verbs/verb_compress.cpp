@@ -131,7 +131,7 @@ void AddCompressVerb(CLI::App& app, Session& session) {
   CLI::App* verb =
       AddVerb(app, session, "compress", "make an animation small, with a promised error",
               [options, &session] { return RunCompress(*options, session); });
-  verb->add_option("INPUT", options->input, "folder, glob, .pc2, .abc or .pseq")->required();
+  verb->add_option("INPUT", options->input, "any animation that pleat reads")->required();
   verb->add_option("-o,--output", options->output, "the compressed sequence, OUT.plt")->required();
   verb->add_option("--max-error-mm", options->max_error_mm,
                    "no vertex of any frame is further off than this, mm")

@@ -157,13 +157,10 @@ void AddDecompressVerb(CLI::App& app, Session& session) {
   verb->add_option("INPUT", options->input,
                    "a compressed sequence (.plt), or its id on the service")
       ->required();
-  verb->add_option("-o,--output", options->output, "OUT.pc2, OUT.abc, OUT.pseq or a folder")
+  verb->add_option("-o,--output", options->output, "OUT.ENDING (see --format) or a folder")
       ->required();
   verb->add_option("--frames", options->frames, "A:B: only the frames A to B - 1 (default: all)");
-  verb->add_option(
-          "--format", options->format,
-          "auto (by the ending of OUT; a folder gets obj), pc2, abc, pseq, obj, ply or drc")
-      ->capture_default_str();
+  verb->add_option("--format", options->format, FormatFlagHelp("obj"))->capture_default_str();
   AddForceFlag(verb, session);
   AddOptionalServerFlags(verb, session);
 }

@@ -172,7 +172,7 @@ void AddEvaluateVerb(CLI::App& app, Session& session) {
               [options, &session] { return RunEvaluate(*options, session); });
   verb->add_option(
           "INPUT", options->inputs,
-          "folder, glob, .pc2, .abc or .pseq; several are the training clips of protocol cross")
+          "any animation that pleat reads; several are the training clips of protocol cross")
       ->required();
   verb->add_option("--protocol", options->protocol,
                    "reconstruct, every5th, blocks10, last30 or cross [blocks10; of an experiment "

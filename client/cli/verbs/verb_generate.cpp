@@ -39,16 +39,8 @@ nlohmann::ordered_json TruthJson(const PerformerOptions& options, const Performe
 
 // Returns where the frames go: one file beside truth.json, or a folder of their own.
 std::string FramesPath(const std::string& folder, AnimationFormat format) {
-  switch (format) {
-    case AnimationFormat::kPc2:
-      return folder + "/performer.pc2";
-    case AnimationFormat::kAbc:
-      return folder + "/performer.abc";
-    case AnimationFormat::kPseq:
-      return folder + "/performer.pseq";
-    default:
-      return folder + "/performer";
-  }
+  const AnimationFormatInfo& info = InfoOf(format);
+  return folder + "/performer" + (info.is_file ? "." + info.name : "");
 }
 
 absl::StatusOr<Performer> Generate(const PerformerOptions& options, const Session& session) {
@@ -114,8 +106,7 @@ void AddGenerateVerb(CLI::App& app, Session& session) {
   verb->add_option("-o,--output", options->output,
                    "folder for the sequence, truth.json and motion.json")
       ->required();
-  verb->add_option("--format", options->format, "pc2 (with its .obj), abc, pseq, obj, ply or drc")
-      ->capture_default_str();
+  verb->add_option("--format", options->format, FormatFlagHelp("drc"))->capture_default_str();
   verb->add_option("--seed", options->performer.seed, "of the motion")->capture_default_str();
   verb->add_option("--character-seed", options->performer.character_seed,
                    "of the body: the same gives the same mesh")

@@ -106,8 +106,7 @@ void AddInspectVerb(CLI::App& app, Session& session) {
   auto options = std::make_shared<InspectOptions>();
   CLI::App* verb = AddVerb(app, session, "inspect", "read a sequence and say what it holds",
                            [options, &session] { return RunInspect(*options, session); });
-  verb->add_option("INPUT", options->input, "folder, glob, .pc2, .abc, .obj, .ply or .pseq")
-      ->required();
+  verb->add_option("INPUT", options->input, "any animation that pleat reads")->required();
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
   AddObjectFlag(verb, session);
   AddInProcessFlag(verb, session);

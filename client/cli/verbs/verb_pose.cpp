@@ -251,12 +251,9 @@ void AddPoseVerb(CLI::App& app, Session& session) {
   verb->add_option("MODEL", options->model, "a .pleat file, or the id of a model on the server")
       ->required();
   verb->add_option("--motion", options->motion, "motion file (.json)")->required();
-  verb->add_option("-o,--output", options->output, "OUT.pc2, OUT.abc, OUT.pseq or a folder")
+  verb->add_option("-o,--output", options->output, "OUT.ENDING (see --format) or a folder")
       ->required();
-  verb->add_option(
-          "--format", options->format,
-          "auto (by the ending of OUT; a folder gets drc), pc2, abc, pseq, obj, ply or drc")
-      ->capture_default_str();
+  verb->add_option("--format", options->format, FormatFlagHelp("drc"))->capture_default_str();
   verb->add_option("--encoding", options->encoding,
                    "of drc: mesh (every frame can be read alone) or points (smaller)")
       ->check(CLI::IsMember({"mesh", "points"}))

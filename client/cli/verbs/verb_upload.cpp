@@ -46,8 +46,7 @@ void AddUploadVerb(CLI::App& app, Session& session) {
   auto options = std::make_shared<UploadOptions>();
   CLI::App* verb = AddVerb(app, session, "upload", "store a sequence and print its id",
                            [options, &session] { return RunUpload(*options, session); });
-  verb->add_option("INPUT", options->input, "folder, glob, .pc2, .abc, .obj, .ply or .pseq")
-      ->required();
+  verb->add_option("INPUT", options->input, "any animation that pleat reads")->required();
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
   AddObjectFlag(verb, session);
   AddTtlFlag(verb, "the sequence", &options->ttl_hours);

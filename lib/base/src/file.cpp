@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/file_parts.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -77,6 +78,11 @@ absl::StatusOr<std::string> ReadFile(const std::string& path, uint64_t max_bytes
 }
 
 absl::Status WriteFile(const std::string& path, std::string_view bytes, unsigned mode) {
+  return WriteFileParts(path, std::span(&bytes, 1), mode);
+}
+
+absl::Status WriteFileParts(const std::string& path, std::span<const std::string_view> parts,
+                            unsigned mode) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   if (!parent.empty()) {
     std::error_code error;
@@ -93,7 +99,10 @@ absl::Status WriteFile(const std::string& path, std::string_view bytes, unsigned
   {
     FileDescriptor file(mkostemp(temporary.data(), O_CLOEXEC));
     if (file.get() < 0) return FileError("create a file beside", path);
-    absl::Status status = WriteAll(file.get(), bytes, path);
+    absl::Status status;
+    for (const std::string_view part : parts) {
+      if (status.ok()) status = WriteAll(file.get(), part, path);
+    }
     if (status.ok() && fchmod(file.get(), mode) != 0) status = FileError("set the mode of", path);
     if (status.ok() && fsync(file.get()) != 0) status = FileError("sync", path);
     if (status.ok() && rename(temporary.c_str(), path.c_str()) != 0) {

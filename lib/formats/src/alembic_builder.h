@@ -45,6 +45,9 @@ struct ObjectToWrite {
 
 class AlembicBuilder {
  public:
+  // Makes room for an archive of that many bytes.
+  void Reserve(size_t num_bytes) { writer_.Reserve(num_bytes); }
+
   // The values of one sample, as they lie in memory. Values that were added before are not written
   // again.
   WrittenSample AddSample(std::string_view values);

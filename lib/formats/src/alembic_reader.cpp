@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -236,14 +237,14 @@ absl::StatusOr<Joined> ReadStillParts(const AlembicChoice& choice, const MeshLim
 }
 
 FrameRate ChooseRate(const AlembicChoice& choice, const std::optional<FrameRate>& wanted,
-                     const AlembicArchive& archive, std::vector<InputNote>* notes) {
+                     const AlembicArchive& archive, InputReport* report) {
   const AlembicTimes& times = choice.times;
+  std::vector<InputNote>* notes = &report->notes;
   if (times.num_samples > 1 && times.TimeOf(0) != 0) {
     notes->push_back({.kind = "times_ignored",
                       .text = absl::StrCat("the first sample is at ", times.TimeOf(0),
-                                           " s; frames count from 0")});
+                                           " s; here frames count from 0")});
   }
-  if (wanted) return *wanted;
   const AlembicTimeSampling& sampling = *times.sampling;
   const bool is_said = times.number != 0 || sampling != AlembicTimeSampling{};
   std::optional<FrameRate> rate;
@@ -252,6 +253,12 @@ FrameRate ChooseRate(const AlembicChoice& choice, const std::optional<FrameRate>
   } else if (is_said && times.num_samples > 1) {
     rate = RateOfTimes(times.All());
   }
+  report->has_frame_rate = rate.has_value();
+  if (times.num_samples > 1) {
+    const double frame = times.TimeOf(0) * wanted.value_or(rate.value_or(FrameRate{})).fps();
+    report->first_frame = std::abs(frame - std::round(frame)) < 1e-6 ? std::round(frame) : frame;
+  }
+  if (wanted) return *wanted;
   if (rate || times.num_samples < 2) return rate.value_or(FrameRate{});
   double fps = 0;
   const std::string_view said = MetadataValue(archive.metadata(), "_ai_DCC_FPS");
@@ -270,7 +277,8 @@ FrameRate ChooseRate(const AlembicChoice& choice, const std::optional<FrameRate>
 }
 
 absl::StatusOr<MeshSequence> Decode(std::string_view bytes, const AlembicOptions& options,
-                                    const Progress& progress, std::vector<InputNote>* notes) {
+                                    const Progress& progress, InputReport* report) {
+  std::vector<InputNote>* notes = &report->notes;
   if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
   if (!bytes.starts_with("Ogawa")) {
     if (const std::string other = DescribeForeignBytes(bytes); !other.empty()) {
@@ -291,7 +299,7 @@ absl::StatusOr<MeshSequence> Decode(std::string_view bytes, const AlembicOptions
   }
   MeshSequenceOptions sequence_options;
   sequence_options.name = NameToUtf8(options.name);
-  sequence_options.frame_rate = ChooseRate(choice, options.frame_rate, archive, notes);
+  sequence_options.frame_rate = ChooseRate(choice, options.frame_rate, archive, report);
   sequence_options.appearance = joined.TakeAppearance();
   PLEAT_ASSIGN_OR_RETURN(Topology topology, joined.TakeTopology());
   PLEAT_ASSIGN_OR_RETURN(
@@ -306,11 +314,15 @@ absl::StatusOr<MeshSequence> Decode(std::string_view bytes, const AlembicOptions
 absl::StatusOr<MeshSequence> DecodeAlembic(std::string_view bytes, const std::string& file,
                                            const AlembicOptions& options, const Progress& progress,
                                            InputReport* report) {
-  std::vector<InputNote> notes;
-  absl::StatusOr<MeshSequence> sequence = Decode(bytes, options, progress, &notes);
-  for (InputNote& note : notes) {
-    note.text = absl::StrCat(DisplayName(file), ": ", note.text);
-    if (report != nullptr) report->notes.push_back(std::move(note));
+  InputReport found;
+  absl::StatusOr<MeshSequence> sequence = Decode(bytes, options, progress, &found);
+  if (report != nullptr) {
+    report->has_frame_rate = found.has_frame_rate;
+    report->first_frame = found.first_frame;
+    for (InputNote& note : found.notes) {
+      note.text = absl::StrCat(DisplayName(file), ": ", note.text);
+      report->notes.push_back(std::move(note));
+    }
   }
   return WithContext(file, std::move(sequence));
 }

@@ -12,6 +12,7 @@
 #include "alembic_builder.h"
 #include "pleat/base/file.h"
 #include "pleat/base/utf8.h"
+#include "pleat/mesh/mesh_limits.h"
 #include "pleat/mesh/mesh_sections.h"
 
 namespace pleat {
@@ -156,11 +157,16 @@ std::vector<ObjectToWrite> FaceSets(const MeshAppearance& appearance, AlembicBui
 
 }  // namespace
 
-std::string EncodeAlembic(const MeshSequence& sequence) {
+std::string EncodeAlembic(const MeshSequence& sequence, double first_frame) {
   AlembicBuilder builder;
+  const MeshCounts counts = {.num_vertices = sequence.num_vertices(),
+                             .num_frames = sequence.num_frames()};
+  constexpr size_t kFrameOverhead = 256;  // keys, sizes, boxes and references
+  builder.Reserve(counts.position_bytes() + kFrameOverhead * sequence.num_frames() +
+                  sequence.topology().corner_vertices().size() * 2 * sizeof(int32_t));
   const FrameRate rate = sequence.frame_rate();
-  const uint32_t sampling = builder.AddTimeSampling(
-      {static_cast<double>(rate.denominator) / static_cast<double>(rate.numerator), {0}});
+  const double step = static_cast<double>(rate.denominator) / static_cast<double>(rate.numerator);
+  const uint32_t sampling = builder.AddTimeSampling({step, {first_frame * step}});
   const Topology& topology = sequence.topology();
   std::vector<int32_t> sizes;
   for (int f = 0; f < topology.num_faces(); ++f) {
@@ -200,8 +206,9 @@ std::string EncodeAlembic(const MeshSequence& sequence) {
                                                rate.fps()));
 }
 
-absl::Status WriteAlembic(const std::string& path, const MeshSequence& sequence) {
-  return WriteFile(path, EncodeAlembic(sequence));
+absl::Status WriteAlembic(const std::string& path, const MeshSequence& sequence,
+                          double first_frame) {
+  return WriteFile(path, EncodeAlembic(sequence, first_frame));
 }
 
 }  // namespace pleat

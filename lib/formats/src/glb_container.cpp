@@ -126,6 +126,25 @@ double GlbAccessor::At(size_t i, int k) const {
   }
 }
 
+const float* GlbAccessor::Floats() const {
+  const bool is_plain = data_ != nullptr && num_sparse_ == 0 && component_type_ == kFloat &&
+                        stride_ == num_components_ * sizeof(float) &&
+                        reinterpret_cast<uintptr_t>(data_) % alignof(float) == 0;
+  return is_plain ? reinterpret_cast<const float*>(data_) : nullptr;
+}
+
+std::vector<float> GlbAccessor::CopyFloats() const {
+  if (const float* floats = Floats()) return {floats, floats + count_ * num_components_};
+  std::vector<float> values;
+  values.reserve(count_ * num_components_);
+  for (size_t i = 0; i < count_; ++i) {
+    for (size_t k = 0; k < num_components_; ++k) {
+      values.push_back(static_cast<float>(At(i, static_cast<int>(k))));
+    }
+  }
+  return values;
+}
+
 absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes, const MeshLimits& limits) {
   if (bytes.size() < 20 || ReadU32(bytes, 0) != kMagic) return Fault("not a binary glTF file");
   if (ReadU32(bytes, 4) != 2) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "pleat/mesh/mesh_limits.h"
@@ -19,6 +20,11 @@ class GlbAccessor {
   // Returns component k of element i as a number. Normalized integers become 0..1 or -1..1. Indices
   // are not checked.
   double At(size_t i, int k) const;
+  // The elements one after the other, where they lie in the file as float32 in this order; else
+  // null.
+  const float* Floats() const;
+  // All components of all elements as float32.
+  std::vector<float> CopyFloats() const;
 
  private:
   friend class GlbContainer;

@@ -41,8 +41,9 @@ std::array<size_t, 3> ConnectedCorners(int mode, size_t t) {
 
 class MeshReader {
  public:
-  MeshReader(const GlbContainer& glb, const GlbNodes& nodes, const MeshLimits& limits)
-      : glb_(glb), nodes_(nodes), limits_(limits) {}
+  MeshReader(const GlbContainer& glb, const GlbNodes& nodes, bool is_still,
+             const MeshLimits& limits)
+      : glb_(glb), nodes_(nodes), is_still_(is_still), limits_(limits) {}
 
   absl::StatusOr<GlbMesh> Read() {
     result_.skins.resize(glb_.List("skins").size());
@@ -110,9 +111,9 @@ class MeshReader {
       return absl::OkStatus();
     }
     NoteDropped(primitive, *attributes);
-    const auto [range, is_new] = ranges->try_emplace(KeyOf(*attributes));
+    const auto [range, is_new] = ranges->try_emplace(KeyOf(*attributes) + TargetsKey(primitive));
     if (is_new) {
-      PLEAT_ASSIGN_OR_RETURN(range->second, ReadVertices(*attributes, node, skin));
+      PLEAT_ASSIGN_OR_RETURN(range->second, ReadVertices(primitive, *attributes, node, skin));
     }
     return ReadFaces(primitive, mode.get<int>(), node, range->second);
   }
@@ -129,20 +130,49 @@ class MeshReader {
     return key;
   }
 
+  static std::string TargetsKey(const json& primitive) {
+    const auto targets = primitive.find("targets");
+    return targets == primitive.end()
+               ? ""
+               : targets->dump(-1, ' ', true, json::error_handler_t::replace);
+  }
+
   void NoteDropped(const json& primitive, const json& attributes) {
     for (const auto& item : attributes.items()) {
       const std::string& name = item.key();
       const bool is_normal = name == "NORMAL" || name == "TANGENT";  // computed where needed
-      if (name == "POSITION" || name == "TEXCOORD_0" || is_normal || name.starts_with("JOINTS_") ||
-          name.starts_with("WEIGHTS_") || dropped_.size() > kMaxDropped) {
+      if (name == "POSITION" || (!is_still_ && name == "_VERTEX_ID") || name == "TEXCOORD_0" ||
+          is_normal || name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_") ||
+          dropped_.size() > kMaxDropped) {
         continue;
       }
       dropped_.insert(EscapeControls(name));
     }
-    if (primitive.contains("targets")) dropped_.insert("morph targets");
+    if (is_still_ && primitive.contains("targets")) dropped_.insert("morph targets");
   }
 
-  absl::StatusOr<VertexRange> ReadVertices(const json& attributes, int node, int skin) {
+  // The morph targets of a primitive, which change its positions. Targets of other attributes alone
+  // count, but change nothing.
+  absl::Status ReadTargets(const json& primitive, GlbPart* part) {
+    const auto targets = primitive.find("targets");
+    if (is_still_ || targets == primitive.end()) return absl::OkStatus();
+    if (!targets->is_array()) return Fault("the morph targets of a primitive are no list");
+    num_visits_ += targets->size();
+    const auto num_vertices = static_cast<size_t>(part->positions.cols());
+    for (const json& target : *targets) {
+      std::optional<GlbAccessor>& points = part->targets.emplace_back();
+      if (!target.is_object() || !target.contains("POSITION")) continue;
+      PLEAT_ASSIGN_OR_RETURN(points, glb_.Access(target["POSITION"], "VEC3"));
+      if (points->count() != num_vertices) {
+        return Fault(absl::StrCat("a morph target has ", points->count(), " vertices, its mesh ",
+                                  num_vertices));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  absl::StatusOr<VertexRange> ReadVertices(const json& primitive, const json& attributes, int node,
+                                           int skin) {
     PLEAT_ASSIGN_OR_RETURN(const GlbAccessor points, glb_.Access(attributes["POSITION"], "VEC3"));
     if (num_vertices_ + points.count() > static_cast<size_t>(limits_.max_vertices)) {
       return absl::ResourceExhaustedError(
@@ -159,6 +189,10 @@ class MeshReader {
       const size_t num_joints = result_.skins[static_cast<size_t>(skin)].joint_nodes.size();
       PLEAT_ASSIGN_OR_RETURN(part.influences,
                              ReadGlbInfluences(glb_, attributes, points.count(), num_joints));
+    }
+    PLEAT_RETURN_IF_ERROR(ReadTargets(primitive, &part));
+    if (!is_still_ && attributes.contains("_VERTEX_ID")) {
+      PLEAT_ASSIGN_OR_RETURN(part.vertex_ids, glb_.Access(attributes["_VERTEX_ID"], "SCALAR"));
     }
     if (attributes.contains("TEXCOORD_0")) {
       PLEAT_ASSIGN_OR_RETURN(range.first_texcoord,
@@ -261,12 +295,12 @@ class MeshReader {
                         " with fewer than 3 corners left out at the end of a list"));
     }
     const size_t num_animations = glb_.List("animations").size();
-    if (num_animations > 0) {
+    if (is_still_ && num_animations > 0) {
       Note(NoteSeverity::kWarning, "animation_not_read",
            absl::StrCat("the file holds ", num_animations,
                         num_animations == 1 ? " animation" : " animations",
-                        ", which is not read from glTF: this is the one pose of its nodes; export "
-                        "the frames as OBJ, PLY or .pc2"));
+                        ", of which this is one pose, that of its nodes; give the file alone to "
+                        "read its frames"));
     }
   }
 
@@ -290,6 +324,7 @@ class MeshReader {
 
   const GlbContainer& glb_;
   const GlbNodes& nodes_;
+  const bool is_still_;
   const MeshLimits& limits_;
   GlbMesh result_;
   size_t num_vertices_ = 0, num_visits_ = 0;
@@ -300,53 +335,11 @@ class MeshReader {
   int num_cut_off_ = 0;  // lists of triangles that end inside one
 };
 
-// Returns world_from_mesh of every joint of a skin.
-std::vector<Eigen::Matrix4d> SkinTransforms(const GlbSkin& skin, const GlbNodes& nodes) {
-  std::vector<Eigen::Matrix4d> transforms;
-  for (size_t j = 0; j < skin.joint_nodes.size(); ++j) {
-    transforms.push_back(nodes.world_from_node(skin.joint_nodes[j]));
-    if (!skin.inverse_binds.empty()) transforms.back() *= skin.inverse_binds[j];
-  }
-  return transforms;
-}
-
-// Normalizes the weights, since those of whole numbers miss a sum of one by their rounding.
-Eigen::Matrix4d Blend(const std::vector<JointInfluence>& influences,
-                      const std::vector<Eigen::Matrix4d>& transforms) {
-  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double total = 0;
-  for (const auto& [joint, weight] : influences) {
-    sum += weight * transforms[static_cast<size_t>(joint)];
-    total += weight;
-  }
-  return sum / total;
-}
-
 }  // namespace
 
-absl::StatusOr<GlbMesh> ReadGlbMesh(const GlbContainer& glb, const GlbNodes& nodes,
+absl::StatusOr<GlbMesh> ReadGlbMesh(const GlbContainer& glb, const GlbNodes& nodes, bool is_still,
                                     const MeshLimits& limits) {
-  return MeshReader(glb, nodes, limits).Read();
-}
-
-Eigen::Matrix3Xf PlaceGlbMesh(const GlbMesh& mesh, const GlbNodes& nodes) {
-  std::vector<std::vector<Eigen::Matrix4d>> skin_transforms;
-  for (const GlbSkin& skin : mesh.skins) skin_transforms.push_back(SkinTransforms(skin, nodes));
-  Eigen::Matrix3Xf placed(3, mesh.topology.num_vertices());
-  for (const GlbPart& part : mesh.parts) {
-    for (Eigen::Index v = 0; v < part.positions.cols(); ++v) {
-      Eigen::Matrix4d world_from_mesh = nodes.world_from_node(part.node);
-      if (part.skin >= 0 && !part.influences[static_cast<size_t>(v)].empty()) {
-        world_from_mesh = Blend(part.influences[static_cast<size_t>(v)],
-                                skin_transforms[static_cast<size_t>(part.skin)]);
-      }
-      placed.col(part.first_vertex + v) =
-          (world_from_mesh.topLeftCorner<3, 3>() * part.positions.col(v) +
-           world_from_mesh.topRightCorner<3, 1>())
-              .cast<float>();
-    }
-  }
-  return placed;
+  return MeshReader(glb, nodes, is_still, limits).Read();
 }
 
 }  // namespace pleat

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct GlbPart {
   int skin = -1;                                          // index in GlbMesh::skins, -1 = none
   Eigen::Matrix3Xd positions{};                           // as the accessor has them
   std::vector<std::vector<JointInfluence>> influences{};  // of the skin; empty without one
+  // The differences of its morph targets, as many elements as positions; none where a target does
+  // not move.
+  std::vector<std::optional<GlbAccessor>> targets{};
+  std::optional<GlbAccessor> vertex_ids{};  // attribute _VERTEX_ID
 };
 
 struct GlbMesh {
@@ -30,12 +35,10 @@ struct GlbMesh {
   std::vector<InputNote> notes;
 };
 
-// Reads what the shown nodes hold. Errors as in DecodeGlb, without the name of the file.
-absl::StatusOr<GlbMesh> ReadGlbMesh(const GlbContainer& glb, const GlbNodes& nodes,
+// Reads what the shown nodes hold. is_still: without morph targets, and a note says what moves and
+// is not read. Errors as in DecodeGlb, without the name of the file. The container must outlive the
+// mesh.
+absl::StatusOr<GlbMesh> ReadGlbMesh(const GlbContainer& glb, const GlbNodes& nodes, bool is_still,
                                     const MeshLimits& limits);
-
-// Places all parts where the nodes are: 3 x V in the order of the topology. The transform of a node
-// whose mesh is skinned does not count (glTF 2.0, section 3.7.3.3): its joints pose it.
-Eigen::Matrix3Xf PlaceGlbMesh(const GlbMesh& mesh, const GlbNodes& nodes);
 
 }  // namespace pleat

@@ -33,36 +33,41 @@ bool ReadNumbers(const json& node, const char* key, size_t count, double* values
 }
 
 // Returns the transform of one node relative to its parent.
-absl::StatusOr<Eigen::Matrix4d> ParentFromNode(const json& node, size_t index) {
-  Eigen::Matrix4d matrix;
+absl::StatusOr<GlbTransform> ReadTransform(const json& node, size_t index) {
+  GlbTransform transform;
   if (node.contains("matrix")) {
-    if (!ReadNumbers(node, "matrix", 16, matrix.data())) {
+    if (!ReadNumbers(node, "matrix", 16, transform.matrix.emplace().data())) {
       return NodeFault(index, "'s matrix is not 16 numbers");
     }
-    return matrix;
+    return transform;
   }
-  Eigen::Vector3d move(0, 0, 0), scale(1, 1, 1);
   Eigen::Vector4d turn(0, 0, 0, 1);  // x, y, z, w
-  if (!ReadNumbers(node, "translation", 3, move.data()) ||
-      !ReadNumbers(node, "scale", 3, scale.data()) ||
+  if (!ReadNumbers(node, "translation", 3, transform.translation.data()) ||
+      !ReadNumbers(node, "scale", 3, transform.scale.data()) ||
       !ReadNumbers(node, "rotation", 4, turn.data())) {
     return NodeFault(index, "'s translation, rotation or scale is not a list of finite numbers");
   }
-  const Eigen::Quaterniond rotation(turn);
-  if (!(rotation.norm() > 0)) return NodeFault(index, "'s rotation is zero");
-  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  transform.translate(move);
-  transform.rotate(rotation.normalized());
-  transform.scale(scale);
-  return transform.matrix();
+  transform.rotation = Eigen::Quaterniond(turn);
+  if (!(transform.rotation.norm() > 0)) return NodeFault(index, "'s rotation is zero");
+  transform.rotation.normalize();
+  return transform;
 }
 
 }  // namespace
 
+Eigen::Matrix4d GlbTransform::Matrix() const {
+  if (matrix) return *matrix;
+  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  transform.translate(translation);
+  transform.rotate(rotation);
+  transform.scale(scale);
+  return transform.matrix();
+}
+
 absl::StatusOr<GlbNodes> GlbNodes::Read(const GlbContainer& glb) {
   GlbNodes nodes;
   PLEAT_RETURN_IF_ERROR(nodes.ReadParents(glb));
-  PLEAT_RETURN_IF_ERROR(nodes.PlaceInWorld(glb));
+  PLEAT_RETURN_IF_ERROR(nodes.ReadTransforms(glb));
   PLEAT_RETURN_IF_ERROR(nodes.FindShown(glb));
   return nodes;
 }
@@ -95,8 +100,8 @@ void GlbNodes::AppendDescendants(std::vector<int>* list) const {
   }
 }
 
-absl::Status GlbNodes::PlaceInWorld(const GlbContainer& glb) {
-  std::vector<int> order;
+absl::Status GlbNodes::ReadTransforms(const GlbContainer& glb) {
+  std::vector<int>& order = order_;
   for (int n = 0; n < count(); ++n) {
     if (parents_[static_cast<size_t>(n)] < 0) order.push_back(n);
   }
@@ -109,16 +114,23 @@ absl::Status GlbNodes::PlaceInWorld(const GlbContainer& glb) {
     return NodeFault(static_cast<size_t>(first - is_placed.begin()),
                      " is its own ancestor, or below a node that is");
   }
+  for (size_t n = 0; n < parents_.size(); ++n) {
+    PLEAT_ASSIGN_OR_RETURN(GlbTransform transform, ReadTransform(glb.List("nodes")[n], n));
+    transforms_.push_back(transform);
+  }
   world_from_node_.resize(parents_.size());
-  for (const int n : order) {
+  Pose(transforms_);
+  return absl::OkStatus();
+}
+
+void GlbNodes::Pose(const std::vector<GlbTransform>& transforms) {
+  for (const int n : order_) {
     const auto index = static_cast<size_t>(n);
-    PLEAT_ASSIGN_OR_RETURN(world_from_node_[index],
-                           ParentFromNode(glb.List("nodes")[index], index));
+    world_from_node_[index] = transforms[index].Matrix();
     if (parents_[index] >= 0) {
       world_from_node_[index] = world_from_node(parents_[index]) * world_from_node_[index];
     }
   }
-  return absl::OkStatus();
 }
 
 absl::Status GlbNodes::FindShown(const GlbContainer& glb) {

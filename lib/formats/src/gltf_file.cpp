@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "glb_container.h"
 #include "json_depth.h"
-#include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
@@ -116,12 +116,6 @@ absl::Status JoinBuffers(const std::string& path, const MeshLimits& limits, json
   return absl::OkStatus();
 }
 
-void WriteChunk(uint32_t kind, std::string_view bytes, ByteWriter* writer) {
-  writer->Write(static_cast<uint32_t>(bytes.size()));
-  writer->Write(kind);
-  writer->WriteRaw(bytes);
-}
-
 }  // namespace
 
 bool IsGltfText(std::string_view bytes) {
@@ -141,14 +135,29 @@ absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& p
   std::string binary;
   PLEAT_RETURN_IF_ERROR(JoinBuffers(path, limits, &root, &binary));
   std::string document = root.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string bytes = GlbStart(std::move(document), binary.size());
+  bytes.append(binary);
+  bytes.resize((bytes.size() + 3) / 4 * 4);
+  return bytes;
+}
+
+std::string GlbStart(std::string document, size_t binary_bytes) {
   document.resize((document.size() + 3) / 4 * 4, ' ');
-  ByteWriter writer;
-  writer.Write(kMagic);
-  writer.Write(uint32_t{2});
-  writer.Write(static_cast<uint32_t>(28 + document.size() + binary.size()));
-  WriteChunk(kJsonChunk, document, &writer);
-  WriteChunk(kBinaryChunk, binary, &writer);
-  return writer.Release();
+  std::string bytes;
+  const auto append = [&](uint64_t value) {
+    const auto narrow = static_cast<uint32_t>(value);
+    bytes.append(reinterpret_cast<const char*>(&narrow), sizeof(narrow));
+  };
+  const uint64_t padded_bytes = (uint64_t{binary_bytes} + 3) / 4 * 4;
+  append(kMagic);
+  append(2);
+  append(28 + document.size() + padded_bytes);
+  append(document.size());
+  append(kJsonChunk);
+  bytes.append(document);
+  append(padded_bytes);
+  append(kBinaryChunk);
+  return bytes;
 }
 
 }  // namespace pleat

@@ -18,4 +18,12 @@ bool IsGltfText(std::string_view bytes);
 absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& path,
                                      const MeshLimits& limits);
 
+// The bytes of the file `path` as a GLB, whichever form it has. What is neither is returned as it
+// is, for the reader of GLB to refuse.
+absl::StatusOr<std::string> ReadGltfBytes(const std::string& path, const MeshLimits& limits);
+
+// What comes before the binary chunk of a GLB of two chunks. That chunk must be padded with zeros
+// to a multiple of 4 bytes, and both together have less than 4 GiB.
+std::string GlbStart(std::string document, size_t binary_bytes);
+
 }  // namespace pleat

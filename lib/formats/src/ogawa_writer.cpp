@@ -1,6 +1,7 @@
 #include "ogawa_writer.h"
 
 #include <cstring>
+#include <utility>
 
 namespace pleat {
 namespace {
@@ -10,29 +11,29 @@ constexpr std::string_view kOgawaStart("Ogawa\xff\0\1", 8);  // closed, version 
 }  // namespace
 
 OgawaWriter::OgawaWriter() {
-  writer_.WriteRaw(kOgawaStart);
-  writer_.Write(uint64_t{0});  // the position of the root, which Finish knows
+  bytes_.append(kOgawaStart);
+  Write(0);  // the position of the root, which Finish knows
 }
 
 OgawaRef OgawaWriter::AddData(std::string_view bytes, std::string_view front) {
   if (front.empty() && bytes.empty()) return {OgawaRef::kDataBit};
-  const OgawaRef ref{OgawaRef::kDataBit | writer_.size()};
-  writer_.Write(uint64_t{front.size() + bytes.size()});
-  writer_.WriteRaw(front);
-  writer_.WriteRaw(bytes);
+  const OgawaRef ref{OgawaRef::kDataBit | bytes_.size()};
+  Write(front.size() + bytes.size());
+  bytes_.append(front);
+  bytes_.append(bytes);
   return ref;
 }
 
 OgawaRef OgawaWriter::AddGroup(std::span<const OgawaRef> children) {
   if (children.empty()) return {};
-  const OgawaRef ref{writer_.size()};
-  writer_.Write(uint64_t{children.size()});
-  for (const OgawaRef child : children) writer_.Write(child.bits);
+  const OgawaRef ref{bytes_.size()};
+  Write(children.size());
+  for (const OgawaRef child : children) Write(child.bits);
   return ref;
 }
 
 std::string OgawaWriter::Finish(OgawaRef root) {
-  std::string bytes = writer_.Release();
+  std::string bytes = std::move(bytes_);
   std::memcpy(bytes.data() + kOgawaStart.size(), &root.bits, sizeof(root.bits));
   return bytes;
 }

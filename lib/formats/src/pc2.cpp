@@ -2,10 +2,12 @@
 
 #include <cassert>
 #include <span>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
+#include "pleat/base/file_parts.h"
 #include "pleat/base/foreign_file.h"
 #include "pleat/base/status.h"
 
@@ -77,6 +79,26 @@ absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshLimits& limi
   return cache;
 }
 
+// The header, then a view of each frame. header: where the bytes of the first are kept.
+std::vector<std::string_view> PartsOf(const PointCache& cache, std::string* header) {
+  assert(!cache.frames.empty());
+  ByteWriter writer;
+  writer.WriteRaw(kMagic);
+  writer.Write<int32_t>(1);
+  writer.Write(static_cast<int32_t>(cache.frames[0].cols()));
+  writer.Write(cache.start_frame);
+  writer.Write(cache.sample_rate);
+  writer.Write(static_cast<int32_t>(cache.frames.size()));
+  *header = writer.Release();
+  std::vector<std::string_view> parts = {*header};
+  for (const Eigen::Matrix3Xf& frame : cache.frames) {
+    assert(frame.cols() == cache.frames[0].cols());
+    parts.emplace_back(reinterpret_cast<const char*>(frame.data()),
+                       static_cast<size_t>(frame.size()) * sizeof(float));
+  }
+  return parts;
+}
+
 }  // namespace
 
 absl::StatusOr<PointCache> DecodePointCache(std::string_view bytes, const std::string& file,
@@ -90,23 +112,17 @@ absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshLim
 }
 
 std::string EncodePointCache(const PointCache& cache) {
-  assert(!cache.frames.empty());
-  ByteWriter writer;
-  writer.WriteRaw(kMagic);
-  writer.Write<int32_t>(1);
-  writer.Write(static_cast<int32_t>(cache.frames[0].cols()));
-  writer.Write(cache.start_frame);
-  writer.Write(cache.sample_rate);
-  writer.Write(static_cast<int32_t>(cache.frames.size()));
-  for (const Eigen::Matrix3Xf& frame : cache.frames) {
-    assert(frame.cols() == cache.frames[0].cols());
-    writer.WriteArray(std::span(frame.data(), static_cast<size_t>(frame.size())));
-  }
-  return writer.Release();
+  std::string header;
+  const std::vector<std::string_view> parts = PartsOf(cache, &header);
+  std::string bytes;
+  bytes.reserve(header.size() + (parts.size() - 1) * parts[1].size());
+  for (const std::string_view part : parts) bytes.append(part);
+  return bytes;
 }
 
 absl::Status WritePointCache(const std::string& path, const PointCache& cache) {
-  return WriteFile(path, EncodePointCache(cache));
+  std::string header;
+  return WriteFileParts(path, PartsOf(cache, &header));
 }
 
 }  // namespace pleat

@@ -26,6 +26,11 @@ bool IsGltfFile(const std::filesystem::path& path) {
   return extension == ".glb" || extension == ".gltf";
 }
 
+bool IsArrayFile(const std::filesystem::path& path) {
+  const std::string extension = LowerExtension(path);
+  return extension == ".npz" || extension == ".npy";
+}
+
 std::string DisplayName(const std::filesystem::path& path) {
   return EscapeControls(path.filename().string());
 }

@@ -26,6 +26,8 @@ bool IsMeshFile(const std::filesystem::path& path);
 // By its extension. Beside other files a glTF file is most often a rig or a preview, so it is a
 // frame only where it is asked for or where nothing else is.
 bool IsGltfFile(const std::filesystem::path& path);
+// By its extension: arrays, which beside other files most often hold something else.
+bool IsArrayFile(const std::filesystem::path& path);
 // The name without its folders, fit for messages and for UTF-8 strings.
 std::string DisplayName(const std::filesystem::path& path);
 
@@ -40,9 +42,17 @@ absl::StatusOr<MeshSequence> ReadFrameFiles(const std::vector<std::string>& path
                                             const std::string& name, const std::string& input,
                                             const InputReading& reading);
 
-// A point cache (.pc2) with the mesh beside it.
+// A glTF file: the frames of its animation, or one where nothing moves.
+absl::StatusOr<MeshSequence> ReadGltfSequence(const std::string& path, const InputReading& reading);
+
+// A point cache (.pc2, .mdd) with the mesh beside it.
 absl::StatusOr<MeshSequence> ReadPointCacheSequence(const std::string& path,
                                                     const InputReading& reading);
+absl::StatusOr<MeshSequence> ReadMddSequence(const std::string& path, const InputReading& reading);
+
+// An archive of arrays (.npz) that holds the faces, or arrays (.npz, .npy) with the mesh beside.
+absl::StatusOr<MeshSequence> ReadArraySequence(const std::string& path,
+                                               const InputReading& reading);
 
 // The files that a pattern (*, ?, [...]) names. Brackets in the name of a folder or file that is
 // there stand for themselves.

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr absl::string_view kKnownExtensions = ".obj, .ply, .drc, .glb, .gltf, .pc2, .abc, .pseq";
+constexpr absl::string_view kKnownExtensions =
+    ".obj, .ply, .drc, .glb, .gltf, .pc2, .mdd, .npz, .npy, .abc, .pseq";
 
 // The folder's own name, also for "." and "dir/".
 std::string FolderName(const std::string& folder) {
@@ -55,7 +56,7 @@ absl::StatusOr<MeshSequence> ReadAlembicSequence(const std::string& path,
 // Formats that hold a whole animation in one file.
 bool IsAnimationFile(const std::string& path) {
   const std::string extension = LowerExtension(path);
-  return extension == ".pc2" || extension == ".abc" || extension == ".pseq";
+  return extension == ".pc2" || extension == ".mdd" || extension == ".abc" || extension == ".pseq";
 }
 
 // ---- Which of them the input is ----
@@ -83,21 +84,25 @@ absl::StatusOr<MeshSequence> WithoutObject(absl::StatusOr<MeshSequence> sequence
 absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
   const std::string extension = LowerExtension(path);
   if (extension == ".abc") return ReadAlembicSequence(path, reading);
-  if (IsMeshFile(path) || IsGltfFile(path)) {
+  if (IsGltfFile(path)) return WithoutObject(ReadGltfSequence(path, reading), path, reading);
+  if (IsMeshFile(path)) {
     return WithoutObject(ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading),
                          path, reading);
   }
   if (extension == ".pc2") {
     return WithoutObject(ReadPointCacheSequence(path, reading), path, reading);
   }
+  if (extension == ".mdd") return WithoutObject(ReadMddSequence(path, reading), path, reading);
+  if (IsArrayFile(path)) return WithoutObject(ReadArraySequence(path, reading), path, reading);
   if (extension == ".pseq") {
+    reading.report->has_frame_rate = true;
     return WithoutObject(ReadPleatSequence(path, reading.options), path, reading);
   }
   return UnknownExtension(path);
 }
 
 absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputReading& reading) {
-  std::vector<std::string> meshes, caches, gltf_files;
+  std::vector<std::string> meshes, caches, gltf_files, arrays;
   std::set<std::string> other_extensions;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
@@ -109,11 +114,14 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
       caches.push_back(path);
     } else if (IsGltfFile(path)) {
       gltf_files.push_back(path);
+    } else if (IsArrayFile(path)) {
+      arrays.push_back(path);
     } else {
       other_extensions.insert(absl::StrCat("'", LowerExtension(path), "'"));
     }
   }
   if (error) return ErrnoStatus(error.value(), absl::StrCat("cannot list '", folder, "'"));
+  if (caches.empty() && meshes.empty() && gltf_files.empty()) caches = std::move(arrays);
   if (caches.size() == 1 && meshes.size() <= 1) return ReadOneFile(caches[0], reading);
   if (!caches.empty()) {
     std::sort(caches.begin(), caches.end());
@@ -122,6 +130,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
                                                    "such as '",
                                                    caches[0], "', or a pattern for its meshes"));
   }
+  if (meshes.empty() && gltf_files.size() == 1) return ReadOneFile(gltf_files[0], reading);
   if (meshes.empty()) meshes = std::move(gltf_files);
   if (meshes.empty()) {
     return absl::NotFoundError(

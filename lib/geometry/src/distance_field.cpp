@@ -15,6 +15,7 @@ constexpr int kMinResolution = 8, kMaxResolution = 512;
 constexpr double kBandCells = 2;
 constexpr int kBlockNodes = 16;             // side of a work item of the parallel loop
 constexpr double kWindingTolerance = 0.05;  // error of the dipoles
+constexpr double kClearSpacing = 1 + 1e-5;  // of spacings; the distances are rounded to floats
 
 // The side on which a ball lies that is free of surface.
 enum class Side { kUnknown, kInside, kOutside };
@@ -35,18 +36,25 @@ Side SideOfBall(double winding, double ratio) {
 
 }  // namespace
 
-// Fills blocks of nodes from coarse to fine: far from the surface one closest point and one winding
-// number decide about many nodes. Blocks share no node, so they are filled in parallel.
+// Fills one block of nodes from coarse to fine: far from the surface one closest point and one
+// winding number decide about many nodes. Blocks share no node, so they are filled in parallel.
 class DistanceField::Sampler {
  public:
-  Sampler(const TriangleTree& tree, const WindingNumber& winding_number, DistanceField* field)
-      : tree_(tree), winding_number_(winding_number), field_(*field) {}
+  Sampler(const TriangleTree& tree, const WindingNumber& winding_number, bool is_closed,
+          DistanceField* field)
+      : tree_(tree), winding_number_(winding_number), is_closed_(is_closed), field_(*field) {}
 
-  // Fills the nodes low <= node < high. `reach` is an upper bound of the distance from the block's
-  // center to the surface, known from the larger block around it by the triangle inequality; it
+  // Fills the nodes low <= node < high.
+  void FillBlock(const Eigen::Vector3i& low, const Eigen::Vector3i& high) {
+    Fill(low, high, std::numeric_limits<double>::infinity());
+    DecideSides(low, high);
+  }
+
+ private:
+  // Does it for a part of the block. `reach` is an upper bound of the distance from the part's
+  // center to the surface, known from the larger part around it by the triangle inequality; it
   // makes the search of the closest point short.
-  void Fill(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
-            double reach = std::numeric_limits<double>::infinity()) const {
+  void Fill(const Eigen::Vector3i& low, const Eigen::Vector3i& high, double reach) {
     const Eigen::Vector3i sizes = high - low;
     if (sizes.prod() == 1) {
       FillNode(low, reach, Side::kUnknown);
@@ -56,8 +64,7 @@ class DistanceField::Sampler {
     const double radius =
         0.5 * field_.spacing_ * (sizes.array() - 1).matrix().cast<double>().norm();
     const double distance = DistanceWithin(center, reach);
-    const Side side =
-        distance > radius ? SideOfBall(winding_number_(center), radius / distance) : Side::kUnknown;
+    const Side side = distance > radius ? SideOfPart(center, radius / distance) : Side::kUnknown;
     if (side != Side::kUnknown) {
       FillOneSided(low, high, center, distance, side);
       return;
@@ -71,10 +78,17 @@ class DistanceField::Sampler {
     }
   }
 
- private:
   Eigen::Vector3d Center(const Eigen::Vector3i& low, const Eigen::Vector3i& high) const {
     return field_.origin_ +
            0.5 * field_.spacing_ * (low + high - Eigen::Vector3i::Ones()).cast<double>();
+  }
+
+  // Returns the side of a ball around `center` that no surface meets, for the part within `ratio`
+  // of its radius.
+  Side SideOfPart(const Eigen::Vector3d& center, double ratio) const {
+    const double winding = winding_number_(center);
+    if (is_closed_) return winding > 0.5 ? Side::kInside : Side::kOutside;
+    return SideOfBall(winding, ratio);
   }
 
   // The bound is widened by a trace, since the search is exclusive and the bound may be met
@@ -86,7 +100,7 @@ class DistanceField::Sampler {
 
   // Fills a block that lies on one side. Nodes far outside need no search at all.
   void FillOneSided(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
-                    const Eigen::Vector3d& center, double distance, Side side) const {
+                    const Eigen::Vector3d& center, double distance, Side side) {
     const double band = kBandCells * field_.spacing_;
     for (int z = low.z(); z < high.z(); ++z) {
       for (int y = low.y(); y < high.y(); ++y) {
@@ -106,26 +120,104 @@ class DistanceField::Sampler {
     }
   }
 
-  // Returns the distance, clamped to the band outside.
-  double FillNode(const Eigen::Vector3i& at, double reach, Side side) const {
+  // Returns the distance, clamped to the band outside. Where the side is unknown and a neighbor may
+  // tell it, the distance is kept as if it were outside, without the clamp, until DecideSides.
+  double FillNode(const Eigen::Vector3i& at, double reach, Side side) {
     const Eigen::Vector3d point = field_.NodePosition(at.x(), at.y(), at.z());
     const int node = field_.NodeIndex(at.x(), at.y(), at.z());
-    const bool inside =
-        side == Side::kUnknown ? winding_number_.IsInside(point) : side == Side::kInside;
+    if (side == Side::kUnknown && !is_closed_) side = SideOf(at);
     const double band = kBandCells * field_.spacing_;
-    const double radius = inside ? reach * (1 + 1e-9) : std::min(band, reach * (1 + 1e-9));
+    const double bound = reach * (1 + 1e-9);
+    const double radius = side == Side::kOutside ? std::min(band, bound) : bound;
     const SurfacePoint nearest = tree_.ClosestPoint(point, radius * radius);
     const double distance = nearest.triangle < 0 ? band : std::sqrt(nearest.squared_distance);
-    field_.distances_[node] = static_cast<float>(inside ? -distance : distance);
-    if (inside && distance > 0) {
+    field_.distances_[node] = static_cast<float>(side == Side::kInside ? -distance : distance);
+    if (side != Side::kOutside && distance > 0) {
       field_.directions_[node] = ((nearest.position - point) / distance).cast<float>();
     }
+    if (side == Side::kUnknown) undecided_.push_back(at);
     return distance;
+  }
+
+  Side SideOf(const Eigen::Vector3i& at) const {
+    return winding_number_.IsInside(field_.NodePosition(at.x(), at.y(), at.z())) ? Side::kInside
+                                                                                 : Side::kOutside;
+  }
+
+  // Gives the undecided nodes of a block the sides of their neighbors: two nodes that are nearer to
+  // each other than their distances to the surface together have no surface between them. The
+  // winding number is asked where no neighbor tells.
+  void DecideSides(const Eigen::Vector3i& low, const Eigen::Vector3i& high) {
+    if (undecided_.empty()) return;
+    const Eigen::Vector3i sizes = high - low;
+    is_open_.assign(sizes.prod(), 0);
+    const auto is_open = [&](const Eigen::Vector3i& at) -> char& {
+      const Eigen::Vector3i local = at - low;
+      return is_open_[local.x() + sizes.x() * (local.y() + sizes.y() * local.z())];
+    };
+    for (const Eigen::Vector3i& at : undecided_) is_open(at) = 1;
+    std::vector<Eigen::Vector3i> stack;
+    const auto decide = [&](const Eigen::Vector3i& at, Side side) {
+      is_open(at) = 0;
+      SetSide(field_.NodeIndex(at.x(), at.y(), at.z()), side);
+      stack.push_back(at);
+    };
+    // Calls visit(neighbor) for the neighbors in the block without surface before them.
+    const auto for_clear_neighbors = [&](const Eigen::Vector3i& at, const auto& visit) {
+      for (int k = 0; k < 6; ++k) {
+        Eigen::Vector3i next = at;
+        next[k / 2] += k % 2 == 0 ? 1 : -1;
+        if ((next.array() < low.array()).any() || (next.array() >= high.array()).any()) continue;
+        const float clear = std::abs(DistanceAt(at)) + std::abs(DistanceAt(next));
+        if (clear > kClearSpacing * field_.spacing_) visit(next);
+      }
+    };
+    const auto spread = [&] {
+      while (!stack.empty()) {
+        const Eigen::Vector3i at = stack.back();
+        stack.pop_back();
+        const Side side = DistanceAt(at) < 0 ? Side::kInside : Side::kOutside;
+        for_clear_neighbors(at, [&](const Eigen::Vector3i& next) {
+          if (is_open(next) != 0) decide(next, side);
+        });
+      }
+    };
+    for (const Eigen::Vector3i& at : undecided_) {
+      if (is_open(at) == 0) continue;
+      for_clear_neighbors(at, [&](const Eigen::Vector3i& next) {
+        if (is_open(at) == 0 || is_open(next) != 0 || DistanceAt(next) == 0) return;
+        decide(at, DistanceAt(next) < 0 ? Side::kInside : Side::kOutside);
+      });
+      spread();
+    }
+    for (const Eigen::Vector3i& at : undecided_) {
+      if (is_open(at) == 0) continue;
+      decide(at, SideOf(at));
+      spread();
+    }
+    undecided_.clear();
+  }
+
+  float DistanceAt(const Eigen::Vector3i& at) const {
+    return field_.distances_[field_.NodeIndex(at.x(), at.y(), at.z())];
+  }
+
+  void SetSide(int node, Side side) {
+    float& distance = field_.distances_[node];
+    if (side == Side::kInside) {
+      distance = -distance;
+    } else {
+      distance = std::min(distance, static_cast<float>(kBandCells * field_.spacing_));
+      field_.directions_[node].setZero();
+    }
   }
 
   const TriangleTree& tree_;
   const WindingNumber& winding_number_;
+  bool is_closed_;
   DistanceField& field_;
+  std::vector<Eigen::Vector3i> undecided_;  // of the block at hand
+  std::vector<char> is_open_;               // per node of the block: not yet decided
 };
 
 absl::StatusOr<DistanceField> DistanceField::Compute(const TriangleTree& tree,
@@ -159,14 +251,14 @@ absl::StatusOr<DistanceField> DistanceField::Compute(const TriangleTree& tree,
   field.distances_.resize(num_nodes);
   field.directions_.assign(num_nodes, Eigen::Vector3f::Zero());
   const Eigen::Vector3i num_blocks = (field.num_nodes_.array() + kBlockNodes - 1) / kBlockNodes;
-  const Sampler sampler(tree, winding_number, &field);
   ParallelFor(num_blocks.prod(), options.num_threads, [&](int block) {
     if (progress.cancelled()) return;
     const Eigen::Vector3i low =
         kBlockNodes * Eigen::Vector3i(block % num_blocks.x(),
                                       block / num_blocks.x() % num_blocks.y(),
                                       block / (num_blocks.x() * num_blocks.y()));
-    sampler.Fill(low, (low.array() + kBlockNodes).min(field.num_nodes_.array()).matrix());
+    Sampler(tree, winding_number, options.is_closed, &field)
+        .FillBlock(low, (low.array() + kBlockNodes).min(field.num_nodes_.array()).matrix());
   });
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
   return field;

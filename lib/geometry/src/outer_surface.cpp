@@ -110,8 +110,8 @@ Solid FillSolid(const VoxelGrid& grid, const std::vector<uint8_t>& from_surface,
 // Returns the solid of the smallest growth that encloses enough and connects what belongs together.
 Solid CloseGaps(const VoxelGrid& grid, const VoxelMask& surface, const OuterSurfaceOptions& options,
                 int* growth) {
-  const std::vector<uint8_t> distances =
-      SquaredVoxelDistances(grid, surface, std::max({1, options.max_growth, options.growth}));
+  const int reach = options.growth >= 0 ? options.growth : options.max_growth;
+  const std::vector<uint8_t> distances = SquaredVoxelDistances(grid, surface, std::max(1, reach));
   if (options.growth >= 0) {
     *growth = options.growth;
     return FillSolid(grid, distances, options.growth);

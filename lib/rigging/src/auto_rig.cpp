@@ -26,9 +26,8 @@ constexpr double kContraryEvidence = -.4, kWeakEvidence = .1, kClearEvidence = .
 // human feet or knees: most beasts on their hind legs have not.
 constexpr double kHumanEvidence = .4;
 constexpr double kSoupShare = .05;  // components per triangle: few triangles have a neighbor
-constexpr Eigen::Index kManyVertices = 150'000;
-constexpr double kShortArm = .05;  // share of a leg that is missing to half a leg
-constexpr double kUpCosine = .9;   // 26 degrees: a character that leans is no reason for a warning
+constexpr Eigen::Index kManyVertices = 50'000;
+constexpr double kUpCosine = .9;  // 26 degrees: a character that leans is no reason for a warning
 
 FacingEvidence EvidenceOf(const MeshSequence& sequence, const BodyShell& shell,
                           const FrameEmbedding& found) {
@@ -46,6 +45,8 @@ FacingEvidence EvidenceOf(const MeshSequence& sequence, const BodyShell& shell,
 // for the opposite one. A yaw that the user gives is never turned. Only kCancelled is an error.
 absl::Status CheckFacing(const MeshSequence& sequence, const AutoRigOptions& options,
                          FrameEmbedding* found, AutoRigSummary* summary, const Progress& progress) {
+  // A hem is no foot, and cloth that swings no knee.
+  if (found->embedding.has_hidden_legs) return absl::OkStatus();
   const BodyShell shell{found->volume->WorldFromUnit(found->volume->body->shell.positions),
                         found->volume->body->shell.triangles};
   summary->evidence = EvidenceOf(sequence, shell, *found);
@@ -56,6 +57,7 @@ absl::Status CheckFacing(const MeshSequence& sequence, const AutoRigOptions& opt
   EmbeddingOptions embedding = options.embedding;
   embedding.upright_from_input = found->upright_from_input;
   embedding.yaws_degrees = {std::fmod(found->embedding.yaw_degrees + 180, 360)};
+  embedding.search.max_bound = std::min(embedding.search.max_bound, options.refused_residual);
   absl::StatusOr<Embedding> opposite = EmbedSkeleton(*found->volume, embedding, progress);
   if (absl::IsCancelled(opposite.status())) return opposite.status();
   if (!opposite.ok() || opposite->residual > options.refused_residual) return absl::OkStatus();
@@ -167,11 +169,17 @@ void FillSummary(const FrameEmbedding& found, const AutoRigOptions& options,
         "if it is wrong",
         found.frame, embedding.residual, options.trusted_residual, kRigAdvice));
   }
-  if (embedding.arm_shortfall > kShortArm) {
+  if (embedding.has_short_arm) {
     summary->warnings.push_back(absl::StrFormat(
         "an arm seems to end early in frame %d, as one does that is folded against the body: look "
         "at the rig, and %s if it is wrong",
         found.frame, kRigAdvice));
+  }
+  if (embedding.has_hidden_legs) {
+    summary->warnings.emplace_back(
+        "clothes hide the legs down to the floor: hips and legs have the proportions of a "
+        "template; "
+        "place what you know (pleat rig --at leftFoot=x,y,z)");
   }
   if (summary->up.y() < kUpCosine) {
     summary->warnings.push_back(absl::StrFormat(
@@ -200,7 +208,8 @@ absl::StatusOr<SkinWeights> WeighVertices(const FrameEmbedding& found, const Top
   heat.num_threads = options.num_threads;
   heat.surface_tolerance = volume.body->shell_spacing;
   heat.body_diagonal = BoundsDiagonal(shell.positions);
-  const InsideTest inside{volume.tree.get(), volume.winding_number.get(), &volume.field};
+  const InsideTest inside{volume.body->tree.get(), volume.body->winding_number.get(),
+                          &volume.field};
   const bool is_soup = surface.report.num_components > kSoupShare * surface.triangles.cols();
   if (is_soup || rest.cols() > kManyVertices) {
     SolidSurface whole{.positions = shell.positions,
@@ -212,7 +221,7 @@ absl::StatusOr<SkinWeights> WeighVertices(const FrameEmbedding& found, const Top
     PLEAT_ASSIGN_OR_RETURN(const Eigen::MatrixXd weights,
                            SolveHeatEquilibrium(whole, inside, HumanTemplate(), unit_joints, heat,
                                                 &summary->heat, progress));
-    return WeightsFromShell(shell, *volume.tree, weights, unit_rest, options.num_threads);
+    return WeightsFromShell(shell, *volume.body->tree, weights, unit_rest, options.num_threads);
   }
   PLEAT_ASSIGN_OR_RETURN(const Eigen::MatrixXd weights,
                          SolveHeatEquilibrium(surface, inside, HumanTemplate(), unit_joints, heat,

@@ -16,40 +16,60 @@ namespace {
 constexpr double kLongestSide = 0.9;
 // A surface of so many triangles is replaced by its outer surface even when it is clean, whose
 // count follows from the grid.
-constexpr int kManyTriangles = 200'000;
+constexpr int kManyTriangles = 100'000;
 // A clean surface has at most this share of its area inside of itself (hands on hips), which is
 // looked at in so many triangles.
 constexpr double kMostBuried = .01;
 constexpr int kNumProbes = 2000;
 
-// Returns the share of the area of `surface` whose outer side lies inside of it.
-double BuriedShare(const SolidSurface& surface) {
-  const TriangleTree tree(surface.positions, surface.triangles);
-  const WindingNumber winding_number(tree);
-  const double step = 1e-4 * BoundsDiagonal(surface.positions);
-  const int stride = std::max(1, static_cast<int>(surface.triangles.cols()) / kNumProbes);
+// Returns the share of the area of the shell whose outer side lies inside of it.
+double BuriedShare(const BodySurface& body) {
+  const BodyShell& shell = body.shell;
+  const double step = 1e-4 * BoundsDiagonal(shell.positions);
+  const int stride = std::max(1, static_cast<int>(shell.triangles.cols()) / kNumProbes);
   double total = 0, buried = 0;
-  for (int f = 0; f < surface.triangles.cols(); f += stride) {
-    const Eigen::Vector3d a = surface.positions.col(surface.triangles(0, f));
-    const Eigen::Vector3d b = surface.positions.col(surface.triangles(1, f));
-    const Eigen::Vector3d c = surface.positions.col(surface.triangles(2, f));
+  for (int f = 0; f < shell.triangles.cols(); f += stride) {
+    const Eigen::Vector3d a = shell.positions.col(shell.triangles(0, f));
+    const Eigen::Vector3d b = shell.positions.col(shell.triangles(1, f));
+    const Eigen::Vector3d c = shell.positions.col(shell.triangles(2, f));
     const Eigen::Vector3d normal = (b - a).cross(c - a);
     const double area = normal.norm();
     total += area;
-    if (winding_number.IsInside((a + b + c) / 3 + step / area * normal)) buried += area;
+    if (body.winding_number->IsInside((a + b + c) / 3 + step / area * normal)) buried += area;
   }
   return buried / total;
 }
 
-// Holes do not matter: the winding number closes them better than voxels do where one surface does
-// not overlap itself.
-bool IsCleanSolid(const SolidSurface& surface) {
-  return surface.report.num_components == 1 && BuriedShare(surface) <= kMostBuried;
+// Scales the shell into the unit box and prepares to ask it for distances and sides.
+void FitUnitBox(BodySurface* body) {
+  const Eigen::AlignedBox3d box = ComputeBounds(body->shell.positions);
+  body->scale = kLongestSide / box.sizes().maxCoeff();
+  body->offset = Eigen::Vector3d::Constant(0.5) - body->scale * box.center();
+  body->shell_spacing *= body->scale;
+  body->shell.positions = (body->scale * body->shell.positions).colwise() + body->offset;
+  body->tree = std::make_shared<const TriangleTree>(body->shell.positions, body->shell.triangles);
+  body->winding_number = std::make_shared<const WindingNumber>(*body->tree);
 }
 
 absl::Status EnclosesNoVolume(const std::string& depth) {
   return absl::FailedPreconditionError(absl::StrCat("the mesh encloses no volume", depth,
                                                     ": close its surface or bring your own rig"));
+}
+
+// Makes the outer surface of a mesh the shell.
+absl::Status Repair(const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
+                    const Eigen::Matrix3Xi& triangles, const BodyVolumeOptions& options,
+                    BodySurface* body, const Progress& progress) {
+  absl::StatusOr<OuterSurface> outer =
+      ComputeOuterSurface(positions, triangles, options.outer, progress);
+  if (absl::IsFailedPrecondition(outer.status())) return EnclosesNoVolume("");
+  PLEAT_RETURN_IF_ERROR(outer.status());
+  body->shell = {std::move(outer->positions), std::move(outer->triangles)};
+  body->is_repaired = body->is_closed = true;
+  body->growth = outer->growth;
+  body->shell_spacing = outer->spacing;
+  FitUnitBox(body);
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -59,28 +79,20 @@ absl::StatusOr<BodySurface> PrepareBodySurface(const Topology& topology,
                                                const BodyVolumeOptions& options,
                                                const Progress& progress) {
   BodySurface body;
-  if (topology.num_triangles() <= kManyTriangles) {
-    PLEAT_ASSIGN_OR_RETURN(SolidSurface surface, PrepareSolidSurface(topology, positions));
-    body.is_repaired = !IsCleanSolid(surface);
-    body.shell = {std::move(surface.positions), std::move(surface.triangles)};
-  } else {
-    body.is_repaired = true;
-    body.shell = {positions, topology.triangles()};
+  if (topology.num_triangles() > kManyTriangles) {
+    PLEAT_RETURN_IF_ERROR(Repair(positions, topology.triangles(), options, &body, progress));
+    return body;
   }
-  if (body.is_repaired) {
-    absl::StatusOr<OuterSurface> outer =
-        ComputeOuterSurface(body.shell.positions, body.shell.triangles, options.outer, progress);
-    if (absl::IsFailedPrecondition(outer.status())) return EnclosesNoVolume("");
-    PLEAT_RETURN_IF_ERROR(outer.status());
-    body.shell = {std::move(outer->positions), std::move(outer->triangles)};
-    body.growth = outer->growth;
-    body.shell_spacing = outer->spacing;
+  PLEAT_ASSIGN_OR_RETURN(const SolidSurface surface, PrepareSolidSurface(topology, positions));
+  // Holes do not matter: the winding number closes them better than voxels do where one surface
+  // does not overlap itself.
+  if (surface.report.num_components == 1) {
+    body.shell = {surface.positions, surface.triangles};
+    body.is_closed = surface.report.closed();
+    FitUnitBox(&body);
+    if (BuriedShare(body) <= kMostBuried) return body;
   }
-  const Eigen::AlignedBox3d box = ComputeBounds(body.shell.positions);
-  body.scale = kLongestSide / box.sizes().maxCoeff();
-  body.offset = Eigen::Vector3d::Constant(0.5) - body.scale * box.center();
-  body.shell_spacing *= body.scale;
-  body.shell.positions = (body.scale * body.shell.positions).colwise() + body.offset;
+  PLEAT_RETURN_IF_ERROR(Repair(surface.positions, surface.triangles, options, &body, progress));
   return body;
 }
 
@@ -89,14 +101,13 @@ absl::StatusOr<BodyVolume> ComputeBodyVolume(std::shared_ptr<const BodySurface> 
                                              const Progress& progress) {
   BodyVolume volume;
   volume.body = std::move(body);
-  const BodyShell& shell = volume.body->shell;
-  volume.tree = std::make_unique<const TriangleTree>(shell.positions, shell.triangles);
-  volume.winding_number = std::make_unique<const WindingNumber>(*volume.tree);
   DistanceFieldOptions field_options;
   field_options.resolution = options.resolution;
   field_options.num_threads = options.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(volume.field, DistanceField::Compute(*volume.tree, *volume.winding_number,
-                                                              field_options, progress));
+  field_options.is_closed = volume.body->is_closed;
+  PLEAT_ASSIGN_OR_RETURN(volume.field,
+                         DistanceField::Compute(*volume.body->tree, *volume.body->winding_number,
+                                                field_options, progress));
   MedialSampleOptions sample_options;
   sample_options.min_depth = options.min_depth;
   volume.medial_samples = FindMedialSamples(volume.field, sample_options);
@@ -104,6 +115,8 @@ absl::StatusOr<BodyVolume> ComputeBodyVolume(std::shared_ptr<const BodySurface> 
     return EnclosesNoVolume(
         absl::StrCat(" deeper than ", options.min_depth / volume.body->scale, " m"));
   }
+  volume.graph = SphereGraph(PackSpheres(volume.medial_samples, options.max_spheres), volume.field)
+                     .LargestGroup();
   return volume;
 }
 

@@ -2,12 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 namespace pleat {
 namespace {
 
 constexpr double kTieRatio = 1.0001;
+
+// The point of a bone that is nearest to a vertex.
+struct Candidate {
+  double distance;
+  int bone;
+  Eigen::Vector3d point;
+};
+
+// Returns true when some point of the way lies clearly outside by the field alone. Looked at from
+// end to end before any exact test, it spares most ways through the air those beside thin walls.
+bool LeavesField(const DistanceField& field, const Eigen::Vector3d& inner,
+                 const Eigen::Vector3d& direction, double length, double margin) {
+  for (double walked = 0; walked < length;) {
+    const double distance = field.SignedDistance(inner + walked * direction);
+    if (distance > margin) return true;
+    walked += std::max(.5 * field.spacing(), -distance - margin);
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -25,10 +46,14 @@ bool IsVisibleInside(const InsideTest& inside, const Eigen::Vector3d& inner,
   if (length <= 2 * tolerance) return true;
   // Between its nodes the field is off by less than one spacing.
   const double margin = inside.field != nullptr ? inside.field->spacing() : 0;
+  const Eigen::Vector3d direction = (vertex - inner) / length;
+  if (inside.field != nullptr &&
+      LeavesField(*inside.field, inner, direction, length - 2 * tolerance, margin)) {
+    return false;
+  }
   if (inside.field == nullptr || std::abs(inside.field->SignedDistance(inner)) <= margin) {
     if (!inside.winding_number->IsInside(inner)) return false;
   }
-  const Eigen::Vector3d direction = (vertex - inner) / length;
   // A ball that reaches no surface is all inside or all outside: walk from ball to ball, and ask
   // for the side again only after a step that may have crossed a surface.
   for (double walked = 0; walked < length - 2 * tolerance;) {
@@ -55,22 +80,32 @@ bool IsVisibleInside(const InsideTest& inside, const Eigen::Vector3d& inner,
 NearestBones FindNearestBones(const Skeleton& skeleton, const Eigen::Matrix3Xd& joints,
                               const Eigen::Vector3d& vertex, const InsideTest* inside,
                               double tolerance) {
-  std::vector<std::pair<double, int>> by_distance;
-  std::vector<Eigen::Vector3d> nearest_points(skeleton.num_joints());
+  std::vector<Candidate> candidates;
+  candidates.reserve(skeleton.num_joints());
+  double least = std::numeric_limits<double>::infinity();
   for (int b = 1; b < skeleton.num_joints(); ++b) {
-    nearest_points[b] =
+    const Eigen::Vector3d point =
         ClosestPointOnSegment(vertex, joints.col(skeleton.parent(b)), joints.col(b));
-    by_distance.push_back({(nearest_points[b] - vertex).norm(), b});
+    candidates.push_back({(point - vertex).norm(), b, point});
+    least = std::min(least, candidates.back().distance);
   }
-  std::sort(by_distance.begin(), by_distance.end());
+  // Without the test all that is asked for are the nearest ones: the others need no order.
+  if (inside == nullptr) {
+    std::erase_if(candidates, [least](const Candidate& candidate) {
+      return candidate.distance > least * kTieRatio;
+    });
+  }
+  std::ranges::sort(candidates, {}, [](const Candidate& candidate) {
+    return std::pair(candidate.distance, candidate.bone);
+  });
   NearestBones nearest;
   // Visibility is expensive and distance is cheap, so bones are asked in the order of distance, and
   // the first that is seen ends the search but for ties.
-  for (const auto& [distance, b] : by_distance) {
-    if (!nearest.bones.empty() && distance > nearest.distance * kTieRatio) break;
-    if (inside && !IsVisibleInside(*inside, nearest_points[b], vertex, tolerance)) continue;
-    if (nearest.bones.empty()) nearest.distance = distance;
-    nearest.bones.push_back(b);
+  for (const Candidate& candidate : candidates) {
+    if (!nearest.bones.empty() && candidate.distance > nearest.distance * kTieRatio) break;
+    if (inside && !IsVisibleInside(*inside, candidate.point, vertex, tolerance)) continue;
+    if (nearest.bones.empty()) nearest.distance = candidate.distance;
+    nearest.bones.push_back(candidate.bone);
   }
   return nearest;
 }

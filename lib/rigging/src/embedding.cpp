@@ -11,8 +11,10 @@
 
 #include "absl/strings/str_format.h"
 #include "crotch.h"
+#include "folded_arms.h"
 #include "foot_placement.h"
 #include "hand_placement.h"
+#include "hidden_legs.h"
 #include "main_body.h"
 #include "pleat/base/status.h"
 #include "pleat/rigging/bone_visibility.h"
@@ -23,14 +25,9 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kMinYawChangeDegrees = 10;
-// The share of a leg below which an arm counts as short. Arms to the wrist measure .56 to .64,
-// those of people by Drillis and Contini .68.
-constexpr double kArmShare = .5;
 // Shares of the template's way from chest to hand: shorter arms may go on, longer ones are
 // something else.
 constexpr double kWholeArm = .85, kLongestArm = 1.3;
-// The hips of the legs lie that much higher above the sole than the crotch.
-constexpr double kHipsPerCrotch = 1.1;
 constexpr double kSharedArm = .6;  // share of the way to the end that the search found
 
 // Returns the share of the shell's area that lies farther than `reach` from every bone.
@@ -57,8 +54,8 @@ Eigen::Matrix3Xd PlaceAllJoints(const SphereGraph& graph, const SearchTree& tree
       joints.col(tree[j].human_joint) = graph.sphere(spheres[j]).center;
       continue;
     }
-    const Eigen::Matrix3Xd points =
-        PointsAlongPath(graph, graph.Path(spheres[tree[j].parent], spheres[j]), tree[j].fractions);
+    Eigen::Matrix3Xd points(3, tree[j].chain.size());
+    PlaceOnPath(graph, spheres[tree[j].parent], spheres[j], tree[j].fractions, points);
     for (size_t k = 0; k < tree[j].chain.size(); ++k) {
       joints.col(tree[j].chain[k]) = points.col(k);
     }
@@ -80,10 +77,12 @@ Eigen::Matrix3Xd WorldFromUpright(const BodyVolume& volume, const Eigen::Matrix3
 // One facing of the template and how far its search has come. The members refer to each other (the
 // model to the tree, the search to the model), so an object must stay where it is.
 struct FacingSearch {
-  FacingSearch(const SphereGraph& graph, double yaw_degrees, double floor_height, double body_size,
-               const EmbeddingOptions& options)
-      : tree(MakeHumanSearchTree(body_size, yaw_degrees / kDegrees)),
-        model(graph, tree, floor_height, body_size, options.penalties),
+  // `chains` are those of another facing, or null.
+  FacingSearch(const MainBody& body, double yaw_degrees, const EmbeddingOptions& options,
+               std::shared_ptr<const SearchChains> chains)
+      : tree(MakeHumanSearchTree(body.bounds.sizes().maxCoeff(), yaw_degrees / kDegrees)),
+        model(body.graph, tree, body.bounds.min().y(), body.bounds.sizes().maxCoeff(),
+              options.penalties, std::move(chains)),
         search(model, options.search) {
     facing = {yaw_degrees, 0, true};
   }
@@ -192,14 +191,13 @@ double MeasuredYaw(const SphereGraph& graph, const FacingSearch& facing) {
 // Adds the facing that `best` shows when it differs from the one it was found with, and returns the
 // better of the two.
 absl::StatusOr<const FacingSearch*> AdjustFacing(
-    const SphereGraph& graph, const FacingSearch* best, double floor_height, double body_size,
-    const EmbeddingOptions& options, std::vector<std::unique_ptr<FacingSearch>>* searches,
-    const Progress& progress) {
-  const double yaw = MeasuredYaw(graph, *best);
+    const MainBody& body, const FacingSearch* best, const EmbeddingOptions& options,
+    std::vector<std::unique_ptr<FacingSearch>>* searches, const Progress& progress) {
+  const double yaw = MeasuredYaw(body.graph, *best);
   if (std::abs(std::remainder(yaw - best->facing.yaw_degrees, 360)) < kMinYawChangeDegrees) {
     return best;
   }
-  searches->push_back(std::make_unique<FacingSearch>(graph, yaw, floor_height, body_size, options));
+  searches->push_back(std::make_unique<FacingSearch>(body, yaw, options, best->model.chains()));
   FacingSearch& adjusted = *searches->back();
   PLEAT_RETURN_IF_ERROR(adjusted.Deepen(best->facing.residual, progress));
   return adjusted.found ? &adjusted : best;
@@ -210,25 +208,30 @@ void KeepPlaced(const std::vector<PlacedJoint>& placed, Eigen::Matrix3Xd* joints
 }
 
 // Refines the joints, finds what the surface shows of hands, feet and crotch with them, and refines
-// the others again.
+// the others again. Hidden legs are those of the template.
 Eigen::Matrix3Xd RefineTwice(const BodyVolume& volume, const MainBody& body,
                              const Eigen::Matrix3Xd& start, const Eigen::Matrix3Xd& template_joints,
-                             const EmbeddingOptions& options) {
+                             bool has_hidden_legs, const EmbeddingOptions& options) {
   RefinementOptions refinement = options.refinement;
   for (const PlacedJoint& placed : options.placed) refinement.held_joints.push_back(placed.joint);
   Eigen::Matrix3Xd joints =
       RefineEmbedding(start, template_joints, body.medial_samples, refinement);
-  const double height = body.bounds.sizes().y(), sole = body.bounds.min().y();
-  const std::optional<double> crotch =
-      CrotchHeight(volume.field, options.upright_from_input, joints, height);
-  if (crotch) refinement.hip_height = sole + kHipsPerCrotch * (*crotch - sole);
   PlaceHands(body, body.bounds.sizes().maxCoeff(), &joints);
   refinement.held_joints.insert(refinement.held_joints.end(), {kLeftHand, kRightHand});
-  const std::array<bool, 2> has_foot = PlaceFeet(body, &joints);
-  for (int side = 0; side < 2; ++side) {
-    if (!has_foot[side]) continue;
-    const int ankle = side == 0 ? kLeftFoot : kRightFoot;
-    refinement.held_joints.insert(refinement.held_joints.end(), {ankle, ankle + 1});
+  if (has_hidden_legs) {
+    PlaceHiddenLegs(body, template_joints, &joints);
+    refinement.held_joints.push_back(kHips);
+    for (int j = kLeftUpperLeg; j <= kRightToes; ++j) refinement.held_joints.push_back(j);
+  } else {
+    const std::optional<Crotch> crotch =
+        FindCrotch(volume.field, options.upright_from_input, joints, body.bounds);
+    if (crotch) refinement.hip_height = crotch->hips;
+    const std::array<bool, 2> has_foot = PlaceFeet(body, &joints);
+    for (int side = 0; side < 2; ++side) {
+      if (!has_foot[side]) continue;
+      const int ankle = side == 0 ? kLeftFoot : kRightFoot;
+      refinement.held_joints.insert(refinement.held_joints.end(), {ankle, ankle + 1});
+    }
   }
   KeepPlaced(options.placed, &joints);
   return RefineEmbedding(joints, template_joints, body.medial_samples, refinement);
@@ -268,23 +271,27 @@ Eigen::Matrix3Xd TemplateInBounds(const MainBody& body, const EmbeddingOptions& 
   return best;
 }
 
-// Searches the cheapest placement of all facings and returns all joints at its paths. Fills the
-// residual, the yaw and the facings of `embedding`. kNotFound when there is none and no joint is
-// placed.
-absl::StatusOr<Eigen::Matrix3Xd> SearchJoints(const MainBody& body, const EmbeddingOptions& options,
-                                              Embedding* embedding, const Progress& progress) {
-  const SphereGraph& graph = body.graph;
-  const double body_size = body.bounds.sizes().maxCoeff();
-  const double floor_height = body.bounds.min().y();
+// What the search found: the spheres of the joints of the tree (none where the template was laid
+// into the bounds), and all joints at the paths between them, 3 x 18.
+struct Placement {
+  SearchTree tree;
+  std::vector<int> spheres;
+  Eigen::Matrix3Xd joints;
+};
+
+// Searches the cheapest placement of all facings. Fills the residual, the yaw and the facings of
+// `embedding`. kNotFound when there is none and no joint is placed.
+absl::StatusOr<Placement> SearchJoints(const MainBody& body, const EmbeddingOptions& options,
+                                       Embedding* embedding, const Progress& progress) {
   std::vector<std::unique_ptr<FacingSearch>> searches;
   for (double yaw : options.yaws_degrees) {
-    searches.push_back(
-        std::make_unique<FacingSearch>(graph, yaw, floor_height, body_size, options));
+    searches.push_back(std::make_unique<FacingSearch>(
+        body, yaw, options, searches.empty() ? nullptr : searches[0]->model.chains()));
   }
   PLEAT_ASSIGN_OR_RETURN(const FacingSearch* best, SearchFacings(options, searches, progress));
   if (!best && !options.placed.empty()) {
     embedding->search_residual = options.search.max_bound;
-    return TemplateInBounds(body, options, &embedding->yaw_degrees);
+    return Placement{{}, {}, TemplateInBounds(body, options, &embedding->yaw_degrees)};
   }
   if (!best) {
     double least = std::numeric_limits<double>::infinity();
@@ -295,29 +302,15 @@ absl::StatusOr<Eigen::Matrix3Xd> SearchJoints(const MainBody& body, const Embedd
         least, searches.size()));
   }
   if (options.adjust_yaw) {
-    PLEAT_ASSIGN_OR_RETURN(
-        best, AdjustFacing(graph, best, floor_height, body_size, options, &searches, progress));
+    PLEAT_ASSIGN_OR_RETURN(best, AdjustFacing(body, best, options, &searches, progress));
   }
   embedding->search_residual = best->facing.residual;
   embedding->yaw_degrees = best->facing.yaw_degrees;
   for (const auto& search : searches) embedding->facings.push_back(search->facing);
-  Eigen::Matrix3Xd joints =
-      PlaceAllJoints(graph, best->tree, WithWholeArms(best->model, best->found->spheres));
-  PlaceHands(body, body_size, &joints);
-  return joints;
-}
-
-// Computes Embedding::arm_shortfall.
-double ArmShortfall(const Eigen::Matrix3Xd& joints) {
-  const auto length = [&](int from, int over, int to) {
-    return (joints.col(over) - joints.col(from)).norm() +
-           (joints.col(to) - joints.col(over)).norm();
-  };
-  const double shorter = std::min(length(kLeftUpperArm, kLeftLowerArm, kLeftHand),
-                                  length(kRightUpperArm, kRightLowerArm, kRightHand));
-  const double leg = .5 * (length(kLeftUpperLeg, kLeftLowerLeg, kLeftFoot) +
-                           length(kRightUpperLeg, kRightLowerLeg, kRightFoot));
-  return leg > 0 ? std::max(0.0, kArmShare - shorter / leg) : 0.0;
+  Placement placement{best->tree, WithWholeArms(best->model, best->found->spheres), {}};
+  placement.joints = PlaceAllJoints(body.graph, placement.tree, placement.spheres);
+  PlaceHands(body, body.bounds.sizes().maxCoeff(), &placement.joints);
+  return placement;
 }
 
 }  // namespace
@@ -344,23 +337,32 @@ absl::StatusOr<Embedding> EmbedSkeleton(const BodyVolume& volume, const Embeddin
     placed.position = upright * volume.UnitFromWorld(placed.position);
   }
   options.penalties.placed = options.placed;
-  const MainBody body = FindMainBody(volume, options.max_spheres, upright);
+  const MainBody body = FindMainBody(volume, upright);
   if (options.adjust_yaw && options.yaws_degrees.size() > 1) AddAlignedYaws(body, &options);
   const double body_size = body.bounds.sizes().maxCoeff();
   Embedding embedding;
   embedding.num_spheres = body.graph.size();
-  PLEAT_ASSIGN_OR_RETURN(Eigen::Matrix3Xd joints,
+  PLEAT_ASSIGN_OR_RETURN(const Placement placement,
                          SearchJoints(body, options, &embedding, progress));
+  Eigen::Matrix3Xd joints = placement.joints;
   KeepPlaced(options.placed, &joints);
   embedding.initial_joints = WorldFromUpright(volume, upright, joints);
-  joints = RefineTwice(volume, body, joints,
-                       TurnedTemplate(embedding.yaw_degrees / kDegrees, body_size), options);
+  embedding.has_hidden_legs = AreLegsHidden(volume, body, upright);
+  joints =
+      RefineTwice(volume, body, joints, TurnedTemplate(embedding.yaw_degrees / kDegrees, body_size),
+                  embedding.has_hidden_legs, options);
+  embedding.arm_shortfall =
+      std::max(ArmShortfall(joints, kLeftUpperArm), ArmShortfall(joints, kRightUpperArm));
+  embedding.has_short_arm = EndsEarly(joints, kLeftUpperArm) || EndsEarly(joints, kRightUpperArm);
+  UnfoldArms(body.graph, placement.tree, placement.spheres, options.placed, &joints);
   embedding.joints = WorldFromUpright(volume, upright, joints);
-  embedding.arm_shortfall = ArmShortfall(joints);
   embedding.uncovered_share =
       UncoveredShare(body.shell, joints, options.cover_distance * body_size);
   embedding.residual = embedding.search_residual +
                        options.uncovered_weight * std::min(0.25, embedding.uncovered_share);
+  if (embedding.has_hidden_legs) {
+    embedding.residual = std::max(embedding.residual, options.hidden_legs_residual);
+  }
   PLEAT_RETURN_IF_ERROR(progress.Report(1));
   return embedding;
 }

@@ -75,7 +75,7 @@ class EmbeddingSearch::PairTable {
       costs_[j].resize(own.size(), parents.size());
       for (size_t p = 0; p < parents.size(); ++p) {
         for (size_t c = 0; c < own.size(); ++c) {
-          costs_[j](c, p) = model.PairPenalty(j, own[c], parents[p], cap);
+          costs_[j](c, p) = model.PairPenalty(j, c, p, cap);
         }
       }
       remainders_[j] = (costs_[j].colwise() + subtree[j]).colwise().minCoeff().transpose();

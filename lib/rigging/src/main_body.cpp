@@ -2,54 +2,14 @@
 
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "pleat/mesh/bounds.h"
 
 namespace pleat {
-namespace {
 
-// Returns the spheres of `graph` that hang together and hold the most volume, turned.
-SphereGraph LargestGroup(const SphereGraph& graph, const Eigen::Matrix3d& turn) {
-  std::vector<int> group(graph.size(), -1);
-  int best_group = -1;
-  double best_volume = 0;
-  for (int seed = 0; seed < graph.size(); ++seed) {
-    if (group[seed] >= 0) continue;
-    double volume = 0;
-    for (int i = 0; i < graph.size(); ++i) {
-      if (!std::isfinite(graph.PathLength(seed, i))) continue;
-      group[i] = seed;
-      volume += std::pow(graph.sphere(i).radius, 3);
-    }
-    if (volume > best_volume) {
-      best_volume = volume;
-      best_group = seed;
-    }
-  }
-  // The spheres that stay are numbered anew in their old order; an edge is listed from its higher
-  // end, when both ends have their numbers.
-  std::vector<int> index(graph.size(), -1);
-  std::vector<Sphere> spheres;
-  std::vector<std::pair<int, int>> edges;
-  for (int i = 0; i < graph.size(); ++i) {
-    if (group[i] != best_group) continue;
-    index[i] = static_cast<int>(spheres.size());
-    spheres.push_back({turn * graph.sphere(i).center, graph.sphere(i).radius});
-    for (int j : graph.neighbors(i)) {
-      if (j < i) edges.push_back({index[j], index[i]});
-    }
-  }
-  return SphereGraph(std::move(spheres), edges);
-}
-
-}  // namespace
-
-MainBody FindMainBody(const BodyVolume& volume, int max_spheres,
-                      const Eigen::Matrix3d& upright_from_input) {
-  const SphereGraph whole(PackSpheres(volume.medial_samples, max_spheres), volume.field);
+MainBody FindMainBody(const BodyVolume& volume, const Eigen::Matrix3d& upright_from_input) {
   const BodyShell& shell = volume.body->shell;
-  MainBody body{LargestGroup(whole, upright_from_input),
+  MainBody body{volume.graph.Turned(upright_from_input),
                 volume.medial_samples,
                 {upright_from_input * shell.positions, shell.triangles},
                 {}};

@@ -12,16 +12,14 @@ namespace pleat {
 
 // The character, everything in the unit box, turned by the rotation that stands it upright.
 struct MainBody {
-  SphereGraph graph;  // the spheres that hang together and hold the most volume
+  SphereGraph graph;
   std::vector<MedialSample> medial_samples;
   BodyShell shell;
   Eigen::AlignedBox3d bounds;  // of the shell
 };
 
-// Packs the spheres, connects them and keeps the group of spheres with the largest volume. The
-// field stays in the axes of the input: edges are found before the spheres are turned.
-MainBody FindMainBody(const BodyVolume& volume, int max_spheres,
-                      const Eigen::Matrix3d& upright_from_input);
+// Turns what the volume holds.
+MainBody FindMainBody(const BodyVolume& volume, const Eigen::Matrix3d& upright_from_input);
 
 // Returns the angle about +y (in [0, pi)) by which a template must be turned so that its left
 // points along the horizontal principal axis of the shell, stood up by `upright_from_shell`.

@@ -1,7 +1,10 @@
 #include "pleat/rigging/refinement.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "pleat/geometry/point_index.h"
 #include "pleat/skeleton/human_template.h"
@@ -33,21 +36,18 @@ class RefinementObjective {
         samples_(medial_samples),
         places_(PositionsOf(medial_samples), kSamplesPerLeaf) {}
 
-  // Returns the energy at `joints` and fills the Gauss-Newton system when `hessian` is not null.
-  // Gradient and matrix are halves of the true ones, which leaves the step the same.
+  // Returns the energy at `joints` and fills the Gauss-Newton system. Gradient and matrix are
+  // halves of the true ones, which leaves the step the same.
   double Evaluate(const Eigen::Matrix3Xd& joints, Eigen::MatrixXd* hessian,
                   Eigen::VectorXd* gradient) const {
-    if (hessian) {
-      hessian->setZero(joints.size(), joints.size());
-      gradient->setZero(joints.size());
-    }
+    hessian->setZero(joints.size(), joints.size());
+    gradient->setZero(joints.size());
     double energy = 0;
     for (int b = 1; b < kNumHumanJoints; ++b) {
       energy += Centering(joints, b, hessian, gradient);
       energy += Shape(joints, b, hessian, gradient);
     }
     energy += Proportions(joints, hessian, gradient);
-    if (!hessian) return energy;
     for (const int j : options_.held_joints) {
       gradient->segment<3>(3 * j).setZero();
       hessian->middleCols<3>(3 * j).setZero();
@@ -82,7 +82,6 @@ class RefinementObjective {
           options_.centering / options_.samples_per_bone * clarity * clarity * across;
       const Eigen::Vector3d residual = point - sample.position;
       energy += residual.dot(metric * residual);
-      if (!hessian) continue;
       const int ends[2] = {Parent(b), b};
       const double factors[2] = {1 - share, share};
       for (int i = 0; i < 2; ++i) {
@@ -177,7 +176,6 @@ class RefinementObjective {
         (.5 * (joints(1, kLeftUpperLeg) + joints(1, kRightUpperLeg)) - *options_.hip_height) /
         template_leg;
     energy += options_.proportions * residual * residual;
-    if (!hessian) return energy;
     Eigen::VectorXd row = Eigen::VectorXd::Zero(gradient->size());
     row[3 * kLeftUpperLeg + 1] = row[3 * kRightUpperLeg + 1] = .5 / template_leg;
     *gradient += options_.proportions * residual * row;
@@ -189,14 +187,25 @@ class RefinementObjective {
   static void AddRow(double weight, double residual, const std::vector<std::pair<int, int>>& bones,
                      const std::vector<Eigen::Vector3d>& slopes, Eigen::MatrixXd* hessian,
                      Eigen::VectorXd* gradient) {
-    if (!hessian) return;
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(gradient->size());
+    std::vector<std::pair<int, Eigen::Vector3d>> row;  // of the few joints that it depends on
+    const auto add = [&](int joint, const Eigen::Vector3d& slope) {
+      const auto known = std::ranges::find(row, joint, &std::pair<int, Eigen::Vector3d>::first);
+      if (known == row.end()) {
+        row.emplace_back(joint, slope);
+      } else {
+        known->second += slope;
+      }
+    };
     for (size_t i = 0; i < bones.size(); ++i) {
-      row.segment<3>(3 * bones[i].first) -= slopes[i];
-      row.segment<3>(3 * bones[i].second) += slopes[i];
+      add(bones[i].first, -slopes[i]);
+      add(bones[i].second, slopes[i]);
     }
-    *gradient += weight * residual * row;
-    hessian->noalias() += weight * row * row.transpose();
+    for (const auto& [i, slope] : row) {
+      gradient->segment<3>(3 * i) += weight * residual * slope;
+      for (const auto& [j, other] : row) {
+        hessian->block<3, 3>(3 * i, 3 * j) += weight * slope * other.transpose();
+      }
+    }
   }
 
   const RefinementOptions& options_;
@@ -213,8 +222,8 @@ Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
                                  const RefinementOptions& options) {
   const RefinementObjective objective(template_joints, medial_samples, options);
   Eigen::Matrix3Xd current = joints;
-  Eigen::MatrixXd hessian;
-  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian, moved_hessian;
+  Eigen::VectorXd gradient, moved_gradient;
   double damping = 1e-3;
   double energy = objective.Evaluate(current, &hessian, &gradient);
   for (int iteration = 0; iteration < options.max_iterations && damping < 1e8; ++iteration) {
@@ -223,7 +232,8 @@ Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
     const Eigen::VectorXd step = damped.ldlt().solve(-gradient);
     const Eigen::Matrix3Xd moved =
         current + Eigen::Map<const Eigen::Matrix3Xd>(step.data(), 3, current.cols());
-    const double moved_energy = objective.Evaluate(moved, nullptr, nullptr);
+    // Most steps are taken, so that the system there is needed.
+    const double moved_energy = objective.Evaluate(moved, &moved_hessian, &moved_gradient);
     if (!(moved_energy < energy)) {
       damping *= 10;
       continue;
@@ -231,7 +241,9 @@ Eigen::Matrix3Xd RefineEmbedding(const Eigen::Matrix3Xd& joints,
     const bool converged = energy - moved_energy < 1e-6 * energy;
     current = moved;
     damping = std::max(1e-9, damping * 0.1);
-    energy = objective.Evaluate(current, &hessian, &gradient);
+    energy = moved_energy;
+    std::swap(hessian, moved_hessian);
+    std::swap(gradient, moved_gradient);
     if (converged) break;
   }
   return current;

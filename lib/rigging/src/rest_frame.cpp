@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -103,6 +105,10 @@ class RestFrameSearch {
     EmbeddingOptions embedding = options_.embedding;
     embedding.upright_from_input = upright;
     embedding.placed = options_.placed_joints;
+    // What must be refused need not be searched for.
+    if (options_.placed_joints.empty()) {
+      embedding.search.max_bound = std::min(embedding.search.max_bound, options_.refused_residual);
+    }
     if (has_folded_arms_) embedding.penalties.most_forearm_mismatch = kFoldedForearm;
     if (options_.yaw_degrees) {
       embedding.yaws_degrees = {*options_.yaw_degrees};
@@ -111,31 +117,27 @@ class RestFrameSearch {
     return embedding;
   }
 
-  // The surface of the frame looked at last is kept, since it serves every grid, and so is the last
-  // full volume, which serves every orientation.
+  // The surface of a frame serves both grids, and a volume every orientation of its frame.
   absl::StatusOr<std::shared_ptr<const BodyVolume>> VolumeOf(int frame, int resolution) {
-    const bool is_full = resolution == options_.volume.resolution;
-    if (is_full && full_volume_ != nullptr && full_frame_ == frame) return full_volume_;
+    std::shared_ptr<const BodyVolume>& volume = volumes_[{frame, resolution}];
+    if (volume != nullptr) return volume;
     BodyVolumeOptions options = options_.volume;
     options.num_threads = options_.num_threads;
     options.resolution = resolution;
-    if (surface_ == nullptr || surface_frame_ != frame) {
+    std::shared_ptr<const BodySurface>& surface = surfaces_[frame];
+    if (surface == nullptr) {
       // The gaps of a mesh are about the same in all frames.
-      if (surface_ != nullptr && surface_->is_repaired) options.outer.growth = surface_->growth;
-      surface_ = nullptr;
-      PLEAT_ASSIGN_OR_RETURN(BodySurface surface, PrepareBodySurface(sequence_.topology(),
-                                                                     sequence_.FrameAsDouble(frame),
-                                                                     options, progress_));
-      surface_ = std::make_shared<const BodySurface>(std::move(surface));
-      surface_frame_ = frame;
+      if (growth_) options.outer.growth = *growth_;
+      PLEAT_ASSIGN_OR_RETURN(
+          BodySurface prepared,
+          PrepareBodySurface(sequence_.topology(), sequence_.FrameAsDouble(frame), options,
+                             progress_));
+      if (prepared.is_repaired) growth_ = prepared.growth;
+      surface = std::make_shared<const BodySurface>(std::move(prepared));
     }
-    PLEAT_ASSIGN_OR_RETURN(BodyVolume computed, ComputeBodyVolume(surface_, options, progress_));
-    auto volume = std::make_shared<const BodyVolume>(std::move(computed));
-    if (is_full) {
-      full_volume_ = volume;
-      full_frame_ = frame;
-    }
-    return std::shared_ptr<const BodyVolume>(std::move(volume));
+    PLEAT_ASSIGN_OR_RETURN(BodyVolume computed, ComputeBodyVolume(surface, options, progress_));
+    volume = std::make_shared<const BodyVolume>(std::move(computed));
+    return volume;
   }
 
   absl::StatusOr<FrameEmbedding> Embed(int frame, int resolution, const Eigen::Matrix3d& upright) {
@@ -217,12 +219,12 @@ class RestFrameSearch {
     std::vector<int> frames = {first_frame};
     if (!probed_.empty()) frames.push_back(probed_[0]);
     for (size_t k = 0; k < frames.size() && k < kMaxTurnedFrames; ++k) {
-      const absl::StatusOr<std::shared_ptr<const BodyVolume>> volume =
-          VolumeOf(frames[k], options_.volume.resolution);
-      if (absl::IsCancelled(volume.status())) return volume.status();
-      if (!volume.ok()) continue;
-      PLEAT_ASSIGN_OR_RETURN(const std::optional<Eigen::Matrix3d> upright,
-                             FindOrientation(**volume));
+      PLEAT_ASSIGN_OR_RETURN(std::optional<Eigen::Matrix3d> upright,
+                             FindOrientationOn(frames[k], options_.volume.resolution));
+      // As in TryFully, either grid may miss a way.
+      if (!upright) {
+        PLEAT_ASSIGN_OR_RETURN(upright, FindOrientationOn(frames[k], options_.probe_resolution));
+      }
       if (!upright) continue;
       FrameEmbedding as_it_stands = std::move(best_);
       best_ = {};
@@ -237,6 +239,14 @@ class RestFrameSearch {
       best_ = std::move(as_it_stands);
     }
     return absl::OkStatus();
+  }
+
+  // Returns none as well where the frame has no volume.
+  absl::StatusOr<std::optional<Eigen::Matrix3d>> FindOrientationOn(int frame, int resolution) {
+    const absl::StatusOr<std::shared_ptr<const BodyVolume>> volume = VolumeOf(frame, resolution);
+    if (absl::IsCancelled(volume.status())) return volume.status();
+    if (!volume.ok()) return std::optional<Eigen::Matrix3d>();
+    return FindOrientation(**volume);
   }
 
   // Looks at a frame again as if its forearms may point anywhere: arms folded before the chest.
@@ -312,9 +322,10 @@ class RestFrameSearch {
   const AutoRigOptions& options_;
   const Progress& progress_;
   FrameEmbedding best_;
-  std::shared_ptr<const BodySurface> surface_;
-  std::shared_ptr<const BodyVolume> full_volume_;
-  int surface_frame_ = -1, full_frame_ = -1;
+  std::map<int, std::shared_ptr<const BodySurface>> surfaces_;  // by frame; of the few tried
+  // By frame and resolution; the full ones are of one or two frames.
+  std::map<std::pair<int, int>, std::shared_ptr<const BodyVolume>> volumes_;
+  std::optional<int> growth_;  // BodySurface::growth of the first repaired surface
   double least_residual_ = std::numeric_limits<double>::infinity();  // over all frames tried
   bool has_folded_arms_ = false;
   std::vector<int> probed_;              // best first

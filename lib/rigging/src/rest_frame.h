@@ -35,7 +35,7 @@ absl::StatusOr<FrameEmbedding> FindRestFrame(const MeshSequence& sequence,
 
 // Says what a user can do about a sequence that cannot be rigged.
 inline constexpr char kRigAdvice[] =
-    "choose another rest frame, one that stands upright with arms and legs apart, or bring your "
-    "own rig";
+    "choose another rest frame, one that stands upright with arms and legs apart, place some "
+    "joints by hand (pleat rig --at leftHand=x,y,z), or bring your own rig";
 
 }  // namespace pleat

@@ -1,6 +1,7 @@
 #include "pleat/rigging/sphere_graph.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <queue>
 #include <utility>
@@ -48,6 +49,47 @@ SphereGraph::SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pai
     neighbors_[j].push_back(i);
   }
   ComputeShortestPaths();
+}
+
+SphereGraph SphereGraph::LargestGroup() const {
+  std::vector<char> is_seen(spheres_.size(), 0);
+  std::vector<int> kept;
+  double most_volume = 0;
+  for (int seed = 0; seed < size(); ++seed) {
+    if (is_seen[seed] != 0) continue;
+    std::vector<int> group;
+    double volume = 0;
+    for (int i = 0; i < size(); ++i) {
+      if (!std::isfinite(PathLength(seed, i))) continue;
+      is_seen[i] = 1;
+      group.push_back(i);
+      volume += std::pow(spheres_[i].radius, 3);
+    }
+    if (volume > most_volume) {
+      most_volume = volume;
+      kept = std::move(group);
+    }
+  }
+  if (static_cast<int>(kept.size()) == size()) return *this;
+  // Paths do not leave a group, so those of the spheres that stay are known.
+  std::vector<int> index(spheres_.size(), -1);
+  for (size_t k = 0; k < kept.size(); ++k) index[kept[k]] = static_cast<int>(k);
+  SphereGraph group;
+  for (const int i : kept) {
+    group.spheres_.push_back(spheres_[i]);
+    group.neighbors_.emplace_back();
+    for (const int j : neighbors_[i]) group.neighbors_.back().push_back(index[j]);
+  }
+  group.distances_ = distances_(kept, kept);
+  group.predecessors_ =
+      predecessors_(kept, kept).unaryExpr([&](int i) { return i < 0 ? -1 : index[i]; });
+  return group;
+}
+
+SphereGraph SphereGraph::Turned(const Eigen::Matrix3d& turn) const {
+  SphereGraph turned = *this;
+  for (Sphere& sphere : turned.spheres_) sphere.center = turn * sphere.center;
+  return turned;
 }
 
 // Dijkstra from every sphere. Ties go to the path that was found first, in the order of neighbors,

@@ -86,10 +86,10 @@ TEST_F(OutputPathTest, FoldersAreEmptyOrForced) {
 TEST_F(OutputPathTest, AnimationsKeepToTheirFormat) {
   for (const auto& [name, format] :
        {std::pair("x.pc2", "auto"), std::pair("x", "auto"), std::pair("x.drc", "drc"),
-        std::pair("x", "pseq"), std::pair("x.glb/", "auto")}) {
+        std::pair("x", "pseq"), std::pair("x.glb", "auto"), std::pair("x.glb/", "auto")}) {
     EXPECT_THAT(CheckAnimation(name, format), IsOk()) << name << " as " << format;
   }
-  ExpectUsageError(CheckAnimation("x.glb", "auto"), "known: .pc2, .abc, .pseq");
+  ExpectUsageError(CheckAnimation("x.fbx", "auto"), "known: .pc2, .mdd, .abc");
   ExpectUsageError(CheckAnimation("x.pseq", "pc2"), "known: .pc2");
   ExpectUsageError(CheckAnimation("x.glb", "obj"), "'.glb' is unknown");
   Make("x.obj");  // the mesh that goes with x.pc2
@@ -136,10 +136,10 @@ TEST_F(OutputPathTest, EveryVerbRefusesAnUnknownEndingBeforeItReads) {
       {{"rig", none}, ".json"},
       {{"train", none}, ".pleat"},
       {{"motion", none, none}, ".json"},
-      {{"pose", none, "--motion", none}, ".pc2, .abc, .pseq"},
+      {{"pose", none, "--motion", none}, ".pc2, .mdd, .abc"},
       {{"render", none}, ".png"},
       {{"compress", none, "--kg", "1"}, ".plt"},
-      {{"decompress", none}, ".pc2, .abc, .pseq"},
+      {{"decompress", none}, ".pc2, .mdd, .abc"},
       {{"generate", "performer"}, "none"},
       {{"models", "download", "a"}, ".pleat"},
       {{"compressed", "download", "a"}, ".plt"}};

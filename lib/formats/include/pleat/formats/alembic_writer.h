@@ -10,7 +10,9 @@ namespace pleat {
 
 // One poly mesh below a transform that does nothing, with its texture coordinates and materials
 // (docs/formats/alembic.md). DecodeAlembic reads the same positions, bit by bit.
-std::string EncodeAlembic(const MeshSequence& sequence);
-absl::Status WriteAlembic(const std::string& path, const MeshSequence& sequence);
+// first_frame: its number on the timeline of the archive.
+std::string EncodeAlembic(const MeshSequence& sequence, double first_frame = 0);
+absl::Status WriteAlembic(const std::string& path, const MeshSequence& sequence,
+                          double first_frame = 0);
 
 }  // namespace pleat

@@ -10,18 +10,21 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/formats/mesh_file.h"
+#include "pleat/formats/npz.h"
 #include "pleat/mesh/input_note.h"
 #include "pleat/mesh/mesh_sequence.h"
 
 namespace pleat {
 
 struct ReadSequenceOptions {
-  // Unset: the rate of the input where it has one (.pseq, .abc), otherwise 30 fps. The "rate" of a
-  // point cache is frames of its host's timeline per sample; it is named in a note and not used.
+  // Unset: the rate of the input where it has one (.pseq, .abc, .mdd, .npz), otherwise 30 fps. The
+  // "rate" of a point cache is frames of its host's timeline per sample; it is named in a note and
+  // not used.
   std::optional<FrameRate> frame_rate{};
   // The object of an Alembic archive that is read: a mesh, or one with meshes below it. Empty: all
   // meshes that move. A note says when the input is no archive.
   std::string object{};
+  NpzKeys npz_keys{};  // the names of the arrays in an .npz
   MeshLimits limits{};
   // The threads that read folders and globs, 0 = one per core. The result does not depend on it.
   int num_threads = 0;
@@ -38,6 +41,8 @@ struct ReadSequenceOptions {
 // - a .pc2, whose mesh is the .obj or .ply of the same stem, or template.obj or template.ply, or
 //   the only mesh of the folder with the right number of vertices, in this order
 // - an Alembic archive (.abc), whose meshes that move are joined
+// - an .mdd, an .npz without faces or an .npy, whose mesh is found as that of a .pc2; an .npz with
+//   faces, which needs none
 // - a Pleat sequence file (.pseq).
 //
 // Topology and appearance are those of the first frame. The errors name the file and the fault: the

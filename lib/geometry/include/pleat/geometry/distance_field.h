@@ -16,6 +16,9 @@ struct DistanceFieldOptions {
   int resolution = 128;
   int padding = 2;      // cells around the bounds
   int num_threads = 1;  // 0 = one per core
+  // The surface has no boundary and is oriented consistently. The winding number is then the same
+  // all along a way that meets no surface, and few nodes must be asked for it.
+  bool is_closed = false;
 };
 
 // Distances are negative inside. They are exact at the nodes inside and within two cells of the

@@ -25,6 +25,8 @@ struct InputNote {
 struct InputReport {
   std::vector<InputNote> notes{};
   std::vector<std::string> frame_names{};  // file names, UTF-8; empty when frames have none
+  bool has_frame_rate = false;             // the input says how many frames a second has
+  std::optional<double> first_frame{};     // its number on the timeline that the input was made on
 };
 
 // "frame 2 (f_3.obj)", or "frame 2" where frames have no names.

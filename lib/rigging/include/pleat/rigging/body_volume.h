@@ -14,12 +14,14 @@
 #include "pleat/geometry/solid_surface.h"
 #include "pleat/geometry/triangle_tree.h"
 #include "pleat/geometry/winding_number.h"
+#include "pleat/rigging/sphere_graph.h"
 
 namespace pleat {
 
 struct BodyVolumeOptions {
   int resolution = 128;      // grid cells along the longest side of the body
   double min_depth = 0.006;  // unit box; shallower medial samples are left out
+  int max_spheres = 1000;    // of the graph
   int num_threads = 1;       // 0 = one per core
   OuterSurfaceOptions outer = {};
 };
@@ -39,8 +41,12 @@ struct BodySurface {
   // the union of its parts (docs/method/rig.md#outer-surface).
   BodyShell shell;
   bool is_repaired = false;  // the shell is not the mesh itself
+  bool is_closed = false;    // the shell has no holes
   double shell_spacing = 0;  // how far a repaired shell may be off, unit box
   int growth = 0;            // voxels by which gaps were closed
+  // Of the shell. The latter refers to the former.
+  std::shared_ptr<const TriangleTree> tree;
+  std::shared_ptr<const WindingNumber> winding_number;
 };
 
 // Finds the shell. positions: 3 x V, any unit. The error is kInvalidArgument when the mesh has no
@@ -50,15 +56,14 @@ absl::StatusOr<BodySurface> PrepareBodySurface(const Topology& topology,
                                                const BodyVolumeOptions& options = {},
                                                const Progress& progress = {});
 
-// A body's surface with the distance field and medial samples of its shell. The tree and the
-// winding number are on the heap because the latter refers to the former, which must stay where it
-// is when the volume is moved.
+// A body's surface with the distance field, medial samples and spheres of its shell.
 struct BodyVolume {
   std::shared_ptr<const BodySurface> body;
-  std::unique_ptr<const TriangleTree> tree;
-  std::unique_ptr<const WindingNumber> winding_number;
   DistanceField field;
   std::vector<MedialSample> medial_samples;
+  // The packed spheres that hang together and hold the most volume: what floats beside the body is
+  // left out.
+  SphereGraph graph;
 
   Eigen::Matrix3Xd UnitFromWorld(const Eigen::Matrix3Xd& points) const {
     return (body->scale * points).colwise() + body->offset;
@@ -68,7 +73,7 @@ struct BodyVolume {
   }
 };
 
-// Computes field and samples of a surface, which several volumes may share. The error is
+// Computes field, samples and spheres of a surface, which several volumes may share. The error is
 // kFailedPrecondition when it encloses no volume, and kCancelled.
 absl::StatusOr<BodyVolume> ComputeBodyVolume(std::shared_ptr<const BodySurface> body,
                                              const BodyVolumeOptions& options = {},

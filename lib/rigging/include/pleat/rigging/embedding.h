@@ -22,7 +22,6 @@ struct EmbeddingOptions {
   // Whether to try, once the best of them is known, also the facing that its own left and right
   // feet and hands show: characters that stand across the four.
   bool adjust_yaw = true;
-  int max_spheres = 1000;
   PenaltyOptions penalties;
   SearchOptions search;
   // Facings that cost up to this much more than the best one are still measured.
@@ -32,6 +31,8 @@ struct EmbeddingOptions {
   // weight is added to the residual.
   double cover_distance = .2;
   double uncovered_weight = .2;
+  // The least residual of a body whose legs are hidden: nothing shows where it faces.
+  double hidden_legs_residual = .03;
   RefinementOptions refinement;
   // Joints that a person placed, in the units of the mesh: they stay where they are, and the others
   // are found with them. With at least one of them there is always an embedding: where the search
@@ -56,6 +57,10 @@ struct Embedding {
   // How much the shorter arm falls short of half a leg, as a share of the leg: an arm that is
   // folded against the body or reaches into the clothes seems to end at the elbow. 0 = none does.
   double arm_shortfall = 0;
+  // An arm falls clearly short of that, or of .8 of the trunk. Its forearm was sought against the
+  // body.
+  bool has_short_arm = false;
+  bool has_hidden_legs = false;         // a robe reaches to the floor: the legs are the template's
   double yaw_degrees = 0;               // where the character faces, seen upright
   std::vector<FacingResidual> facings;  // every facing tried, in the order given
   int num_spheres = 0;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <vector>
 
+#include "pleat/rigging/search_chains.h"
 #include "pleat/rigging/search_tree.h"
 #include "pleat/rigging/sphere_graph.h"
 
@@ -22,12 +24,6 @@ struct PenaltyWeights {
   double local_direction = .072;  // template bones of the chain, laid along the path
   double leaf = .005;             // limb goes on behind a leaf
   double proximity = .033;        // far along the skeleton, near in the body
-};
-
-// A joint whose place is known.
-struct PlacedJoint {
-  int joint = 0;  // HumanJoint
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
 };
 
 struct PenaltyOptions {
@@ -64,17 +60,20 @@ struct PlacementContext {
 class PenaltyModel {
  public:
   // floor_height and body_size: the lowest vertex and the longest side of the body, unit box.
+  // `chains` are those of the graph and the tree at any facing; null: made here.
   PenaltyModel(const SphereGraph& graph, const SearchTree& tree, double floor_height,
-               double body_size, const PenaltyOptions& options = {});
+               double body_size, const PenaltyOptions& options = {},
+               std::shared_ptr<const SearchChains> chains = nullptr);
 
   const SphereGraph& graph() const { return graph_; }
   const SearchTree& tree() const { return tree_; }
+  const std::shared_ptr<const SearchChains>& chains() const { return chains_; }
   // The spheres that may hold joint j.
-  const std::vector<int>& candidates(int j) const { return candidates_[j]; }
+  const std::vector<int>& candidates(int j) const { return chains_->candidates(j); }
 
-  // Returns what joint j > 0 on `sphere` costs when its parent lies on `parent_sphere`; where that
-  // is more than `cap`, some number above `cap` that is not more than it.
-  double PairPenalty(int j, int sphere, int parent_sphere,
+  // Returns what joint j > 0 on its candidate c costs when its parent lies on the parent's
+  // candidate p; where that is more than `cap`, some number above `cap` that is not more than it.
+  double PairPenalty(int j, size_t c, size_t p,
                      double cap = std::numeric_limits<double>::infinity()) const;
   // Returns what joint j is compared with when joints 0..j-1 lie on spheres[0..j-1].
   PlacementContext MakeContext(int j, const std::vector<int>& spheres) const;
@@ -83,20 +82,14 @@ class PenaltyModel {
   double ContextPenalty(const PlacementContext& context, int sphere) const;
 
  private:
-  double LocalDirection(const SearchJoint& joint, const std::vector<int>& path) const;
-  double LeafPenalty(int sphere, int parent_sphere, const std::vector<int>& path) const;
-  bool IsExtremity(int sphere) const;
+  double LocalDirection(int j, size_t c, size_t p) const;
+  double LeafPenalty(int sphere, int parent_sphere) const;
 
   const SphereGraph& graph_;
   const SearchTree& tree_;
   double floor_height_, body_size_;
   PenaltyOptions options_;
-  std::vector<std::vector<int>> candidates_;
+  std::shared_ptr<const SearchChains> chains_;
 };
-
-// Returns the points at the given fractions, ascending, of the length of the polyline `path` of
-// sphere centers.
-Eigen::Matrix3Xd PointsAlongPath(const SphereGraph& graph, const std::vector<int>& path,
-                                 const std::vector<double>& fractions);
 
 }  // namespace pleat

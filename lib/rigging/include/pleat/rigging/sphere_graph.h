@@ -15,6 +15,7 @@ namespace pleat {
 // Immutable.
 class SphereGraph {
  public:
+  SphereGraph() = default;  // has no spheres
   // Joins overlapping spheres, and others when the ball over the segment between their centers
   // holds no third center (Gabriel) and the segment stays at least half of the smaller radius deep
   // (Baran and Popovic 2007, section 3.1). All shortest paths are computed here: O(N E log N) time,
@@ -22,6 +23,11 @@ class SphereGraph {
   SphereGraph(std::vector<Sphere> spheres, const DistanceField& field);
   // Takes the given edges (pairs of indices) instead.
   SphereGraph(std::vector<Sphere> spheres, const std::vector<std::pair<int, int>>& edges);
+
+  // Returns the graph of those spheres that hang together and hold the most volume, in their order.
+  SphereGraph LargestGroup() const;
+  // Returns the same graph, turned about the origin.
+  SphereGraph Turned(const Eigen::Matrix3d& turn) const;
 
   int size() const { return static_cast<int>(spheres_.size()); }
   const Sphere& sphere(int i) const { return spheres_[i]; }
