@@ -226,7 +226,7 @@ Eigen::Matrix3Xd EvaluateInDoublePrecision(const CharacterModel& model,
   Eigen::VectorXd features(model.features().num_features());
   model.features().ComputeRow(poses, features);
   DetailModel::Workspace workspace;
-  Eigen::VectorXf coefficients(model.full_basis().num_components());
+  Eigen::VectorXf coefficients(model.full_basis().num_coefficients());
   model.detail_model().PredictCoefficients(features, &workspace, coefficients);
   const Eigen::VectorXd details = model.full_basis().Mean().cast<double>() +
                                   model.full_basis().Dense() * coefficients.cast<double>();
