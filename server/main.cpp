@@ -75,6 +75,7 @@ int Run(const ServerOptions& options) {
       ObserveCalls(&metrics, audit_log->get(), tokens->get(), options.slow_call_seconds);
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
+  grpc.memory = &(*service)->memory().all;
   grpc.call_listener = &calls;
   grpc.tokens = tokens->get();
   grpc.probe = [&service] { return (*service)->ProbeDisk(); };

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
+#include "machine_memory.h"
 #include "pleat/base/status.h"
 #include "pleat/identity/token_file.h"
 
@@ -33,11 +34,16 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
                   "Live poses of one model that are evaluated together; 1 = none")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  app->add_option("--cache-bytes", service->cache_bytes, "Memory for models (e.g. 2GB)")
+  MemoryLimits* memory = &service->memory;
+  app->add_option("--memory-bytes", memory->memory_bytes,
+                  "Memory for everything: models, decoders, encoders, uploads, streams, requests "
+                  "and jobs (e.g. 8GB) [three quarters of this machine's or container's]")
+      ->transform(CLI::AsSizeValue(false));
+  app->add_option("--cache-bytes", memory->cache_bytes, "Of this, for models (e.g. 2GB)")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
-  app->add_option("--decode-bytes", service->decode_bytes,
-                  "Memory for decoding compressed sequences, all calls together")
+  app->add_option("--decode-bytes", memory->decode_bytes,
+                  "Of this, for decoding compressed sequences, all calls together")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   app->add_option("--reserve-bytes", service->reserve_bytes, "Kept free on the disk")
@@ -102,7 +108,7 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   app->add_option("--request-bytes", grpc->request_bytes,
-                  "Memory for the poses of clips, all calls together")
+                  "Of all memory, for requests such as the poses of clips")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   app->add_option("--max-connections", grpc->connections.max_connections, "Of all clients together")
@@ -154,6 +160,7 @@ absl::Status CheckAccess(ServerOptions* options) {
 CommandLine ParseCommandLine(int argc, const char* const* argv) {
   CommandLine line;
   line.options.grpc.listen = "127.0.0.1:7320";
+  line.options.service.memory.memory_bytes = MachineMemoryBytes() / 4 * 3;
   CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
   app.set_version_flag("--version", PLEAT_VERSION);
   AddNetworkFlags(&app, &line.options.grpc);

@@ -33,20 +33,27 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
 
 LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                                              std::unique_ptr<Store> store)
-    : files_(std::move(store), options.limits, options.wall_clock),
+    : memory_(options.memory),
+      files_(std::move(store), options.limits, options.wall_clock, &memory_.uploads),
       sequences_(&files_),
-      models_(&files_, options.cache_bytes),
-      compressed_sequences_(&files_, options.decode_bytes),
-      poses_(&models_, {.max_frames = options.limits.max_frames,
-                        .encoder_bytes = options.encoder_bytes,
-                        .num_threads = options.num_pose_threads,
-                        .max_batch = options.max_batch}),
+      model_cache_(options.memory.cache_bytes, &memory_.all),
+      models_(&files_, &model_cache_),
+      compressed_sequences_(&files_, &memory_.decoders),
+      pose_engine_({.encoder_bytes = options.memory.encoder_bytes,
+                    .encoder_memory = &memory_.encoders,
+                    .num_threads = options.num_pose_threads,
+                    .max_batch = options.max_batch}),
+      poses_(&models_, &pose_engine_, options.limits.max_frames),
       jobs_(&files_, &sequences_,
-            JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
+            JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job,
+                      &memory_.jobs),
             {.num_workers = options.num_workers,
              .max_queued_per_client = options.max_queued_jobs_per_client,
              .in_idle_time = options.jobs_in_idle_time,
-             .on_state = options.on_job_state}) {}
+             .on_state = options.on_job_state}) {
+  memory_.all.AddReclaimer([this](uint64_t bytes) { pose_engine_.encoders().Reclaim(bytes); });
+  memory_.all.AddReclaimer([this](uint64_t bytes) { model_cache_.Reclaim(bytes); });
+}
 
 double LocalCharacterService::FreeDiskBytes() const {
   const absl::StatusOr<uint64_t> bytes = files_.store().blobs().FreeBytes();

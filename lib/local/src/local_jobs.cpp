@@ -131,6 +131,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
     PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(id));
     clips.push_back(std::move(info));
   }
+  PLEAT_RETURN_IF_ERROR(runner_.CheckMemory(request.options, clips));
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
   draft.request_id = request.request_id;
@@ -150,6 +151,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
 absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& request) {
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(request.options));
   PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(request.sequence_id));
+  PLEAT_RETURN_IF_ERROR(runner_.CheckMemory(request.options, {info}));
   JobInfo draft;
   draft.sequence_ids = {request.sequence_id};
   draft.options = request.options;

@@ -18,7 +18,7 @@ absl::StatusOr<Page<ModelInfo>> LocalModels::ListPage(const PageRequest& request
 
 absl::Status LocalModels::Delete(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));
-  cache_.Erase(id);  // sessions that use the model keep it until they end
+  cache_->Erase(id);  // sessions that use the model keep it until they end
   return absl::OkStatus();
 }
 
@@ -37,8 +37,8 @@ absl::StatusOr<std::unique_ptr<ContentDownload>> LocalModels::OpenDownload(const
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const std::string& id) {
-  using Loaded = ByteCache<CharacterModel>::Loaded;
-  return cache_.Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
+  using Loaded = ModelCache::Loaded;
+  return cache_->Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
     // Files of all kinds lie in one place; the row says that this one is a model.
     PLEAT_RETURN_IF_ERROR(files_->catalog().Get(EntryKind::kModel, key).status());
     PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->Read(key));

@@ -30,7 +30,7 @@ absl::StatusOr<std::unique_ptr<PoseSession>> LocalPoses::OpenSession(const std::
                                                                      PoseSessionOptions options) {
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
-                         encoders_.Take(model_id, *model, options.encoder));
+                         engine_->encoders().Take(model_id, *model, options.encoder));
   return LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder));
 }
 
@@ -40,7 +40,7 @@ absl::StatusOr<std::unique_ptr<ClipSession>> LocalPoses::OpenClip(const std::str
   PLEAT_RETURN_IF_ERROR(CheckClip(track));
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
-                         encoders_.Take(model_id, *model, options.encoder));
+                         engine_->encoders().Take(model_id, *model, options.encoder));
   return LocalClipSession::Open(std::move(model), std::move(track), std::move(options),
                                 std::move(encoder));
 }
@@ -51,11 +51,11 @@ absl::StatusOr<std::unique_ptr<PoseStream>> LocalPoses::OpenStream(const std::st
                                                                    LiveListener* listener) {
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
-                         encoders_.Take(model_id, *model, options.encoder));
+                         engine_->encoders().Take(model_id, *model, options.encoder));
   PLEAT_ASSIGN_OR_RETURN(
       std::unique_ptr<LocalPoseSession> session,
       LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder)));
-  return std::make_unique<LocalPoseStream>(std::move(session), rules, &batcher_, listener);
+  return std::make_unique<LocalPoseStream>(std::move(session), rules, &engine_->batcher(), listener);
 }
 
 }  // namespace pleat

@@ -11,6 +11,9 @@
 namespace pleat {
 namespace {
 
+// What checking a sequence takes, in sizes of its file; measured with tests/server/memory_test.cpp.
+constexpr uint64_t kCheckFactor = 3;
+
 MeshLimits FileLimits(const ServiceLimits& limits) {
   const auto max_bytes = static_cast<uint64_t>(limits.max_upload_bytes);
   return {.max_file_bytes = max_bytes,
@@ -106,6 +109,9 @@ absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(cons
 
 absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload,
                                                           absl::Duration ttl) {
+  // The file and, beside it, the sequence, whose numbers the file has as they are in memory.
+  PLEAT_ASSIGN_OR_RETURN(const Reservation memory,
+                         files_->ReserveForUpload(kCheckFactor * upload->size_bytes()));
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, upload->ReadComplete());
   absl::StatusOr<MeshSequence> sequence = DecodeSequence(bytes, FileLimits(files_->limits()));
   absl::Status status = sequence.status();

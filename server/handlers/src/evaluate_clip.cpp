@@ -51,8 +51,8 @@ grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
   v1::EvaluateClipRequest taken;
   taken.Swap(const_cast<v1::EvaluateClipRequest*>(&request));
   absl::StatusOr<Reservation> memory = Reservation();
-  if (context->request_memory != nullptr) {
-    memory = context->request_memory->Reserve(taken.SpaceUsedLong(), "this clip");
+  if (context->calls->request_memory != nullptr) {
+    memory = context->calls->request_memory->Reserve(taken.SpaceUsedLong(), "this clip");
     if (!memory.ok()) taken = v1::EvaluateClipRequest();
   }
   const auto clip =

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/call_reactor.h"
@@ -16,6 +17,9 @@
 
 namespace pleat {
 namespace {
+
+// What a message may take once it is parsed. Eight poses of 18 joints take 20 kB.
+constexpr uint64_t kMaxLiveMessageBytes = uint64_t{256} << 10;
 
 // One live session: poses come in, frames go out, at the pace of the slower side.
 //
@@ -50,11 +54,13 @@ class LiveReactor final
       private LiveListener {
  public:
   LiveReactor(HandlerContext* context, grpc::CallbackServerContext* call)
-      : CallReactor(context), slot_(context), context_(context), call_(call) {}
+      : CallReactor(context),
+        slot_(context, kStreamBytes + kMaxLiveMessageBytes),
+        context_(context), call_(call) {}
 
   // A server that begins to drain meanwhile either finds the entry or has set `draining` before.
   void Start() {
-    entry_.emplace(&context_->live_sessions, this);
+    entry_.emplace(&context_->calls->live_sessions, this);
     Advance(std::unique_lock(mutex_));
   }
 
@@ -62,7 +68,12 @@ class LiveReactor final
     std::unique_lock lock(mutex_);
     reading_ = false;
     if (finished_) return;  // a message that came too late; nobody waits for it
-    if (ok) {
+    if (ok && request_.SpaceUsedLong() > kMaxLiveMessageBytes) {
+      v1::LiveSessionRequest().Swap(&request_);  // Clear would keep the memory
+      Keep(absl::InvalidArgumentError(
+          absl::StrCat("a message of a live session takes more than ", kMaxLiveMessageBytes,
+                       " bytes of memory; no pose with its history does")));
+    } else if (ok) {
       Keep(CallGuarded([this] { return Accept(); }));
     } else {
       input_ended_ = true;
@@ -128,7 +139,7 @@ class LiveReactor final
   // Starts what can be started, or ends the session. `lock` holds mutex_.
   void Advance(std::unique_lock<std::mutex> lock) {
     if (finished_) return;
-    if (context_->draining) Keep(absl::UnavailableError("the server is shutting down"));
+    if (context_->calls->draining) Keep(absl::UnavailableError("the server is shutting down"));
     if (Ended()) {
       if (working_ || writing_) return;  // they come back here
       finished_ = true;

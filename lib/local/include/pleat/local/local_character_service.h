@@ -13,6 +13,7 @@
 #include "pleat/local/local_models.h"
 #include "pleat/local/local_poses.h"
 #include "pleat/local/local_sequences.h"
+#include "pleat/local/memory_owners.h"
 #include "pleat/local/scrubber.h"
 #include "pleat/local/sweeper.h"
 #include "pleat/service/character_service.h"
@@ -28,9 +29,7 @@ struct LocalServiceOptions {
   bool jobs_in_idle_time = false;               // jobs take what live sessions leave
   int num_pose_threads = 0;                     // 0 = one per core
   int max_batch = 8;                            // live poses of a model evaluated together
-  uint64_t cache_bytes = uint64_t{1} << 30;     // models in memory
-  uint64_t decode_bytes = uint64_t{1} << 30;    // all decoders of compressed sequences together
-  uint64_t encoder_bytes = uint64_t{64} << 20;  // frame encoders that nobody uses at the moment
+  MemoryLimits memory{};
   double scrub_seconds = 0;  // in which every stored file is read once and verified; 0 = never
   double sweep_seconds = 0;  // between two runs of retention; 0 = never
   RetentionRules retention{};
@@ -59,6 +58,10 @@ class LocalCharacterService final : public CharacterService {
   LocalPoses& poses() override { return poses_; }
   LocalCompressedSequences& compressed_sequences() override { return compressed_sequences_; }
 
+  // Everything that this process promises of its memory; a server charges its own share to it.
+  MemoryOwners& memory() { return memory_; }
+  uint64_t model_bytes() const { return models_.cache_stats().used_bytes; }
+
   // The ids of entries whose file was gone when the data folder was opened.
   const std::vector<std::string>& missing_files() const { return files_.missing_files(); }
 
@@ -76,10 +79,13 @@ class LocalCharacterService final : public CharacterService {
 
   // In this order, because members are destroyed from the last to the first: the jobs and the
   // poses, which have threads, end before what their threads use.
+  MemoryOwners memory_;
   StoredFiles files_;
   LocalSequences sequences_;
+  ModelCache model_cache_;
   LocalModels models_;
   LocalCompressedSequences compressed_sequences_;
+  PoseEngine pose_engine_;
   LocalPoses poses_;
   LocalJobs jobs_;
   std::unique_ptr<Scrubber> scrubber_;  // null: never

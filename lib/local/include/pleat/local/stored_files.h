@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/base/memory_budget.h"
 #include "pleat/base/progress.h"
 #include "pleat/base/wall_clock.h"
 #include "pleat/service/content_download.h"
@@ -26,9 +27,13 @@ namespace pleat {
 // The store together with the limits of the service. Thread-safe.
 class StoredFiles {
  public:
+  // upload_memory: what checking uploads may take together, shared with others; null: not counted.
   StoredFiles(std::unique_ptr<Store> store, const ServiceLimits& limits,
-              WallClock clock = SystemTime)
-      : store_(std::move(store)), limits_(limits), clock_(std::move(clock)) {}
+              WallClock clock = SystemTime, MemoryBudget* upload_memory = nullptr)
+      : store_(std::move(store)),
+        limits_(limits),
+        clock_(std::move(clock)),
+        upload_memory_(upload_memory) {}
 
   Catalog& catalog() { return store_->catalog(); }
   UploadArea& uploads() { return store_->uploads(); }
@@ -73,6 +78,12 @@ class StoredFiles {
   // size exceeds the limits or the disk, kOutOfRange when the offset is beyond the size.
   absl::StatusOr<std::unique_ptr<Upload>> BeginUpload(const std::string& id, uint64_t size_bytes,
                                                       uint64_t offset_bytes);
+  // Memory for the check of a complete upload. When there is none at the moment, what has arrived
+  // stays, and the client need only ask for the check again.
+  absl::StatusOr<Reservation> ReserveForUpload(uint64_t bytes) {
+    if (upload_memory_ == nullptr) return Reservation();
+    return upload_memory_->Reserve(bytes, "checking the upload");
+  }
 
  private:
   static int64_t ExpiryOf(absl::Time now, absl::Duration ttl);  // as the catalog writes it
@@ -81,6 +92,7 @@ class StoredFiles {
   const std::unique_ptr<Store> store_;
   const ServiceLimits limits_;
   const WallClock clock_;
+  MemoryBudget* const upload_memory_;
   std::mutex mutex_;
   std::set<std::string> bad_rows_;  // that were reported; guarded by mutex_
 };

@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "pleat/base/executor.h"
+#include "pleat/base/memory_budget.h"
 #include "pleat/identity/token_registry.h"
 #include "pleat/service/character_service.h"
 
@@ -64,12 +65,14 @@ struct GrpcServerOptions {
   std::function<absl::Status()> probe{};
   int num_storage_threads = 2;   // for answers out of the catalog
   int num_transfer_threads = 4;  // for uploads with their checks, downloads and decoding
-  // The largest message; 20,000 poses of 18 joints are 14 MB. All messages that are under way share
-  // 1 GiB.
+  // The largest message; 20,000 poses of 18 joints are 14 MB.
   int max_receive_bytes = 16 << 20;
-  // For the poses of clips, all calls together. A parsed pose takes three times what it takes on
-  // the wire.
+  // For requests and their answers while they are worked on, all calls together; most of it goes to
+  // the poses of clips. A parsed pose takes three times what it takes on the wire.
   uint64_t request_bytes = uint64_t{512} << 20;
+  // What the memory of requests, streams and messages is a part of; it must outlive the server.
+  // Null: nothing else counts.
+  MemoryBudget* memory = nullptr;
   ConnectionLimits connections{};
   int max_streams_per_connection = 128;
   int max_open_streams = 1024;  // uploads, watches, clips, live sessions, downloads
@@ -92,6 +95,11 @@ class GrpcServer {
   // or while the file cannot be read.
   virtual std::optional<int64_t> certificate_expiry() const = 0;
   virtual uint64_t num_refused_connections() const = 0;
+  // What is reserved now for requests, for streams, and for gRPC itself with its connections.
+  struct MemoryUse {
+    uint64_t requests = 0, streams = 0, messages = 0;
+  };
+  virtual MemoryUse memory_use() const = 0;
   // A channel that needs no network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
   // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then

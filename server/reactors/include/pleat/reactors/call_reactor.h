@@ -49,7 +49,7 @@ class CallReactor : public GrpcReactor,
   void OnDone() final { self_.reset(); }
 
  protected:
-  explicit CallReactor(HandlerContext* context) : open_call_(&context->open_calls) {}
+  explicit CallReactor(HandlerContext* context) : open_call_(&context->calls->open_calls) {}
 
   // Keeps the reactor alive. Call it where it still is: before Finish.
   std::shared_ptr<const void> Hold() { return this->shared_from_this(); }

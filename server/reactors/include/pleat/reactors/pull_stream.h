@@ -13,8 +13,13 @@
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/handler_context.h"
 #include "pleat/reactors/run_unary.h"
+#include "pleat/service/limits.h"
 
 namespace pleat {
+
+// The message that is being made and what of it is on its way: pieces of files. Frames are counted by
+// the sessions that make them.
+inline constexpr uint64_t kPullStreamBytes = 2 * kDownloadPieceBytes;
 
 // Sequential (call_reactor.h): until the call is finished, either a Produce task or a write is
 // under way. So nothing here needs a lock, memory is bounded by one message, and a slow client only
@@ -27,7 +32,7 @@ class PullStream final : public CallReactor<grpc::ServerWriteReactor<Response>> 
 
   PullStream(HandlerContext* context, Executor* executor, const char* rpc, Next next)
       : CallReactor<grpc::ServerWriteReactor<Response>>(context),
-        slot_(context),
+        slot_(context, kStreamBytes + kPullStreamBytes),
         executor_(executor),
         rpc_(rpc),
         next_(std::move(next)) {}
