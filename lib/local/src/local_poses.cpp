@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "local_pose_stream.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 #include "pleat/local/pose_session.h"
 
@@ -11,8 +12,9 @@ namespace pleat {
 
 absl::Status LocalPoses::CheckClip(const PoseTrack& track) const {
   if (track.num_frames() <= max_frames_) return absl::OkStatus();
-  return absl::ResourceExhaustedError(absl::StrCat(
-      "the clip has ", track.num_frames(), " frames, the limit (--max-frames) is ", max_frames_));
+  return RefuseForLimit({.limit = "--max-frames"},
+                        absl::StrCat("the clip has ", track.num_frames(),
+                                     " frames, the limit (--max-frames) is ", max_frames_));
 }
 
 absl::Status LocalPoses::EvaluateClip(
@@ -55,7 +57,8 @@ absl::StatusOr<std::unique_ptr<PoseStream>> LocalPoses::OpenStream(const std::st
   PLEAT_ASSIGN_OR_RETURN(
       std::unique_ptr<LocalPoseSession> session,
       LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder)));
-  return std::make_unique<LocalPoseStream>(std::move(session), rules, &engine_->batcher(), listener);
+  return std::make_unique<LocalPoseStream>(std::move(session), rules, &engine_->batcher(),
+                                           listener);
 }
 
 }  // namespace pleat

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "infos.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/sequence_file.h"
 #include "stored_infos.h"
@@ -28,14 +29,15 @@ MeshLimits FileLimits(const ServiceLimits& limits) {
 absl::Status LocalSequences::Check(const MeshSequence& sequence) const {
   const ServiceLimits& limits = files_->limits();
   if (sequence.num_vertices() > limits.max_vertices) {
-    return absl::ResourceExhaustedError(absl::StrCat("the sequence has ", sequence.num_vertices(),
-                                                     " vertices, the limit (--max-vertices) is ",
-                                                     limits.max_vertices));
+    return RefuseForLimit(
+        {.limit = "--max-vertices"},
+        absl::StrCat("the sequence has ", sequence.num_vertices(),
+                     " vertices, the limit (--max-vertices) is ", limits.max_vertices));
   }
   if (sequence.num_frames() > limits.max_frames) {
-    return absl::ResourceExhaustedError(absl::StrCat("the sequence has ", sequence.num_frames(),
-                                                     " frames, the limit (--max-frames) is ",
-                                                     limits.max_frames));
+    return RefuseForLimit({.limit = "--max-frames"},
+                          absl::StrCat("the sequence has ", sequence.num_frames(),
+                                       " frames, the limit (--max-frames) is ", limits.max_frames));
   }
   return absl::OkStatus();
 }
@@ -45,9 +47,10 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
   PLEAT_RETURN_IF_ERROR(Check(sequence));
   const std::string bytes = EncodeSequence(sequence);
   if (bytes.size() > static_cast<uint64_t>(files_->limits().max_upload_bytes)) {
-    return absl::ResourceExhaustedError(absl::StrCat("the sequence has ", bytes.size(),
-                                                     " bytes, the limit (--max-upload-bytes) is ",
-                                                     files_->limits().max_upload_bytes));
+    return RefuseForLimit({.limit = "--max-upload-bytes"},
+                          absl::StrCat("the sequence has ", bytes.size(),
+                                       " bytes, the limit (--max-upload-bytes) is ",
+                                       files_->limits().max_upload_bytes));
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
   const SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());

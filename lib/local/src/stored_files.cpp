@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -78,9 +79,10 @@ absl::StatusOr<std::unique_ptr<Upload>> StoredFiles::BeginUpload(const std::stri
                                                                  uint64_t offset_bytes) {
   if (size_bytes == 0) return absl::InvalidArgumentError("an upload of 0 bytes is nothing to keep");
   if (size_bytes > static_cast<uint64_t>(limits_.max_upload_bytes)) {
-    return absl::ResourceExhaustedError(absl::StrCat("the upload has ", size_bytes,
-                                                     " bytes, the limit (--max-upload-bytes) is ",
-                                                     limits_.max_upload_bytes));
+    return RefuseForLimit(
+        {.limit = "--max-upload-bytes"},
+        absl::StrCat("the upload has ", size_bytes, " bytes, the limit (--max-upload-bytes) is ",
+                     limits_.max_upload_bytes));
   }
   if (offset_bytes > size_bytes) {
     return absl::OutOfRangeError(absl::StrCat(
