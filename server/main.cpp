@@ -78,6 +78,9 @@ int Run(const ServerOptions& options) {
   grpc.memory = &(*service)->memory().all;
   grpc.call_listener = &calls;
   grpc.tokens = tokens->get();
+  grpc.of_project = [&service](const std::string& project) {
+    return &(*service)->OfProject(project);
+  };
   grpc.probe = [&service] { return (*service)->ProbeDisk(); };
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());

@@ -65,6 +65,24 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
       ->capture_default_str();
 }
 
+void AddProjectFlags(CLI::App* app, ProjectLimits* project) {
+  app->add_option("--project-bytes", project->max_bytes,
+                  "Stored files of one project (pleat token create --project); 0 = no limit")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app->add_option("--project-queued-jobs", project->max_queued_jobs,
+                  "Jobs of one project that may wait; 0 = no limit")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--project-frames-per-second", project->frames_per_second,
+                  "Frames that one project may have evaluated or decoded; 0 = no limit")
+      ->check(CLI::Range(0., 1e9))
+      ->capture_default_str();
+  app->add_flag("--share-content", project->share_content,
+                "End an upload at once when another project has the same content; whoever knows "
+                "the SHA-256 of a file can then have it");
+}
+
 constexpr double kSweepSeconds = 60;
 
 struct RetentionFlags {
@@ -166,6 +184,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   AddNetworkFlags(&app, &line.options.grpc);
   double scrub_hours = kScrubHours;
   AddServiceFlags(&app, &line.options.service, &scrub_hours);
+  AddProjectFlags(&app, &line.options.service.project);
   RetentionFlags retention;
   AddRetentionFlags(&app, &line.options.service, &retention);
   std::string job_priority = "idle";

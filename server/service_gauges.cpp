@@ -21,14 +21,16 @@ void AddServiceGauges(LocalCharacterService* service, ServerMetrics* metrics) {
   for (const JobState state : {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
                                JobState::kFailed, JobState::kCancelled}) {
     metrics->AddGauge("pleat_jobs", "Jobs by state", {{"state", JobStateName(state)}},
-                      [service, state] { return 1. * service->jobs().CountInState(state); });
+                      [service, state] { return 1. * service->CountJobsInState(state); });
   }
   MemoryOwners* const memory = &service->memory();
-  AddMemoryGauge("models", [service] { return service->model_bytes(); }, metrics);
+  AddMemoryGauge(
+      "models", [service] { return service->model_bytes(); }, metrics);
   for (const auto& [owner, budget] :
        {std::pair("decoders", &memory->decoders), std::pair("encoders", &memory->encoders),
         std::pair("uploads", &memory->uploads), std::pair("jobs", &memory->jobs)}) {
-    AddMemoryGauge(owner, [budget = budget] { return budget->used_bytes(); }, metrics);
+    AddMemoryGauge(
+        owner, [budget = budget] { return budget->used_bytes(); }, metrics);
   }
   metrics->AddGauge("pleat_memory_limit_bytes", "What --memory-bytes allows all owners together",
                     {}, [memory] { return static_cast<double>(memory->all.capacity_bytes()); });
@@ -41,9 +43,12 @@ void AddServiceGauges(LocalCharacterService* service, ServerMetrics* metrics) {
 }
 
 void AddNetworkGauges(const GrpcServer* server, ServerMetrics* metrics) {
-  AddMemoryGauge("requests", [server] { return server->memory_use().requests; }, metrics);
-  AddMemoryGauge("streams", [server] { return server->memory_use().streams; }, metrics);
-  AddMemoryGauge("messages", [server] { return server->memory_use().messages; }, metrics);
+  AddMemoryGauge(
+      "requests", [server] { return server->memory_use().requests; }, metrics);
+  AddMemoryGauge(
+      "streams", [server] { return server->memory_use().streams; }, metrics);
+  AddMemoryGauge(
+      "messages", [server] { return server->memory_use().messages; }, metrics);
   metrics->AddGauge("pleat_connections", "Open connections", {},
                     [server] { return 1. * server->num_connections(); });
   metrics->AddGauge("pleat_refused_connections", "Connections refused since the start", {},

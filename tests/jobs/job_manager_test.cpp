@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "jobs/scripted_work.h"
+#include "pleat/base/limit_refusal.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -79,6 +80,36 @@ TEST(JobManagerTest, OneClientCannotHaveAllPlacesOfTheQueue) {
   EXPECT_THAT(create("rea"), IsOk());
   EXPECT_THAT(create("otto"),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("4 jobs are waiting")));
+}
+
+TEST(JobManagerTest, OneProjectCannotHaveAllPlacesOfTheQueue) {
+  Journal journal;
+  JobManager jobs({.max_queued_per_project = 1}, Succeeds(), journal.save());
+  const auto create = [&](const std::string& project) {
+    JobInfo draft = Named("job");
+    draft.project = project;
+    return jobs.Create(draft).status();
+  };
+  EXPECT_THAT(create("robots"), IsOk());
+  const absl::Status refused = create("robots");
+  EXPECT_THAT(refused,
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("'robots' has 1")));
+  EXPECT_EQ(LimitRefusalOf(refused)->subject, "project:robots");
+  EXPECT_THAT(create("ghosts"), IsOk());
+}
+
+TEST(JobManagerTest, RequestIdsAreThoseOfAProject) {
+  Journal journal;
+  JobManager jobs({}, Succeeds(), journal.save(), journal.erase());
+  JobInfo draft = Named("job");
+  draft.request_id = "the same";
+  draft.project = "robots";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo first, jobs.Create(draft));
+  EXPECT_EQ(jobs.Create(draft)->id, first.id);
+  draft.project = "ghosts";
+  draft.sequence_ids = {"something else"};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo other, jobs.Create(draft));
+  EXPECT_NE(other.id, first.id);
 }
 
 TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {

@@ -6,12 +6,21 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/random_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/thread_priority.h"
 
 namespace pleat {
 namespace {
+
+// Jobs take seconds to minutes, so places in the queue become free at that pace.
+constexpr absl::Duration kRetryAfter = absl::Seconds(10);
+
+// Two projects may choose the same request id, and neither must notice.
+std::string RequestKey(const JobInfo& info) {
+  return absl::StrCat(info.project, "\n", info.request_id);
+}
 
 std::string MakeJobId() { return "job-" + RandomHexId(2); }
 
@@ -67,7 +76,7 @@ void JobManager::Register(std::shared_ptr<JobStateMachine> job) {
   const JobInfo info = job->snapshot().info;
   const uint64_t number = next_number_++;
   order_.emplace(number, info.id);
-  if (!info.request_id.empty()) ids_by_request_.emplace(info.request_id, info.id);
+  if (!info.request_id.empty()) ids_by_request_.emplace(RequestKey(info), info.id);
   if (info.state == JobState::kQueued) queue_.Add(job, info.client);
   jobs_.emplace(info.id, Registered{std::move(job), number});
 }
@@ -80,7 +89,7 @@ void JobManager::Start() {
 
 absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
     const JobInfo& draft) const {
-  const auto id = ids_by_request_.find(draft.request_id);
+  const auto id = ids_by_request_.find(RequestKey(draft));
   if (id == ids_by_request_.end()) return nullptr;
   const std::shared_ptr<JobStateMachine>& job = jobs_.at(id->second).job;
   const JobInfo info = job->snapshot().info;
@@ -103,16 +112,7 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
     if (shutting_down()) return absl::UnavailableError("the server is shutting down");
     PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> known, FindRequest(draft));
     if (known != nullptr) return known->snapshot().info;
-    if (static_cast<int>(queue_.size()) >= options_.max_queued) {
-      return absl::ResourceExhaustedError(absl::StrCat(queue_.size(),
-                                                       " jobs are waiting, the limit is ",
-                                                       options_.max_queued, "; try again later"));
-    }
-    if (queue_.NumOf(draft.client) >= options_.max_queued_per_client) {
-      return absl::ResourceExhaustedError(
-          absl::StrCat("this client has ", options_.max_queued_per_client,
-                       " waiting jobs, which is its limit; try again when some of them have run"));
-    }
+    PLEAT_RETURN_IF_ERROR(CheckQueue(draft));
   }
   // Saved first: a job that was accepted is never lost. Saving waits for the disk, so those who ask
   // for jobs must not wait for it.
@@ -123,6 +123,32 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   }
   changed_.notify_all();  // one that may not take it would keep the word to itself
   return draft;
+}
+
+absl::Status JobManager::CheckQueue(const JobInfo& draft) const {
+  if (static_cast<int>(queue_.size()) >= options_.max_queued) {
+    return RefuseForLimit({.limit = "waiting jobs", .retry_after = kRetryAfter},
+                          absl::StrCat(queue_.size(), " jobs are waiting, the limit is ",
+                                       options_.max_queued, "; try again later"));
+  }
+  if (queue_.NumOf(draft.client) >= options_.max_queued_per_client) {
+    return RefuseForLimit(
+        {.subject = kClientLimit,
+         .limit = "--max-queued-jobs-per-client",
+         .retry_after = kRetryAfter},
+        absl::StrCat("this client has ", options_.max_queued_per_client,
+                     " waiting jobs, which is its limit; try again when some of them have run"));
+  }
+  const int per_project = options_.max_queued_per_project;
+  if (per_project > 0 && queue_.NumOfProject(draft.project) >= per_project) {
+    return RefuseForLimit(
+        {.subject = absl::StrCat("project:", draft.project),
+         .limit = "--project-queued-jobs",
+         .retry_after = kRetryAfter},
+        absl::StrCat("the project '", draft.project, "' has ", per_project,
+                     " waiting jobs, which is its limit; try again when some of them have run"));
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::Find(const std::string& id) const {
@@ -187,12 +213,12 @@ absl::Status JobManager::Delete(const std::string& id) {
         absl::StrCat("job '", id, "' is ", JobStateName(info.state),
                      "; only jobs that have ended are deleted, so cancel it first"));
   }
-  PLEAT_RETURN_IF_ERROR(erase_(id));
+  PLEAT_RETURN_IF_ERROR(erase_(info));
   std::lock_guard lock(mutex_);
   const auto registered = jobs_.find(id);
   order_.erase(registered->second.number);
   jobs_.erase(registered);
-  const auto request = ids_by_request_.find(info.request_id);
+  const auto request = ids_by_request_.find(RequestKey(info));
   if (request != ids_by_request_.end() && request->second == id) ids_by_request_.erase(request);
   return absl::OkStatus();
 }

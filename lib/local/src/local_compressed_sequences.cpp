@@ -1,5 +1,6 @@
 #include "pleat/local/local_compressed_sequences.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -54,7 +55,7 @@ absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> LocalCompressedSequenc
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<CompressedSequenceUpload> known,
                          FindComplete<CompressedSequenceInfo>(files_, id, ttl));
   if (known != nullptr) return known;
-  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
+  PLEAT_ASSIGN_OR_RETURN(StoredFiles::BegunUpload upload,
                          files_->BeginUpload(id, size_bytes, offset_bytes));
   return std::make_unique<StoredUpload<CompressedSequenceInfo>>(
       std::move(upload),
@@ -122,6 +123,10 @@ absl::StatusOr<std::unique_ptr<ContentDownload>> LocalCompressedSequences::OpenD
 absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDecode(
     const std::string& id, FrameRange range) {
   PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info, Get(id));
+  const int end_frame = range.end == 0 ? info.num_frames : range.end;
+  if (frames_ != nullptr && end_frame > range.begin) {
+    PLEAT_RETURN_IF_ERROR(frames_->Take(std::min(end_frame, info.num_frames) - range.begin));
+  }
   const std::string what = absl::StrCat("decoding '", id, "'");
   // The memory is reserved in two steps, because only the opened file says what its decoder will
   // take: first for the bytes of the file, then for everything.

@@ -31,6 +31,7 @@ absl::Status LocalPoses::EvaluateClip(
 absl::StatusOr<std::unique_ptr<PoseSession>> LocalPoses::OpenSession(const std::string& model_id,
                                                                      PoseSessionOptions options) {
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
+  PLEAT_RETURN_IF_ERROR(Charge(1));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
                          engine_->encoders().Take(model_id, *model, options.encoder));
   return LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder));
@@ -41,6 +42,7 @@ absl::StatusOr<std::unique_ptr<ClipSession>> LocalPoses::OpenClip(const std::str
                                                                   PoseSessionOptions options) {
   PLEAT_RETURN_IF_ERROR(CheckClip(track));
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
+  PLEAT_RETURN_IF_ERROR(Charge(track.num_frames()));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
                          engine_->encoders().Take(model_id, *model, options.encoder));
   return LocalClipSession::Open(std::move(model), std::move(track), std::move(options),
@@ -57,7 +59,7 @@ absl::StatusOr<std::unique_ptr<PoseStream>> LocalPoses::OpenStream(const std::st
   PLEAT_ASSIGN_OR_RETURN(
       std::unique_ptr<LocalPoseSession> session,
       LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder)));
-  return std::make_unique<LocalPoseStream>(std::move(session), rules, &engine_->batcher(),
+  return std::make_unique<LocalPoseStream>(std::move(session), rules, frames_, &engine_->batcher(),
                                            listener);
 }
 

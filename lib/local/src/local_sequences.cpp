@@ -53,6 +53,7 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
                                        files_->limits().max_upload_bytes));
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
+  PLEAT_ASSIGN_OR_RETURN(const SpaceReservation room, files_->ReserveRoom(bytes.size()));
   const SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
   PLEAT_RETURN_IF_ERROR(
       files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes, ttl));
@@ -77,7 +78,8 @@ absl::Status LocalSequences::SetPinned(const std::string& id, bool pinned) {
 }
 
 absl::Status LocalSequences::DeleteUpload(const std::string& id) {
-  return files_->uploads().Remove(id);
+  PLEAT_ASSIGN_OR_RETURN(UploadArea* const uploads, files_->uploads());
+  return uploads->Remove(id);
 }
 
 absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) {
@@ -93,7 +95,13 @@ absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) 
   for (const absl::Status& status : {sequence.status(), compressed.status()}) {
     if (!status.ok() && !absl::IsNotFound(status) && !absl::IsDataLoss(status)) return status;
   }
-  return UploadStatus{files_->uploads().ReceivedBytes(id), false};
+  for (const EntryKind kind : {EntryKind::kSequence, EntryKind::kCompressedSequence}) {
+    if (const auto shared = files_->FindShared(kind, id)) {
+      return UploadStatus{shared->file_bytes, true};
+    }
+  }
+  PLEAT_ASSIGN_OR_RETURN(UploadArea* const uploads, files_->uploads());
+  return UploadStatus{uploads->ReceivedBytes(id), false};
 }
 
 absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(const std::string& id,
@@ -103,7 +111,7 @@ absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(cons
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<SequenceUpload> known,
                          FindComplete<SequenceInfo>(files_, id, ttl));
   if (known != nullptr) return known;
-  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
+  PLEAT_ASSIGN_OR_RETURN(StoredFiles::BegunUpload upload,
                          files_->BeginUpload(id, size_bytes, offset_bytes));
   return std::make_unique<StoredUpload<SequenceInfo>>(
       std::move(upload),

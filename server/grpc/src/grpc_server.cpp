@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -93,11 +94,7 @@ class GrpcServerImpl final : public GrpcServer {
         storage_executor_(options.num_storage_threads),
         transfer_executor_(options.num_transfer_threads) {
     if (options.pose_executor == nullptr) own_pose_executor_.emplace(0);
-    context_.sequences = &service->sequences();
-    context_.jobs = &service->jobs();
-    context_.models = &service->models();
-    context_.poses = &service->poses();
-    context_.compressed_sequences = &service->compressed_sequences();
+    SetServices(service, &context_);
     context_.pose_executor = own_pose_executor_ ? &*own_pose_executor_ : options.pose_executor;
     context_.storage_executor = &storage_executor_;
     context_.transfer_executor = &transfer_executor_;
@@ -106,6 +103,12 @@ class GrpcServerImpl final : public GrpcServer {
     context_.calls->max_open_streams = options.max_open_streams;
     context_.calls->max_streams_per_client = options.max_streams_per_client;
     context_.calls->tokens = options.tokens;
+    if (options.of_project) {
+      context_.calls->of_project = [this,
+                                    of_project = options.of_project](const std::string& project) {
+        return ContextOf(project, of_project);
+      };
+    }
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
     services_.push_back(MakeModelService(&context_));
@@ -150,7 +153,8 @@ class GrpcServerImpl final : public GrpcServer {
         },
         [](const std::string& what) { spdlog::warn("{}", what); });
     health_.emplace(server_->GetHealthCheckService(), options.probe);
-    if (options.tokens != nullptr) revocation_.emplace(options.tokens, &context_.calls->running_calls);
+    if (options.tokens != nullptr)
+      revocation_.emplace(options.tokens, &context_.calls->running_calls);
     return absl::OkStatus();
   }
 
@@ -188,6 +192,25 @@ class GrpcServerImpl final : public GrpcServer {
   }
 
  private:
+  static void SetServices(CharacterService* service, HandlerContext* context) {
+    context->sequences = &service->sequences();
+    context->jobs = &service->jobs();
+    context->models = &service->models();
+    context->poses = &service->poses();
+    context->compressed_sequences = &service->compressed_sequences();
+  }
+
+  // Projects come from good tokens alone, so there are no more than operators have made.
+  HandlerContext* ContextOf(const std::string& project, const ServicesOfProject& of_project) {
+    std::lock_guard lock(contexts_mutex_);
+    std::unique_ptr<HandlerContext>& context = contexts_[project];
+    if (context == nullptr) {
+      context = std::make_unique<HandlerContext>(context_);  // with the same calls and threads
+      SetServices(of_project(project), context.get());
+    }
+    return context.get();
+  }
+
   // The share of gRPC is taken for as long as the server lives.
   absl::Status LimitMessages(MemoryBudget* memory, grpc::ServerBuilder* builder) {
     uint64_t bytes = kMaxMessageBytes;
@@ -207,18 +230,21 @@ class GrpcServerImpl final : public GrpcServer {
     const auto deadline =
         start + std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
     const auto patience = start + kSlowReaderTime;
-    if (context_.calls->open_calls.WaitUntilNone(std::min(deadline, patience)) || deadline <= patience) {
+    if (context_.calls->open_calls.WaitUntilNone(std::min(deadline, patience)) ||
+        deadline <= patience) {
       return;
     }
     context_.calls->live_sessions.AbandonAll();
     context_.calls->open_calls.WaitUntilNone(deadline);
   }
 
-  const std::string certificate_;  // the path of its file
+  const std::string certificate_;                // the path of its file
   MemoryBudget request_memory_, stream_memory_;  // outlive the calls
   Reservation message_memory_;
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
+  std::mutex contexts_mutex_;
+  std::map<std::string, std::unique_ptr<HandlerContext>> contexts_;  // guarded by contexts_mutex_
   std::optional<Executor> own_pose_executor_;
   Executor storage_executor_, transfer_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;

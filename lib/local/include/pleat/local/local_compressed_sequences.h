@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pleat/base/memory_budget.h"
+#include "pleat/local/frame_quota.h"
 #include "pleat/local/stored_files.h"
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "pleat/service/compressed_sequence_service.h"
@@ -16,9 +17,10 @@ namespace pleat {
 // Thread-safe. `files` must outlive it.
 class LocalCompressedSequences final : public CompressedSequenceService {
  public:
-  // memory: of all decoders together; it must outlive the sessions.
-  LocalCompressedSequences(StoredFiles* files, MemoryBudget* memory)
-      : files_(files), memory_(memory) {}
+  // memory: of all decoders together; it must outlive the sessions. frames: what decoding is
+  // charged to; null: nothing.
+  LocalCompressedSequences(StoredFiles* files, MemoryBudget* memory, FrameQuota* frames = nullptr)
+      : files_(files), memory_(memory), frames_(frames) {}
 
   using CompressedSequenceService::BeginUpload;
   using CompressedSequenceService::Upload;
@@ -46,6 +48,7 @@ class LocalCompressedSequences final : public CompressedSequenceService {
 
   StoredFiles* const files_;
   MemoryBudget* const memory_;
+  FrameQuota* const frames_;
 };
 
 }  // namespace pleat

@@ -8,6 +8,7 @@
 
 #include "pleat/base/executor.h"
 #include "pleat/local/encoder_pool.h"
+#include "pleat/local/frame_quota.h"
 #include "pleat/local/local_models.h"
 #include "pleat/local/pose_batcher.h"
 #include "pleat/service/pose_service.h"
@@ -44,9 +45,11 @@ class PoseEngine {
 // Clips and single poses are computed on the caller's thread, streams on the engine's.
 class LocalPoses final : public PoseService {
  public:
-  // max_frames: of one clip.
-  LocalPoses(LocalModels* models, PoseEngine* engine, int64_t max_frames)
-      : models_(models), engine_(engine), max_frames_(max_frames) {}
+  // max_frames: of one clip. frames: what frames are charged to, which must outlive the streams;
+  // null: nothing.
+  LocalPoses(LocalModels* models, PoseEngine* engine, int64_t max_frames,
+             FrameQuota* frames = nullptr)
+      : models_(models), engine_(engine), max_frames_(max_frames), frames_(frames) {}
 
   absl::Status EvaluateClip(
       const ClipQuery& query,
@@ -67,10 +70,14 @@ class LocalPoses final : public PoseService {
 
  private:
   absl::Status CheckClip(const PoseTrack& track) const;
+  absl::Status Charge(int64_t num_frames) const {
+    return frames_ == nullptr ? absl::OkStatus() : frames_->Take(num_frames);
+  }
 
   LocalModels* const models_;
   PoseEngine* const engine_;
   const int64_t max_frames_;
+  FrameQuota* const frames_;
 };
 
 }  // namespace pleat

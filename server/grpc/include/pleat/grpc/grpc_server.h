@@ -50,6 +50,9 @@ struct TlsFiles {
   unsigned reload_seconds = 10;  // between two looks at the files
 };
 
+// The services of a project, which live as long as the server. Called from any thread.
+using ServicesOfProject = std::function<CharacterService*(const std::string& project)>;
+
 struct GrpcServerOptions {
   std::string listen = "127.0.0.1:0";  // HOST:PORT or unix:PATH; port 0 takes any free one
   TlsFiles tls{};                      // without a certificate: plain text
@@ -60,6 +63,9 @@ struct GrpcServerOptions {
   // Says who may call what; it must outlive the server. Null: everybody may do everything. Calls of
   // a token that is revoked or expires end within a second.
   TokenRegistry* tokens = nullptr;
+  // What the token of a project sees. Empty: every token sees the service of Start, as all callers
+  // without a token do.
+  ServicesOfProject of_project{};
   // Says why nothing can be stored at the moment; asked every two seconds, for the health service.
   // Null: nobody asks.
   std::function<absl::Status()> probe{};
