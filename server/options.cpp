@@ -136,6 +136,18 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
                   "Of one address")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
+  app->add_option("--max-connection-idle-seconds", grpc->connections.max_idle_seconds,
+                  "A connection without calls is closed after this")
+      ->check(CLI::Range(1., 1e6))
+      ->capture_default_str();
+  app->add_option("--max-connection-age-seconds", grpc->connections.max_age_seconds,
+                  "An older connection takes no more calls; 0 = for ever")
+      ->check(CLI::Range(0., 1e6))
+      ->capture_default_str();
+  app->add_option("--max-connection-age-grace-seconds", grpc->connections.max_age_grace_seconds,
+                  "How long its calls may go on then")
+      ->check(CLI::Range(0., 1e6))
+      ->capture_default_str();
   app->add_option("--tls-cert", grpc->tls.certificate,
                   "PEM file with the server's certificate chain")
       ->check(CLI::ExistingFile);

@@ -74,8 +74,9 @@ TEST(ByteCacheTest, RefusesWhatDoesNotFit) {
   EXPECT_THAT(cache.Get("large", large.loader()),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("in use")));
   CountingLoader huge{.bytes = 31};
-  EXPECT_THAT(cache.Get("huge", huge.loader()),
-              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("the operator must allow more")));
+  EXPECT_THAT(
+      cache.Get("huge", huge.loader()),
+      HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("the operator must allow more")));
   EXPECT_EQ(cache.stats().used_bytes, 20u);
 }
 

@@ -112,6 +112,31 @@ TEST(JobManagerTest, RequestIdsAreThoseOfAProject) {
   EXPECT_NE(other.id, first.id);
 }
 
+TEST(JobManagerTest, TellsHowLongAJobWasInEachStage) {
+  Journal journal;
+  std::atomic<double> now = 0;
+  std::vector<std::pair<std::string, double>> stages;
+  JobManager jobs(
+      {.on_stage = [&](const std::string& stage,
+                       double seconds) { stages.emplace_back(stage, seconds); },
+       .clock = [&] { return now.load(); }},
+      [&](const JobInfo&, const Progress& progress) -> absl::StatusOr<JobOutcome> {
+        progress.Stage("read", 0, .5).Report(.1).IgnoreError();
+        now = now + 2;
+        progress.Stage("read", 0, .5).Report(.9).IgnoreError();
+        now = now + 1;
+        progress.Stage("learn", .5, 1).Report(.5).IgnoreError();
+        now = now + 5;
+        return JobOutcome{"model", {}};
+      },
+      journal.save());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo job, jobs.Create(Named("job")));
+  jobs.Start();
+  EXPECT_EQ(WaitForEnd(jobs, job.id).state, JobState::kSucceeded);
+  jobs.Shutdown();
+  EXPECT_THAT(stages, testing::ElementsAre(std::pair("read", 3.), std::pair("learn", 5.)));
+}
+
 TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {
   Journal journal;
   Running running;

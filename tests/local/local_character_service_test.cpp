@@ -145,8 +145,7 @@ TEST_F(LocalCharacterServiceTest, AJobWaitsForItsMemoryAndOneThatCanNeverHaveItI
                  .value();
   const std::string sequence_id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
   std::optional<Reservation> held = service_->memory().all.Reserve(60 << 20, "a test").value();
-  const std::string job_id =
-      service_->jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
+  const std::string job_id = service_->jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
   JobInfo last;
   EXPECT_THAT(WatchJob(service_->jobs(), job_id,
                        [&](const JobInfo& info) {
@@ -178,10 +177,10 @@ TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
   EXPECT_EQ(service_->compressed_sequences().decoder_bytes(), 0u);
 
   service_.reset();
-  service_ =
-      LocalCharacterService::Open(
-          {.data_dir = folder_.path(), .memory = {.decode_bytes = 5 * one / 2}, .train = trainer_.function()})
-          .value();
+  service_ = LocalCharacterService::Open({.data_dir = folder_.path(),
+                                          .memory = {.decode_bytes = 5 * one / 2},
+                                          .train = trainer_.function()})
+                 .value();
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto first, service_->compressed_sequences().OpenDecode(id, {}));
   PLEAT_ASSERT_OK_AND_ASSIGN(auto second, service_->compressed_sequences().OpenDecode(id, {5, 9}));
   EXPECT_THAT(service_->compressed_sequences().OpenDecode(id, {}),

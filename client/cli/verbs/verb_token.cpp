@@ -99,7 +99,8 @@ absl::Status List(const TokenVerbOptions& options, const Session& session) {
     rows.push_back({token.id, token.name, token.project, ScopesText(token.scopes),
                     StateName(token, now), TimeText(token.created), TimeText(token.expires)});
   }
-  *session.out << FormatTable({"id", "name", "project", "scopes", "state", "created", "expires"}, rows);
+  *session.out << FormatTable({"id", "name", "project", "scopes", "state", "created", "expires"},
+                              rows);
   return absl::OkStatus();
 }
 

@@ -24,6 +24,29 @@ std::string RequestKey(const JobInfo& info) {
 
 std::string MakeJobId() { return "job-" + RandomHexId(2); }
 
+// How long a job is in each of its stages.
+class StageClock {
+ public:
+  explicit StageClock(const JobManagerOptions& options) : options_(options) {}
+  ~StageClock() { Enter(""); }
+
+  void Enter(const std::string& stage) {
+    if (!options_.on_stage) return;
+    std::lock_guard lock(mutex_);
+    if (stage == stage_) return;
+    const double now = options_.clock();
+    if (!stage_.empty()) options_.on_stage(stage_, now - since_);
+    stage_ = stage;
+    since_ = now;
+  }
+
+ private:
+  const JobManagerOptions& options_;
+  std::mutex mutex_;
+  std::string stage_;  // guarded by mutex_, as is the next; empty before the first
+  double since_ = 0;
+};
+
 }  // namespace
 
 JobManager::JobManager(JobManagerOptions options, RunJob run, SaveJob save, EraseJob erase)
@@ -275,8 +298,13 @@ void JobManager::Work() {
 }
 
 void JobManager::RunOne(JobStateMachine* job) {
-  const Progress progress([job](const ProgressUpdate& update) { job->Report(update); },
-                          [this, job] { return shutting_down() || job->cancel_requested(); });
+  StageClock stages(options_);
+  const Progress progress(
+      [job, &stages](const ProgressUpdate& update) {
+        stages.Enter(update.stage);
+        job->Report(update);
+      },
+      [this, job] { return shutting_down() || job->cancel_requested(); });
   absl::StatusOr<JobOutcome> outcome = absl::UnknownError("the job did not run");
   try {
     outcome = run_(job->snapshot().info, progress);

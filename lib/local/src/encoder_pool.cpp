@@ -49,10 +49,7 @@ absl::StatusOr<FrameEncoder> MakeEncoder(const CharacterModel& model,
 
 EncoderPool::Lease::Lease(EncoderPool* pool, std::string key, FrameEncoder encoder,
                           Reservation memory)
-    : pool_(pool),
-      key_(std::move(key)),
-      memory_(std::move(memory)),
-      encoder_(std::move(encoder)) {}
+    : pool_(pool), key_(std::move(key)), memory_(std::move(memory)), encoder_(std::move(encoder)) {}
 
 EncoderPool::Lease::~Lease() {
   if (pool_ != nullptr) pool_->GiveBack(std::move(key_), std::move(encoder_), std::move(memory_));
@@ -73,8 +70,8 @@ absl::StatusOr<std::unique_ptr<EncoderPool::Lease>> EncoderPool::Take(
     std::lock_guard lock(mutex_);
     for (auto it = entries_.begin(); it != entries_.end(); ++it) {
       if (it->key != key) continue;
-      auto lease = std::make_unique<Lease>(this, std::move(key), std::move(it->encoder),
-                                           std::move(memory));
+      auto lease =
+          std::make_unique<Lease>(this, std::move(key), std::move(it->encoder), std::move(memory));
       used_bytes_ -= ChargeOf(**lease);
       entries_.erase(it);
       (*lease)->RequestKeyframe();

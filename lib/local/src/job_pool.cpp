@@ -19,6 +19,7 @@ JobPool::JobPool(StoredFiles* files, RunnerOf runner_of, const JobPoolOptions& o
                             .max_queued_per_client = options.max_queued_per_client,
                             .max_queued_per_project = options.max_queued_per_project,
                             .in_idle_time = options.in_idle_time,
+                            .on_stage = options.on_stage,
                             .wall_clock = files->clock()},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_of_(job.project).Run(job, progress);

@@ -52,7 +52,8 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                      .max_queued_per_client = options.max_queued_jobs_per_client,
                      .max_queued_per_project = options.project.max_queued_jobs,
                      .in_idle_time = options.jobs_in_idle_time,
-                     .on_state = options.on_job_state});
+                     .on_state = options.on_job_state,
+                     .on_stage = options.on_job_stage});
   default_ = &OfProject(kDefaultProject);
 }
 

@@ -37,7 +37,6 @@ namespace {
 constexpr int kKeepaliveMs = 60'000;         // between two questions to an idle connection
 constexpr int kKeepaliveTimeoutMs = 20'000;  // until it must have answered
 constexpr int kHandshakeMs = 10'000;         // of TLS and HTTP/2 together
-constexpr int kMaxIdleMs = 10 * 60'000;      // a connection without calls is closed after this
 // What gRPC may use for connections, calls and messages that are not parsed yet: a part of all
 // memory, within these bounds. gRPC itself sees to it (grpc::ResourceQuota).
 constexpr uint64_t kMessageShare = 8;
@@ -78,6 +77,17 @@ void RefuseCompression(grpc::ServerBuilder* builder) {
   }
 }
 
+int Milliseconds(double seconds) { return static_cast<int>(std::min(seconds, 2e6) * 1000); }
+
+void LimitAge(const ConnectionLimits& limits, grpc::ServerBuilder* builder) {
+  builder->AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS,
+                              Milliseconds(limits.max_idle_seconds));
+  if (limits.max_age_seconds <= 0) return;
+  builder->AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, Milliseconds(limits.max_age_seconds));
+  builder->AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
+                              Milliseconds(limits.max_age_grace_seconds));
+}
+
 void LogForGrpc(gpr_log_func_args* args) {
   const auto level = args->severity == GPR_LOG_SEVERITY_ERROR  ? spdlog::level::warn
                      : args->severity == GPR_LOG_SEVERITY_INFO ? spdlog::level::debug
@@ -103,6 +113,9 @@ class GrpcServerImpl final : public GrpcServer {
     context_.calls->max_open_streams = options.max_open_streams;
     context_.calls->max_streams_per_client = options.max_streams_per_client;
     context_.calls->tokens = options.tokens;
+    if (options.call_listener != nullptr) {
+      context_.calls->on_frame_step = options.call_listener->on_frame_step;
+    }
     if (options.of_project) {
       context_.calls->of_project = [this,
                                     of_project = options.of_project](const std::string& project) {
@@ -136,7 +149,7 @@ class GrpcServerImpl final : public GrpcServer {
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
+    LimitAge(options.connections, &builder);
     builder.experimental().SetInterceptorCreators(
         MakeCallListening(options.call_listener, &context_.calls->running_calls));
     for (const auto& service : services_) builder.RegisterService(service.get());

@@ -118,7 +118,8 @@ class PoseServiceImpl final : public v1::PoseService::CallbackService {
   grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
       grpc::CallbackServerContext* call) override {
     return StartAdmitted<grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>>(
-        context_, *call, "LiveSession", [&](HandlerContext* of) { return pleat::LiveSession(of, call); });
+        context_, *call, "LiveSession",
+        [&](HandlerContext* of) { return pleat::LiveSession(of, call); });
   }
 
  private:

@@ -1,5 +1,6 @@
 #include <grpcpp/server_context.h>
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,6 +21,10 @@ namespace {
 
 // What a message may take once it is parsed. Eight poses of 18 joints take 20 kB.
 constexpr uint64_t kMaxLiveMessageBytes = uint64_t{256} << 10;
+
+double SecondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 // One live session: poses come in, frames go out, at the pace of the slower side.
 //
@@ -56,7 +61,8 @@ class LiveReactor final
   LiveReactor(HandlerContext* context, grpc::CallbackServerContext* call)
       : CallReactor(context),
         slot_(context, kStreamBytes + kMaxLiveMessageBytes),
-        context_(context), call_(call) {}
+        context_(context),
+        call_(call) {}
 
   // A server that begins to drain meanwhile either finds the entry or has set `draining` before.
   void Start() {
@@ -83,6 +89,7 @@ class LiveReactor final
   void OnWriteDone(bool ok) override {
     std::unique_lock lock(mutex_);
     writing_ = false;
+    if (ok) context_->calls->TellFrameStep("send", SecondsSince(write_began_));
     if (!ok) cancelled_ = true;
     Advance(std::move(lock));
   }
@@ -146,6 +153,7 @@ class LiveReactor final
       if (cancelled_) {
         Keep(absl::CancelledError("the client is gone"));
       } else {
+        const RequestScope scope(request_id());
         LogFailure("LiveSession", status_);
       }
       const grpc::Status status = ToGrpcStatus(status_);
@@ -184,6 +192,7 @@ class LiveReactor final
     Keep(std::move(status));
     if (!cancelled_ && status_.ok()) {
       writing_ = true;
+      write_began_ = std::chrono::steady_clock::now();
       StartWrite(&response_);
     }
     Advance(std::move(lock));
@@ -211,6 +220,7 @@ class LiveReactor final
     response_.Clear();
     *response_.mutable_report() = ReportOf(reply);
     if (reply.frame.ok()) {
+      TellSteps(*reply.frame, *context_->calls);
       *response_.mutable_frame() = ToProto(reply.number, *std::move(reply.frame));
     } else {
       *response_.mutable_rejection() = RejectionOf(reply.number, reply.frame.status());
@@ -228,6 +238,7 @@ class LiveReactor final
   std::unique_ptr<PoseStream> stream_;  // from kOpen to finished_
   absl::Status status_;                 // why the session ends
   bool reading_ = false, writing_ = false, working_ = false;
+  std::chrono::steady_clock::time_point write_began_;
   bool input_ended_ = false, cancelled_ = false, finished_ = false;
   std::optional<LiveRegistry::Entry> entry_;  // the last member, so that it goes first
 };

@@ -23,10 +23,8 @@ class RunUnaryTest : public testing::Test {
  protected:
   RunUnaryTest() { spdlog::set_level(spdlog::level::off); }  // failures are what is tested
   UnaryCall Call() {
-    return {.context = &context_,
-            .call = &server_context_,
-            .executor = executor_.get(),
-            .rpc = "Test"};
+    return {
+        .context = &context_, .call = &server_context_, .executor = executor_.get(), .rpc = "Test"};
   }
   void Start(std::function<absl::Status()> handler) {
     call_.emplace(RunUnary(Call(), [handler](HandlerContext&) { return handler(); }));

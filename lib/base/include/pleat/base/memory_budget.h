@@ -97,7 +97,7 @@ class MemoryBudget {
   std::vector<Reclaimer> reclaimers_;
   mutable std::mutex mutex_;
   std::condition_variable released_;
-  uint64_t used_bytes_ = 0;   // guarded by mutex_; at most capacity_bytes_
+  uint64_t used_bytes_ = 0;    // guarded by mutex_; at most capacity_bytes_
   uint64_t num_releases_ = 0;  // guarded by mutex_
 };
 

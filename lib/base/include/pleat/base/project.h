@@ -11,8 +11,8 @@ namespace pleat {
 // that knew no projects.
 inline constexpr char kDefaultProject[] = "default";
 
-// A name is 1 to 48 bytes of a-z, 0-9, '-' and '_', and begins with a letter or a digit: it is part of
-// paths, labels and logs. kInvalidArgument says what is wrong.
+// A name is 1 to 48 bytes of a-z, 0-9, '-' and '_', and begins with a letter or a digit: it is part
+// of paths, labels and logs. kInvalidArgument says what is wrong.
 absl::Status CheckProjectName(std::string_view name);
 
 }  // namespace pleat

@@ -44,6 +44,8 @@ struct JobManagerOptions {
   // The threads of jobs run in the processor time that nothing else wants, so that live sessions in
   // the same process keep their pace.
   bool in_idle_time = false;
+  // Hears how long a job was in a stage, when it leaves it, from any thread. May be empty.
+  std::function<void(const std::string& stage, double seconds)> on_stage{};
   MonotonicClock clock = SteadySeconds;
   WallClock wall_clock = SystemTime;  // for the times that jobs keep
 };

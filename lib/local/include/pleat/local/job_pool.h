@@ -18,6 +18,8 @@ struct JobPoolOptions {
   bool in_idle_time = false;
   // Receives a job whenever a new state of it has been saved, from any thread. May be empty.
   std::function<void(const JobInfo& job)> on_state{};
+  std::function<void(const std::string& stage, double seconds)>
+      on_stage{};  // see JobManagerOptions
 };
 
 // Knows no projects but by the name that each job carries; LocalJobs shows a project its own.

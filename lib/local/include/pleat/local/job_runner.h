@@ -40,8 +40,7 @@ class JobRunner {
   // compressing, and kCancelled when `progress` was cancelled.
   absl::StatusOr<JobOutcome> Run(const JobInfo& job, const Progress& progress) const;
   // kResourceExhausted when a job on these sequences needs more memory than all jobs may ever have.
-  absl::Status CheckMemory(const JobOptions& options,
-                           const std::vector<SequenceInfo>& clips) const;
+  absl::Status CheckMemory(const JobOptions& options, const std::vector<SequenceInfo>& clips) const;
   // Reads a user's rig (JSON) under the limits of the service.
   absl::StatusOr<RigFile> DecodeUserRig(const std::string& text) const;
 

@@ -38,6 +38,8 @@ struct LocalServiceOptions {
   std::function<void(const std::string& problem)> on_problem{};
   // Receives a job whenever a new state of it has been saved.
   std::function<void(const JobInfo& job)> on_job_state{};
+  // Hears how long a job was in a stage, when it leaves it.
+  std::function<void(const std::string& stage, double seconds)> on_job_stage{};
   // Receives one sentence about each thing that retention removed.
   std::function<void(const std::string& sentence)> on_removed{};
 };

@@ -8,9 +8,9 @@
 namespace pleat {
 
 struct MemoryLimits {
-  uint64_t memory_bytes = UINT64_MAX;         // everything together
-  uint64_t cache_bytes = uint64_t{1} << 30;   // models
-  uint64_t decode_bytes = uint64_t{1} << 30;  // all decoders of compressed sequences together
+  uint64_t memory_bytes = UINT64_MAX;           // everything together
+  uint64_t cache_bytes = uint64_t{1} << 30;     // models
+  uint64_t decode_bytes = uint64_t{1} << 30;    // all decoders of compressed sequences together
   uint64_t encoder_bytes = uint64_t{64} << 20;  // frame encoders that nobody uses at the moment
 };
 

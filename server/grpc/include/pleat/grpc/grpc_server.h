@@ -23,6 +23,11 @@ namespace pleat {
 struct ConnectionLimits {
   int max_connections = 4096;           // fewer where the process may have too few file descriptors
   int max_connections_per_peer = 1024;  // with one address
+  double max_idle_seconds = 600;        // a connection without calls is closed after this
+  // A connection that is older takes no more calls, so that clients come back elsewhere after a
+  // change of servers; its calls may go on for the grace time and are cancelled then. 0: for ever.
+  double max_age_seconds = 0;
+  double max_age_grace_seconds = 60;
 };
 
 // What is known of a call when it has ended.
@@ -31,6 +36,8 @@ struct CallFacts {
   std::string peer;      // as gRPC writes it: "ipv4:10.0.0.7:52114"
   std::string token_id;  // of the token that it showed, good or not; empty: none
   std::string trace_id;  // of the W3C trace that it belongs to, 32 digits; empty: none
+  // What all log lines about the call name: "x-request-id" of its metadata, or made by the server.
+  std::string request_id;
   bool is_stream = false;
   bool audited = false;          // it belongs in the audit log, whatever its end
   std::vector<std::string> ids;  // that its request names; only of audited calls
@@ -40,6 +47,8 @@ struct CallFacts {
 struct CallListener {
   std::function<void(const std::string& method)> on_start;
   std::function<void(const CallFacts& facts, int status, double seconds)> on_end;
+  // How long a step of a frame took: "query", "encode" or "send". May be empty.
+  std::function<void(const char* step, double seconds)> on_frame_step{};
 };
 
 // PEM files. Certificate and key come together; with client_ca, clients must show a certificate

@@ -37,6 +37,11 @@ struct ServerCalls {
   OpenCalls open_calls;                // streams included
   RunningCalls running_calls;          // by client
   LiveRegistry live_sessions;
+  // Hears how long a step of a frame took: "query", "encode" or "send". Empty: nobody listens.
+  std::function<void(const char* step, double seconds)> on_frame_step{};
+  void TellFrameStep(const char* step, double seconds) const {
+    if (on_frame_step) on_frame_step(step, seconds);
+  }
   // The context of a project, which lives as long as the server. Empty: there is one for all.
   std::function<HandlerContext*(const std::string& project)> of_project{};
 };
