@@ -72,10 +72,10 @@ CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegi
 
 void LogJob(const JobInfo& job) {
   const bool failed = job.state == JobState::kFailed;
-  spdlog::log(failed ? spdlog::level::warn : spdlog::level::info, "{} '{}' of {} is {}{}{}{}{}",
-              job.id, job.name, job.project, JobStateName(job.state),
-              job.request_id.empty() ? "" : ", created as ", job.request_id,
-              job.error.ok() ? "" : ": ", std::string(job.error.message()));
+  spdlog::log(failed ? spdlog::level::warn : spdlog::level::info,
+              "{} '{}' is {}{}{} [project {}{}{}]", job.id, job.name, JobStateName(job.state),
+              job.error.ok() ? "" : ": ", std::string(job.error.message()), job.project,
+              job.request_id.empty() ? "" : ", created as ", job.request_id);
 }
 
 void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry) {

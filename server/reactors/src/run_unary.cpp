@@ -59,9 +59,11 @@ class UnaryReactor final : public CallReactor<grpc::ServerUnaryReactor> {
     } else {
       status = CallGuarded([this] { return handler_(**context_); });
     }
-    // A client that does not read leaves its answers here.
-    if (status.ok()) {
-      status = Charge(kUnaryCallBytes + MemoryOf(call_.request) + 2 * MemoryOf(call_.response));
+    // A client that does not read leaves its answers here. Small ones are paid for already: so no
+    // call that has changed something is refused afterwards.
+    const uint64_t answer = status.ok() ? MemoryOf(call_.response) : 0;
+    if (answer > kUnaryCallBytes) {
+      status = Charge(kUnaryCallBytes + MemoryOf(call_.request) + 2 * answer);
     }
     End(status);
   }
