@@ -12,7 +12,8 @@
 namespace pleat {
 namespace {
 
-// What checking a sequence takes, in sizes of its file; measured with tests/server/memory_test.cpp.
+// What checking a sequence takes at most, in sizes of its file: the bytes, the frames out of them,
+// and room for what the allocator keeps of the upload before.
 constexpr uint64_t kCheckFactor = 3;
 
 MeshLimits FileLimits(const ServiceLimits& limits) {
