@@ -192,15 +192,19 @@ int Main(const AttackedServer& options, const std::string& only) {
   std::printf("--memory-bytes %d MB, allowed beside it %d MB, %.0f s for each attack\n\n",
               static_cast<int>(server.memory_bytes >> 20), static_cast<int>(kBesideBytes >> 20),
               server.seconds);
-  std::printf("| attack | load | calls | largest RSS, MB | bystander p50 / p99, ms | lost |\n");
+  std::printf(
+      "| attack | load | calls | largest RSS, MB | bystander's frames: p50 / p99, ms | lost |\n");
   std::printf("|---|---|---|---|---|---|\n");
   bool is_good = true;
   for (const AttackKind& kind : AttackKinds()) {
     if (!only.empty() && only != kind.name) continue;
     const Row row = Run(server, kind);
-    std::printf("| %s | %s | %d | %d | %.1f / %.1f | %s |\n", row.attack.c_str(), row.load.c_str(),
-                static_cast<int>(row.num_calls), static_cast<int>(row.peak_bytes >> 20), row.p50_ms,
-                row.p99_ms, row.survived ? std::to_string(row.num_lost).c_str() : "the server");
+    const std::string waits =
+        row.num_frames == 0 ? "no frame" : absl::StrFormat("%.1f / %.1f", row.p50_ms, row.p99_ms);
+    std::printf("| %s | %s | %d | %d | %d: %s | %s |\n", row.attack.c_str(), row.load.c_str(),
+                static_cast<int>(row.num_calls), static_cast<int>(row.peak_bytes >> 20),
+                row.num_frames, waits.c_str(),
+                row.survived ? std::to_string(row.num_lost).c_str() : "the server");
     std::fflush(stdout);
     is_good = row.is_good(server.memory_bytes) && is_good;
   }
