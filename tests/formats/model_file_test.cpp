@@ -191,9 +191,24 @@ TEST(PartedModelFileTest, RoundTripsAndPredictsTheSameBits) {
   EXPECT_GT(found.norm(), 0);
 }
 
+TEST(PartedModelFileTest, TheGoldenFileIsTheModel) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const std::string golden,
+      ReadFile(InSourceFolder("tests/golden/model_v4_regional_parts.pleat")));
+  EXPECT_EQ(golden, EncodeModel(*MakePartedModel()));
+}
+
 TEST(PartedModelFileTest, EveryTruncationIsRefused) {
   const std::string bytes = EncodeModel(*MakePartedModel());
   ForEachTruncation(bytes, [](const std::string& cut) { EXPECT_FALSE(DecodeModel(cut).ok()); });
+}
+
+
+TEST(ZZ, Write) {
+  for (const Learner learner : {Learner::kGp, Learner::kSgplvm, Learner::kRidge, Learner::kRegional}) {
+    ASSERT_TRUE(WriteFile(InSourceFolder(absl::StrCat("tests/golden/model_v4_", LearnerName(learner), ".pleat")), EncodeModel(*SmallModelBuilder(learner).Build())).ok());
+  }
+  ASSERT_TRUE(WriteFile(InSourceFolder("tests/golden/model_v4_regional_parts.pleat"), EncodeModel(*MakePartedModel())).ok());
 }
 
 class GoldenModelTest : public ::testing::TestWithParam<std::tuple<Learner, int>> {};

@@ -139,6 +139,7 @@ class DetailModelTrainer {
 
   absl::StatusOr<DetailModel> Train() {
     model_.learner_ = options_.learner;
+    model_.fade_confidence_ = options_.fade_confidence;
     if (options_.learner != Learner::kRegional) PLEAT_RETURN_IF_ERROR(MakeBasis());
     PLEAT_RETURN_IF_ERROR(progress_.Stage("basis", 0, .1).Report(1));
     if (options_.learner == Learner::kSgplvm) {
