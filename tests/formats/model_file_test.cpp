@@ -203,14 +203,6 @@ TEST(PartedModelFileTest, EveryTruncationIsRefused) {
   ForEachTruncation(bytes, [](const std::string& cut) { EXPECT_FALSE(DecodeModel(cut).ok()); });
 }
 
-
-TEST(ZZ, Write) {
-  for (const Learner learner : {Learner::kGp, Learner::kSgplvm, Learner::kRidge, Learner::kRegional}) {
-    ASSERT_TRUE(WriteFile(InSourceFolder(absl::StrCat("tests/golden/model_v4_", LearnerName(learner), ".pleat")), EncodeModel(*SmallModelBuilder(learner).Build())).ok());
-  }
-  ASSERT_TRUE(WriteFile(InSourceFolder("tests/golden/model_v4_regional_parts.pleat"), EncodeModel(*MakePartedModel())).ok());
-}
-
 class GoldenModelTest : public ::testing::TestWithParam<std::tuple<Learner, int>> {};
 
 TEST_P(GoldenModelTest, StaysReadable) {
