@@ -10,8 +10,8 @@
 
 #include "pleat/skinning/user_rig.h"
 #include "support/fake_training.h"
-#include "support/random_data.h"
 #include "support/not_a_number.h"
+#include "support/random_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -154,9 +154,10 @@ TEST(CharacterModelTest, UpsamplingOfPartsIsFoldedIntoThem) {
         .value()
         .parameters();
   };
-  detail.basis = {.num_coefficients = 2,
-                  .parts = {{.vertices = {0, 1, 2}, .coefficients = {0}, .basis = basis(3, 1)},
-                            {.vertices = {3, 4, 5, 6, 7}, .coefficients = {1}, .basis = basis(5, 3)}}};
+  detail.basis = {
+      .num_coefficients = 2,
+      .parts = {{.vertices = {0, 1, 2}, .coefficients = {0}, .basis = basis(3, 1)},
+                {.vertices = {3, 4, 5, 6, 7}, .coefficients = {1}, .basis = basis(5, 3)}}};
   parts.detail_model =
       std::make_shared<const DetailModel>(DetailModel::FromParameters(detail).value());
   const Eigen::MatrixXd control = parts.detail_model->basis().Dense();
@@ -168,10 +169,7 @@ TEST(CharacterModelTest, UpsamplingOfPartsIsFoldedIntoThem) {
     const Eigen::MatrixXd own = control(Eigen::seqN(axis, num_control, 3), Eigen::all);
     const Eigen::MatrixXd expected = upsampler.cast<double>() * own;
     const Eigen::MatrixXd found = dense(Eigen::seqN(axis, num_vertices, 3), Eigen::all);
-    EXPECT_LT((found - expected)
-                  .cwiseAbs()
-                  .maxCoeff(),
-              1e-4);
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-4);
   }
 }
 

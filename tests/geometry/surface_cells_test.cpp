@@ -20,9 +20,8 @@ TEST(SurfaceCellsTest, CentersAreSpreadAndNeighborsTouch) {
   double closest = 1e9, farthest = 0;
   for (size_t a = 0; a < 60; ++a) {
     for (size_t b = 0; b < a; ++b) {
-      closest = std::min(closest, (positions.col(cells.centers[a]) -
-                                   positions.col(cells.centers[b]))
-                                      .norm());
+      closest = std::min(
+          closest, (positions.col(cells.centers[a]) - positions.col(cells.centers[b])).norm());
     }
   }
   for (Eigen::Index v = 0; v < positions.cols(); ++v) {

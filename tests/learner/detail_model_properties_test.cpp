@@ -296,8 +296,7 @@ TEST(RegionalMixtureTest, SharesMixTheTwoPredictionsOfOldModels) {
   ASSERT_EQ(scores.cols(), gp.num_components());
   std::vector<GpRegion> regions(2);
   for (GpRegion& region : regions) region = {{{0, 1, 2}, {1, 3}}, .5 * scores};
-  RegionalGpParameters regional =
-      RegionalGp::Train(motion.features, regions).value().parameters();
+  RegionalGpParameters regional = RegionalGp::Train(motion.features, regions).value().parameters();
   regional.regions[1].first_output = 0;
   regional.output_mean = Eigen::VectorXd::Zero(scores.cols());
   const RegionalGp of_regions = RegionalGp::FromParameters(regional).value();

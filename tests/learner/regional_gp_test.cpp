@@ -260,7 +260,8 @@ TEST(RegionalGpTest, FarRowsAreShortenedToTheBound) {
   const Eigen::VectorXd direction = data.inputs.row(13).transpose() - mean;
   const double longest = (data.inputs.rowwise() - mean.transpose()).rowwise().norm().maxCoeff();
   // Every set of the row is beyond its bound from here on.
-  const double beyond = 1.5 * longest / direction.head(3).norm() + 1.5 * longest / direction.tail(3).norm();
+  const double beyond =
+      1.5 * longest / direction.head(3).norm() + 1.5 * longest / direction.tail(3).norm();
   const Eigen::Vector2d at = PredictSum(gp, mean + beyond * direction);
   EXPECT_LT((PredictSum(gp, mean + 10 * beyond * direction) - at).norm(), 1e-4);
   EXPECT_LT((PredictSum(gp, mean + 1e3 * beyond * direction) - at).norm(), 1e-3);

@@ -60,8 +60,7 @@ TEST_F(RegionalTrainingTest, ScoresBecomeTheCoefficientsThatSayTheDetailBest) {
   for (const int t : {0, 31, 59}) {
     const Eigen::VectorXd coefficients =
         training.scores_to_coefficients * details.scores.row(t).transpose();
-    const Eigen::VectorXd detail =
-        basis.Mean().cast<double>() + basis.Dense() * coefficients;
+    const Eigen::VectorXd detail = basis.Mean().cast<double>() + basis.Dense() * coefficients;
     const Eigen::VectorXd truth = motion_.details.row(t).transpose();
     EXPECT_LT((detail - truth).norm(), .02 * truth.norm()) << t;
   }

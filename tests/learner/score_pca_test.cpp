@@ -27,8 +27,7 @@ TEST(ScorePcaTest, StopsWhereTheRestIsSmallEnough) {
   const Eigen::MatrixXd scores =
       RandomMatrix(80, 6, 3) * Eigen::VectorXd::LinSpaced(6, 1, .1).asDiagonal();
   const Eigen::MatrixXd map = RandomMatrix(12, 6, 4);
-  const Eigen::MatrixXd data =
-      (scores.rowwise() - scores.colwise().mean()) * map.transpose();
+  const Eigen::MatrixXd data = (scores.rowwise() - scores.colwise().mean()) * map.transpose();
   const ScorePca pca(scores);
   int last = 7;
   for (const double rest : {0.0, .1, .3, 1.0, 100.0}) {

@@ -52,13 +52,12 @@ TEST_F(SkinEdgesTest, AreTheSkinnedEdgesInTheAxesOfTheirFirstPoint) {
   BlendRotations(figure_.rig.weights, parameters_.vertices, transforms, &rotations);
   for (size_t e = 0; e < parameters_.edges.size(); ++e) {
     const auto [first, second] = parameters_.edges[e];
-    const Eigen::Vector3d along = skinned.col(parameters_.vertices[second]) -
-                                  skinned.col(parameters_.vertices[first]);
-    const Eigen::Vector3d expected =
-        rotations[first].conjugate() * along / parameters_.lengths[e];
-    EXPECT_LT((values.segment<3>(3 * static_cast<Eigen::Index>(e)).cast<double>() - expected)
-                  .norm(),
-              1e-4);
+    const Eigen::Vector3d along =
+        skinned.col(parameters_.vertices[second]) - skinned.col(parameters_.vertices[first]);
+    const Eigen::Vector3d expected = rotations[first].conjugate() * along / parameters_.lengths[e];
+    EXPECT_LT(
+        (values.segment<3>(3 * static_cast<Eigen::Index>(e)).cast<double>() - expected).norm(),
+        1e-4);
   }
 }
 

@@ -84,9 +84,8 @@ std::vector<std::pair<int, float>> SharesOf(const Eigen::VectorXf& distances, do
   const double nearest = distances.minCoeff();
   std::vector<std::pair<int, float>> shares;
   for (Eigen::Index k = 0; k < distances.size(); ++k) {
-    const double share =
-        mean_square > 0 ? std::exp(-.5 * (distances[k] - nearest) / mean_square)
-                        : static_cast<double>(distances[k] == nearest);
+    const double share = mean_square > 0 ? std::exp(-.5 * (distances[k] - nearest) / mean_square)
+                                         : static_cast<double>(distances[k] == nearest);
     if (share >= kSmallest) shares.emplace_back(static_cast<int>(k), static_cast<float>(share));
   }
   std::stable_sort(shares.begin(), shares.end(),

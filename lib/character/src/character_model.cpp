@@ -184,9 +184,9 @@ absl::StatusOr<PartedBasis> UpsampleParts(const RbfUpsampler& upsampler,
     for (const int v : vertices) rows.insert(rows.end(), {3 * v, 3 * v + 1, 3 * v + 2});
     const Eigen::MatrixXd columns =
         UpsampleColumns(upsampler, dense(Eigen::all, part.coefficients));
-    PLEAT_ASSIGN_OR_RETURN(const DetailBasis basis,
-                           DetailBasis::Quantize(mean(rows), columns(rows, Eigen::all),
-                                                 steps(part.coefficients)));
+    PLEAT_ASSIGN_OR_RETURN(
+        const DetailBasis basis,
+        DetailBasis::Quantize(mean(rows), columns(rows, Eigen::all), steps(part.coefficients)));
     part.basis = basis.parameters();
     full.parts.push_back(std::move(part));
   }

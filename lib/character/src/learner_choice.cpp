@@ -113,12 +113,9 @@ Eigen::VectorXd LearningData::FeaturesOf(const DetailModel& model, int t) const 
   return row;
 }
 
-absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
-                                                                const Rig& rig,
-                                                                LearnerChoice learner,
-                                                                const TrainOptions& options,
-                                                                const Progress& progress,
-                                                                DirectGp* direct_gp) {
+absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(
+    const LearningData& data, const Rig& rig, LearnerChoice learner, const TrainOptions& options,
+    const Progress& progress, DirectGp* direct_gp) {
   if (learner == LearnerChoice::kAuto) {
     return absl::InternalError("a learner must be chosen before it can be trained");
   }
@@ -131,19 +128,19 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
   }
   Eigen::MatrixXd features = data.features;
   if (model_options.learner == Learner::kRegional) {
-    const RegionalData regional = learner == LearnerChoice::kRegionalFast
-                                      ? data.regional.WithoutPatches(rig)
-                                      : data.regional;
+    const RegionalData regional =
+        learner == LearnerChoice::kRegionalFast ? data.regional.WithoutPatches(rig) : data.regional;
     model_options.regions = regional.regions;
     model_options.num_part_regions = regional.num_bone_regions;
     if (regional.skin_features) {
-      features.conservativeResize(Eigen::NoChange, data.features.cols() + regional.skin_rows.cols());
+      features.conservativeResize(Eigen::NoChange,
+                                  data.features.cols() + regional.skin_rows.cols());
       features.rightCols(regional.skin_rows.cols()) = regional.skin_rows;
     }
   }
-  PLEAT_ASSIGN_OR_RETURN(DetailModel model,
-                         TrainDetailModel(features, data.details, data.clip_starts, model_options,
-                                          nullptr, progress));
+  PLEAT_ASSIGN_OR_RETURN(
+      DetailModel model,
+      TrainDetailModel(features, data.details, data.clip_starts, model_options, nullptr, progress));
   // That of a regional model has kept one output only.
   if (direct_gp && learner == LearnerChoice::kGp && !*direct_gp) {
     *direct_gp = model.stages().front();
@@ -152,8 +149,8 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
 }
 
 absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Rig& rig,
-                                            const TrainOptions& options,
-                                            double diagonal_m, LearnerValidation* validation,
+                                            const TrainOptions& options, double diagonal_m,
+                                            LearnerValidation* validation,
                                             const Progress& progress) {
   if (options.learner != LearnerChoice::kAuto) return options.learner;
   const int num_rows = static_cast<int>(data.features.rows());

@@ -1,8 +1,8 @@
-// Two kinds of regions, each of which covers the whole body: one region for each bone, and 60 patches
-// of the surface. Bones know which joints matter; patches do not cut a skirt where the rig says that
-// one leg ends and the other begins. The mean of both errs less than either, on every sequence that
-// was measured (docs/performance.md, "Regions"). The numbers of components were chosen on blocks
-// held out inside the training frames.
+// Two kinds of regions, each of which covers the whole body: one region for each bone, and 60
+// patches of the surface. Bones know which joints matter; patches do not cut a skirt where the rig
+// says that one leg ends and the other begins. The mean of both errs less than either, on every
+// sequence that was measured (docs/performance.md, "Regions"). The numbers of components were
+// chosen on blocks held out inside the training frames.
 #include "regional_data.h"
 
 #include <utility>
@@ -36,7 +36,8 @@ RegionalData RegionalData::OfRows(const std::vector<int>& rows) const {
 }
 
 RegionalData RegionalData::WithoutPatches(const Rig& rig) const {
-  RegionalData bones{{regions.begin(), regions.begin() + num_bone_regions}, num_bone_regions, {}, {}};
+  RegionalData bones{
+      {regions.begin(), regions.begin() + num_bone_regions}, num_bone_regions, {}, {}};
   for (DetailRegion& region : bones.regions) region.weights /= kShareOfBones;
   if (!skin_features) return bones;
   bones.skin_features = skin_features->FirstRegions(rig, num_bone_regions);
@@ -47,8 +48,8 @@ RegionalData RegionalData::WithoutPatches(const Rig& rig) const {
 absl::StatusOr<RegionalData> ComputeRegionalData(const Topology& topology, const Rig& rig,
                                                  const PoseTrack& track,
                                                  const std::vector<int>& control_vertices,
-                                                 int num_pose_features,
-                                                 const TrainOptions& options, int num_threads) {
+                                                 int num_pose_features, const TrainOptions& options,
+                                                 int num_threads) {
   std::vector<BodyRegion> body = BoneRegions(rig, control_vertices);
   SetSizes(kBoneComponents, kBoneSkinFeatures, &body);
   std::vector<BodyRegion> patches = PatchRegions(rig, control_vertices, kNumPatches);
@@ -60,9 +61,8 @@ absl::StatusOr<RegionalData> ComputeRegionalData(const Topology& topology, const
       DetailRegions(patches, rig.skeleton, control_vertices, 1 - kShareOfBones, options);
   data.regions.insert(data.regions.end(), more.begin(), more.end());
   body.insert(body.end(), patches.begin(), patches.end());
-  PLEAT_ASSIGN_OR_RETURN(
-      SkinFeatures features,
-      TrainSkinFeatures(topology, rig, track, body, {.num_threads = num_threads}));
+  PLEAT_ASSIGN_OR_RETURN(SkinFeatures features, TrainSkinFeatures(topology, rig, track, body,
+                                                                  {.num_threads = num_threads}));
   if (features.num_features() == 0) return data;
   data.skin_rows = features.ComputeTrack(rig.skeleton, track, num_threads);
   AddSkinFeatureSets(features, num_pose_features, &data.regions);

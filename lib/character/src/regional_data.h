@@ -34,7 +34,7 @@ struct RegionalData {
 absl::StatusOr<RegionalData> ComputeRegionalData(const Topology& topology, const Rig& rig,
                                                  const PoseTrack& track,
                                                  const std::vector<int>& control_vertices,
-                                                 int num_pose_features,
-                                                 const TrainOptions& options, int num_threads);
+                                                 int num_pose_features, const TrainOptions& options,
+                                                 int num_threads);
 
 }  // namespace pleat

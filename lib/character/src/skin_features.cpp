@@ -20,10 +20,9 @@ absl::Status CheckRegion(const SkinFeaturesParameters::Region& region, int num_e
   if (region.weights.rows() != 3 * static_cast<Eigen::Index>(edges.size()) ||
       region.weights.cols() < 1 || region.offset.size() != region.weights.cols() ||
       !region.offset.allFinite()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("skin features: weights are ", region.weights.rows(), " x ",
-                     region.weights.cols(), " with ", region.offset.size(), " offsets for ",
-                     edges.size(), " edges"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "skin features: weights are ", region.weights.rows(), " x ", region.weights.cols(),
+        " with ", region.offset.size(), " offsets for ", edges.size(), " edges"));
   }
   return absl::OkStatus();
 }
@@ -96,9 +95,8 @@ void SkinFeatures::Compute(const BoneTransforms& transforms, Workspace* workspac
       place += 3;
     }
   }
-  const CoefficientFold::Query query{.inputs = w.gathered.data(),
-                                     .outputs = w.features.data(),
-                                     .workspace = &w.projection};
+  const CoefficientFold::Query query{
+      .inputs = w.gathered.data(), .outputs = w.features.data(), .workspace = &w.projection};
   projection_.Apply({&query, 1});
   features = (w.features - offset_).cast<double>();
 }

@@ -70,9 +70,8 @@ RegionEdges EdgesOf(const SkinEdgesParameters& p, const BodyRegion& region,
 }
 
 // The components of one region. values: frames x 3E.
-SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values,
-                                           const RegionEdges& region, int max_components,
-                                           double whitening) {
+SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values, const RegionEdges& region,
+                                           int max_components, double whitening) {
   const auto num_edges = static_cast<Eigen::Index>(region.edges.size());
   Eigen::VectorXd weights(3 * num_edges);
   Eigen::MatrixXd data(values.rows(), 3 * num_edges);

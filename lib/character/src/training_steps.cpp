@@ -126,11 +126,10 @@ absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track
 // for, but no more than a gigabyte of them beyond what the options allow.
 int MaxFineComponents(const TrainOptions& options, Eigen::Index num_details) {
   constexpr Eigen::Index kMaxBytes = Eigen::Index{1} << 30;
-  const Eigen::Index in_memory =
-      kMaxBytes / (static_cast<Eigen::Index>(sizeof(double)) * std::max<Eigen::Index>(num_details, 1));
-  return std::max(options.max_components,
-                  static_cast<int>(std::min<Eigen::Index>(
-                      RegionalBasisOptions().max_components, in_memory)));
+  const Eigen::Index in_memory = kMaxBytes / (static_cast<Eigen::Index>(sizeof(double)) *
+                                              std::max<Eigen::Index>(num_details, 1));
+  return std::max(options.max_components, static_cast<int>(std::min<Eigen::Index>(
+                                              RegionalBasisOptions().max_components, in_memory)));
 }
 
 // Fills in the details and the upsampler of `data`, whose control vertices are known. The order is

@@ -96,19 +96,16 @@ using DirectGp = std::optional<GpRegression>;
 // Trains `learner`, which must not be "auto". The model predicts offsets, whatever coordinates it
 // was trained in. `direct_gp` may be null. Otherwise a learner that needs the direct GP takes it
 // from there, or trains it and leaves it there; all calls must then have the same data and options.
-absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
-                                                                const Rig& rig,
-                                                                LearnerChoice learner,
-                                                                const TrainOptions& options,
-                                                                const Progress& progress,
-                                                                DirectGp* direct_gp = nullptr);
+absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(
+    const LearningData& data, const Rig& rig, LearnerChoice learner, const TrainOptions& options,
+    const Progress& progress, DirectGp* direct_gp = nullptr);
 
 // Returns the learner of `options`; for "auto", the one with the lowest error on contiguous blocks
 // of training frames that it did not see. `validation` may be null; for "auto" it is filled in, in
 // % of diagonal_m.
 absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Rig& rig,
-                                            const TrainOptions& options,
-                                            double diagonal_m, LearnerValidation* validation,
+                                            const TrainOptions& options, double diagonal_m,
+                                            LearnerValidation* validation,
                                             const Progress& progress);
 
 // Makes the model with everything but the errors in its record. diagonal_m: the bounding-box

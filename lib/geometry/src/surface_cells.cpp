@@ -19,8 +19,7 @@ std::vector<int> SpreadVertices(const Eigen::Matrix3Xd& positions, int count) {
     if (!(squared.maxCoeff(&farthest) > 0)) break;
     chosen.push_back(static_cast<int>(farthest));
     const Eigen::Vector3d center = positions.col(farthest);
-    squared = squared.cwiseMin(
-        (positions.colwise() - center).colwise().squaredNorm().transpose());
+    squared = squared.cwiseMin((positions.colwise() - center).colwise().squaredNorm().transpose());
   }
   return chosen;
 }

@@ -21,10 +21,10 @@ absl::StatusOr<CoefficientFold> CoefficientFold::FromBlocks(
     if (rows < 1 || cols < 1 || block.first_input < 0 || block.first_output < 0 ||
         rows > num_inputs - block.first_input || cols > num_outputs - block.first_output ||
         !block.weights.allFinite()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "fold of the regions: a block of ", rows, " x ", cols, " from ", block.first_input,
-          " to ", block.first_output, " is not finite or not within ", num_inputs, " x ",
-          num_outputs));
+      return absl::InvalidArgumentError(
+          absl::StrCat("fold of the regions: a block of ", rows, " x ", cols, " from ",
+                       block.first_input, " to ", block.first_output,
+                       " is not finite or not within ", num_inputs, " x ", num_outputs));
     }
     fold.blocks_.push_back({block.first_input, block.first_output, rows, cols});
     size += static_cast<size_t>(rows * FilledUp(cols));
@@ -56,8 +56,8 @@ void CoefficientFold::Apply(std::span<const Query> queries) const {
   std::array<const float*, kMaxWeightedTogether> factors{};
   std::array<float*, kMaxWeightedTogether> sums{};
   for (size_t begin = 0; begin < queries.size(); begin += kMaxWeightedTogether) {
-    const auto together = queries.subspan(
-        begin, std::min<size_t>(kMaxWeightedTogether, queries.size() - begin));
+    const auto together =
+        queries.subspan(begin, std::min<size_t>(kMaxWeightedTogether, queries.size() - begin));
     for (const Query& query : together) std::fill_n(query.outputs, num_outputs_, 0.f);
     const float* weights = weights_.data();
     for (const Block& block : blocks_) {

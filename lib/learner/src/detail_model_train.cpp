@@ -40,9 +40,8 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
         "a detail model needs a fading confidence in [0, 1] and a rounding of at least 0");
   }
   if (options.num_pose_features < 0 || options.num_pose_features > features.cols()) {
-    return absl::InvalidArgumentError(absl::StrCat(options.num_pose_features,
-                                                   " features of the pose among ",
-                                                   features.cols()));
+    return absl::InvalidArgumentError(
+        absl::StrCat(options.num_pose_features, " features of the pose among ", features.cols()));
   }
   if (options.learner == Learner::kRegional && options.regions.empty()) {
     return absl::InvalidArgumentError("the regional learner needs regions");
@@ -53,16 +52,15 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
         region.rows.front() < 0 || region.rows.back() >= num_details ||
         std::adjacent_find(region.rows.begin(), region.rows.end(), std::greater_equal<>()) !=
             region.rows.end()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "a region has ", region.weights.size(), " weights for ", region.rows.size(),
-          " details, or they do not ascend below ", num_details));
+      return absl::InvalidArgumentError(
+          absl::StrCat("a region has ", region.weights.size(), " weights for ", region.rows.size(),
+                       " details, or they do not ascend below ", num_details));
     }
   }
   if (options.num_part_regions < 0 ||
       options.num_part_regions > static_cast<int>(options.regions.size())) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(options.num_part_regions, " of ", options.regions.size(),
-                     " regions make the parts"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        options.num_part_regions, " of ", options.regions.size(), " regions make the parts"));
   }
   return CheckClipStarts(clip_starts, features.rows());
 }
@@ -128,8 +126,8 @@ class DetailModelTrainer {
                      const DetailModelOptions& options, DetailModelSummary& summary,
                      const Progress& progress)
       : features_(features),
-        pose_features_(features.leftCols(
-            options.num_pose_features > 0 ? options.num_pose_features : features.cols())),
+        pose_features_(features.leftCols(options.num_pose_features > 0 ? options.num_pose_features
+                                                                       : features.cols())),
         fine_details_(details),
         details_(FirstComponents(details, options.max_components, options.pca_energy)),
         clip_starts_(clip_starts),

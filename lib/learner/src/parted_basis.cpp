@@ -40,8 +40,10 @@ absl::Status CheckPart(const PartedBasisParameters::Part& part, int num_vertices
   if (part.coefficients.size() != static_cast<size_t>(part.basis.num_components) ||
       !AscendsBelow(part.coefficients, num_coefficients)) {
     return Refuse(absl::StrCat("a part has ", part.coefficients.size(), " coefficients for ",
-                               part.basis.num_components, " components, or they do not ascend "
-                               "below ", num_coefficients));
+                               part.basis.num_components,
+                               " components, or they do not ascend "
+                               "below ",
+                               num_coefficients));
   }
   return absl::OkStatus();
 }
@@ -104,8 +106,8 @@ PartedBasisParameters PartedBasis::parameters() const {
 size_t PartedBasis::memory_bytes() const {
   size_t bytes = part_of_block_.size() * sizeof(int);
   for (const Part& part : parts_) {
-    bytes += part.basis.memory_bytes() +
-             (part.vertices.size() + part.coefficients.size()) * sizeof(int);
+    bytes +=
+        part.basis.memory_bytes() + (part.vertices.size() + part.coefficients.size()) * sizeof(int);
   }
   return bytes;
 }
@@ -173,14 +175,13 @@ void PartedBasis::ExpandBlocks(std::span<const Query* const> queries, int first_
   for (int block = first_block; block < first_block + num_blocks;) {
     const int number = part_of_block_[block];
     const Part& part = parts_[number];
-    const int end =
-        std::min(first_block + num_blocks, part.first_block + part.basis.num_blocks());
+    const int end = std::min(first_block + num_blocks, part.first_block + part.basis.num_blocks());
     for (size_t q = 0; q < queries.size(); ++q) {
       of_part[q] = &queries[q]->parts[number];
       targets[q] = details[q] + ptrdiff_t{DetailBasis::kBlockDetails} * (block - first_block);
     }
-    part.basis.ExpandBlocks({of_part.data(), queries.size()}, block - part.first_block,
-                            end - block, {targets.data(), queries.size()});
+    part.basis.ExpandBlocks({of_part.data(), queries.size()}, block - part.first_block, end - block,
+                            {targets.data(), queries.size()});
     block = end;
   }
 }

@@ -52,12 +52,12 @@ class RegionalFactors {
   ptrdiff_t num_rows_ = 0;
   // By eight rows, in these by columns in the order of the atoms; zeros after the last row.
   std::vector<double> inputs_;
-  std::vector<int> columns_;       // of all atoms, one after the other
-  std::vector<size_t> atom_ends_;  // in columns_
-  std::vector<int> set_atoms_;     // of all sets, one after the other
-  std::vector<size_t> set_ends_;   // in set_atoms_
+  std::vector<int> columns_;        // of all atoms, one after the other
+  std::vector<size_t> atom_ends_;   // in columns_
+  std::vector<int> set_atoms_;      // of all sets, one after the other
+  std::vector<size_t> set_ends_;    // in set_atoms_
   std::vector<double> set_bounds_;  // the longest row of each set
-  std::vector<Scale> scales_;      // of all regions, one after the other
+  std::vector<Scale> scales_;       // of all regions, one after the other
   std::vector<Region> regions_;
 };
 

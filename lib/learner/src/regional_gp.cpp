@@ -4,8 +4,8 @@
 //   mean_R = output_mean_R + sum_n k_R(x, x_n) alpha_R,n
 //
 // that is N kernel values and one product with an N x r_R matrix for each region. For 17 regions,
-// 600 rows and 64 outputs each, these matrices have .65 million entries, 2.6 MB of floats that every
-// query has to read. Three decisions follow:
+// 600 rows and 64 outputs each, these matrices have .65 million entries, 2.6 MB of floats that
+// every query has to read. Three decisions follow:
 //
 // - All regions share one set of rows and one input scaling (RegionalGp::Train), so the rows are
 //   stored once, and distances over columns that several sets share are summed only once
@@ -41,7 +41,6 @@ namespace {
 absl::Status Refuse(const std::string& what) {
   return absl::InvalidArgumentError("regional GP parameters: " + what);
 }
-
 
 bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false for NaN
 

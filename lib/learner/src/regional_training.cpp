@@ -116,8 +116,7 @@ absl::StatusOr<PartBasis> AddPart(const std::vector<int>& vertices, const Eigen:
   const RegionalBasisOptions& caps = options.regional_basis;
   PartBasis part{RowsOf(vertices, mean.size()), {}, training->basis.num_coefficients};
   const Eigen::MatrixXd own = basis(part.rows, Eigen::all);
-  part.components =
-      pca.Compute(own, caps.max_part_components, caps.part_rest * detail_rms);
+  part.components = pca.Compute(own, caps.max_part_components, caps.part_rest * detail_rms);
   const Eigen::MatrixXd& components = part.components.basis;
   PLEAT_ASSIGN_OR_RETURN(
       const DetailBasis rounded,
@@ -137,8 +136,8 @@ absl::StatusOr<PartBasis> AddPart(const std::vector<int>& vertices, const Eigen:
 
 // Adds the blocks that express the basis of a region in those of the parts. A region whose skinning
 // weights have long tails moves far parts by next to nothing, a root mean square of less than
-// `smallest_rms` per entry, and has no block for them. first_input: its first output of the regional
-// GP.
+// `smallest_rms` per entry, and has no block for them. first_input: its first output of the
+// regional GP.
 void AddFold(const std::vector<PartBasis>& parts, int first_input, const RegionBasis& region,
              double smallest_rms, std::vector<CoefficientFoldBlock>* fold) {
   const std::vector<Eigen::Index>& rows = region.rows;
@@ -158,29 +157,27 @@ void AddFold(const std::vector<PartBasis>& parts, int first_input, const RegionB
     const Eigen::MatrixXd moved = region.basis(in_region, Eigen::all);
     const double square = (moved * region.rms.asDiagonal()).squaredNorm();
     if (square < smallest_rms * smallest_rms * double(part.rows.size())) continue;
-    const Eigen::MatrixXd product =
-        moved.transpose() * part.components.basis(in_part, Eigen::all);
+    const Eigen::MatrixXd product = moved.transpose() * part.components.basis(in_part, Eigen::all);
     fold->push_back({first_input, part.first_coefficient, product.cast<float>()});
   }
 }
 
 // Root mean square of the details, all entries, where scores are uncorrelated.
 double DetailRms(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& scores) {
-  const Eigen::VectorXd variances = (scores.rowwise() - scores.colwise().mean())
-                                        .colwise()
-                                        .squaredNorm()
-                                        .transpose() /
-                                    double(scores.rows());
+  const Eigen::VectorXd variances =
+      (scores.rowwise() - scores.colwise().mean()).colwise().squaredNorm().transpose() /
+      double(scores.rows());
   return std::sqrt((basis * variances.cwiseSqrt().asDiagonal()).squaredNorm() /
                    double(basis.rows()));
 }
 
 }  // namespace
 
-absl::StatusOr<RegionalTraining> TrainRegional(
-    const Eigen::MatrixXd& features, const PrincipalComponents& details,
-    const Eigen::VectorXd& input_scales, const DetailModelOptions& options,
-    const Progress& progress) {
+absl::StatusOr<RegionalTraining> TrainRegional(const Eigen::MatrixXd& features,
+                                               const PrincipalComponents& details,
+                                               const Eigen::VectorXd& input_scales,
+                                               const DetailModelOptions& options,
+                                               const Progress& progress) {
   const ScorePca pca(details.scores);
   const double own_rms = DetailRms(details.basis, details.scores);
   std::vector<GpRegion> regions;
@@ -188,8 +185,9 @@ absl::StatusOr<RegionalTraining> TrainRegional(
   for (const DetailRegion& region : options.regions) {
     bases.push_back(BasisOfRegion(region, details, pca, options.regional_basis, own_rms));
     regions.push_back({region.feature_sets, std::move(bases.back().outputs)});
-    PLEAT_RETURN_IF_ERROR(progress.Stage("regions", 0, .1).Report(
-        static_cast<double>(bases.size()) / static_cast<double>(options.regions.size())));
+    PLEAT_RETURN_IF_ERROR(progress.Stage("regions", 0, .1)
+                              .Report(static_cast<double>(bases.size()) /
+                                      static_cast<double>(options.regions.size())));
   }
   RegionalGpOptions gp_options = options.regional;
   gp_options.input_scales.setOnes(features.cols());

@@ -23,9 +23,10 @@ struct RegionalTraining {
 
 // features: N x D; details: N scores of K components. input_scales: of the leading features, as the
 // direct GP has learned them; the others keep their own. Errors are those of TrainDetailModel.
-absl::StatusOr<RegionalTraining> TrainRegional(
-    const Eigen::MatrixXd& features, const PrincipalComponents& details,
-    const Eigen::VectorXd& input_scales, const DetailModelOptions& options,
-    const Progress& progress);
+absl::StatusOr<RegionalTraining> TrainRegional(const Eigen::MatrixXd& features,
+                                               const PrincipalComponents& details,
+                                               const Eigen::VectorXd& input_scales,
+                                               const DetailModelOptions& options,
+                                               const Progress& progress);
 
 }  // namespace pleat

@@ -27,8 +27,8 @@ class ScorePca {
   double num_rows_ = 0;
 };
 
-// The first components of `components`: as many as the share min_energy of all energy needs, at most
-// max_components.
+// The first components of `components`: as many as the share min_energy of all energy needs, at
+// most max_components.
 PrincipalComponents FirstComponents(const PrincipalComponents& components, int max_components,
                                     double min_energy);
 

@@ -18,14 +18,14 @@ absl::Status CheckParameters(const SkinEdgesParameters& p, int num_vertices) {
     }
   }
   if (p.lengths.size() != p.edges.size()) {
-    return absl::InvalidArgumentError(absl::StrCat("skin edges: ", p.lengths.size(),
-                                                   " lengths for ", p.edges.size(), " edges"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("skin edges: ", p.lengths.size(), " lengths for ", p.edges.size(), " edges"));
   }
   const int num_points = static_cast<int>(p.vertices.size());
   for (size_t e = 0; e < p.edges.size(); ++e) {
     const auto [first, second] = p.edges[e];
-    if (first < 0 || first >= num_points || second < 0 || second >= num_points ||
-        first == second || !(p.lengths[e] > 0) || !std::isfinite(p.lengths[e])) {
+    if (first < 0 || first >= num_points || second < 0 || second >= num_points || first == second ||
+        !(p.lengths[e] > 0) || !std::isfinite(p.lengths[e])) {
       return absl::InvalidArgumentError(
           absl::StrCat("skin edges: edge ", e, " from point ", first, " to ", second, " of ",
                        num_points, " with length ", p.lengths[e], " is out of range"));
@@ -40,9 +40,8 @@ absl::StatusOr<SkinEdges> SkinEdges::Create(const Rig& rig, SkinEdgesParameters 
   PLEAT_RETURN_IF_ERROR(CheckParameters(parameters, rig.weights.num_vertices()));
   std::vector<VertexInfluences> influences;
   for (const int v : parameters.vertices) influences.push_back(rig.weights.vertex(v));
-  PLEAT_ASSIGN_OR_RETURN(
-      SkinWeights weights,
-      SkinWeights::Create(rig.skeleton.num_joints(), std::move(influences)));
+  PLEAT_ASSIGN_OR_RETURN(SkinWeights weights,
+                         SkinWeights::Create(rig.skeleton.num_joints(), std::move(influences)));
   const Eigen::Matrix3Xd rest = rig.rest_positions(Eigen::all, parameters.vertices);
   return SkinEdges(std::move(parameters), std::move(weights), rest);
 }

@@ -6,8 +6,9 @@
 //   regional  features -> coefficients of every region's own basis -> coefficients
 //   detail  = mean + basis * coefficients
 //
-// The confidence of `regional` is that of a direct GP beside it. Models before version 4 of the file
-// have regions that share one basis and mix with the direct GP; they are read, no longer trained.
+// The confidence of `regional` is that of a direct GP beside it. Models before version 4 of the
+// file have regions that share one basis and mix with the direct GP; they are read, no longer
+// trained.
 //
 // Source: the paper, section IV-B (prediction); docs/method/prediction.md#confidence.
 #pragma once
@@ -46,7 +47,7 @@ struct DetailRegion {
   std::vector<int> rows;    // entries of Y_M that the region has a share in, ascending
   Eigen::VectorXd weights;  // the share of each; over all regions the sum of an entry's shares is 1
   std::vector<std::vector<int>> feature_sets;  // columns of Y_S, as in GpRegion
-  int max_components = 0;  // of its basis; 0: as RegionalBasisOptions has it
+  int max_components = 0;                      // of its basis; 0: as RegionalBasisOptions has it
 };
 
 // The bases of the regional learner. A region's own basis spans its share of the details; a part of
@@ -69,10 +70,10 @@ std::string LearnerName(Learner learner);
 
 struct DetailModelOptions {
   Learner learner = Learner::kGp;
-  GpRegressionOptions gp{};             // of the direct learner
-  SharedGplvmOptions sgplvm{};          // of the shared GPLVM
-  RidgeOptions ridge{};                 // of the linear learner
-  RegionalGpOptions regional{};         // of the regional learner
+  GpRegressionOptions gp{};      // of the direct learner
+  SharedGplvmOptions sgplvm{};   // of the shared GPLVM
+  RidgeOptions ridge{};          // of the linear learner
+  RegionalGpOptions regional{};  // of the regional learner
   RegionalBasisOptions regional_basis{};
   std::vector<DetailRegion> regions{};  // what it needs; may be empty for the others
   int num_part_regions = 0;             // so many leading ones make the parts; 0: all
@@ -101,8 +102,8 @@ struct DetailModelOptions {
 
   // Below this confidence the prediction fades smoothly to the mean detail. The mean of a Gaussian
   // process falls back by itself; this stops what its linear part could do far away. A narrower
-  // band pops: with .02 a detail could be gone within a fifth of a degree (docs/performance.md). The
-  // regional learner never fades: its rows are bounded instead (RegionalGpOptions).
+  // band pops: with .02 a detail could be gone within a fifth of a degree (docs/performance.md).
+  // The regional learner never fades: its rows are bounded instead (RegionalGpOptions).
   double fade_confidence = .3;
 };
 

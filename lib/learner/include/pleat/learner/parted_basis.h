@@ -1,5 +1,6 @@
 // A basis of details in parts: every vertex belongs to one part of the body, and the details of a
-// part are spanned by few components of its own, since a sleeve takes far fewer than the whole body.
+// part are spanned by few components of its own, since a sleeve takes far fewer than the whole
+// body.
 //
 //   detail of part p = mean_p + basis_p c(coefficients of p)
 //
@@ -52,8 +53,8 @@ class PartedBasis {
   int num_parts() const { return static_cast<int>(parts_.size()); }
   size_t memory_bytes() const;
 
-  // Which vertex every lane of every block holds, kLanes x num_blocks() numbers; -1 where a block is
-  // only filled up. Empty: the vertices follow each other in their order.
+  // Which vertex every lane of every block holds, kLanes x num_blocks() numbers; -1 where a block
+  // is only filled up. Empty: the vertices follow each other in their order.
   std::vector<int> LaneVertices() const;
 
   Eigen::VectorXf Mean() const;   // D_M

@@ -49,8 +49,8 @@ class SkinEdges {
   SkinEdges(SkinEdgesParameters parameters, SkinWeights weights, Eigen::Matrix3Xd rest);
 
   SkinEdgesParameters parameters_;
-  SkinWeights weights_;         // of the points
-  Eigen::Matrix3Xd rest_;       // 3 x P
+  SkinWeights weights_;          // of the points
+  Eigen::Matrix3Xd rest_;        // 3 x P
   std::vector<int> all_points_;  // 0 to P - 1
 };
 
