@@ -123,6 +123,7 @@ TEST(PartedBasisTest, ParametersRoundTripAndQueriesDoNotAllocate) {
   const Eigen::VectorXf coefficients = RandomMatrix(kNumCoefficients, 1, 5).col(0).cast<float>();
   Eigen::VectorXf detail(basis.num_details());
   basis.SetCoefficients(coefficients, &query);
+  basis.Expand(query, detail);
   const long before = NumAllocations();
   basis.SetCoefficients(coefficients, &query);
   basis.Expand(query, detail);
