@@ -63,11 +63,19 @@ RegionalFactors::RegionalFactors(const RegionalGpParameters& parameters)
     set_ends_.push_back(set_atoms_.size());
   }
   const ptrdiff_t num_chunks = (num_rows_ + kLanes - 1) / kLanes;
-  inputs_.assign(num_chunks * kLanes * columns_.size(), 0);
+  const size_t chunk_size = kLanes * (columns_.size() + atom_ends_.size());
+  inputs_.assign(static_cast<size_t>(num_chunks) * chunk_size, 0);
   for (ptrdiff_t n = 0; n < num_rows_; ++n) {
-    for (size_t c = 0; c < columns_.size(); ++c) {
-      inputs_[(n / kLanes * columns_.size() + c) * kLanes + n % kLanes] =
-          parameters.inputs(n, columns_[c]);
+    double* const lane = inputs_.data() + static_cast<size_t>(n / kLanes) * chunk_size + n % kLanes;
+    size_t c = 0;
+    for (size_t a = 0; a < atom_ends_.size(); ++a) {
+      double square = 0;
+      for (; c < atom_ends_[a]; ++c) {
+        const double value = parameters.inputs(n, columns_[c]);
+        lane[c * kLanes] = value;
+        square += value * value;
+      }
+      lane[(columns_.size() + a) * kLanes] = square;
     }
   }
 }
@@ -116,17 +124,19 @@ struct RegionalFactorsKernel {
 
   // Of the rows of one chunk: the exponents of all scales and the products of all sets.
   static PLEAT_ALWAYS_INLINE void Sums(const RegionalFactors& f, const double* inputs,
-                                       const double* row, const Shortening* shortenings,
-                                       double* atoms, double* products, double* exponents) {
+                                       const double* row, const double* atom_squares,
+                                       const Shortening* shortenings, double* atoms,
+                                       double* products, double* exponents) {
+    // |x - x_n|^2 = |x|^2 + |x_n|^2 - 2 x . x_n: of every column only the product is needed.
+    const double* squares = inputs + kLanes * f.columns_.size();
     size_t c = 0;
     for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
-      Lanes distance = {}, product = {};
+      Lanes product = {};
       for (; c < f.atom_ends_[a]; ++c) {
-        const Lanes x = *reinterpret_cast<const Lanes*>(inputs + c * kLanes);
-        const double value = row[f.columns_[c]];
-        distance += (x - value) * (x - value);
-        product += value * x;
+        product += row[f.columns_[c]] * *reinterpret_cast<const Lanes*>(inputs + c * kLanes);
       }
+      const Lanes square = *reinterpret_cast<const Lanes*>(squares + a * kLanes);
+      const Lanes distance = atom_squares[a] + square - 2 * product;
       At(atoms, 2 * a) = distance;
       At(atoms, 2 * a + 1) = product;
     }
@@ -139,8 +149,10 @@ struct RegionalFactorsKernel {
         product += At(atoms, 2 * f.set_atoms_[i] + 1);
       }
       const Shortening& shortening = shortenings[set];
-      At(distances, set) =
+      const Lanes shortened =
           distance + shortening.distance_more + shortening.distance_slope * product;
+      // Rounding may leave less than nothing, which a narrow kernel would blow up.
+      At(distances, set) = shortened > 0 ? shortened : Lanes{};
       At(products, set) = shortening.factor * product;
     }
     for (size_t s = 0; s < f.scales_.size(); ++s) {
@@ -174,10 +186,10 @@ struct RegionalFactorsKernel {
     const auto exp_in_place = ChosenDenseOps().exp_in_place;
     const double* inputs = f.inputs_.data();
     for (ptrdiff_t n = 0; n < f.num_rows_; n += kLanes) {
-      Sums(f, inputs, row, shortenings, atoms, products, exponents);
+      Sums(f, inputs, row, atom_squares, shortenings, atoms, products, exponents);
       exp_in_place(exponents, kLanes * static_cast<ptrdiff_t>(f.scales_.size()));
       Kernels(f, products, exponents, std::min(kLanes, f.num_rows_ - n), factors + n);
-      inputs += kLanes * f.columns_.size();
+      inputs += kLanes * (f.columns_.size() + f.atom_ends_.size());
     }
   }
 };
