@@ -132,9 +132,8 @@ absl::StatusOr<FrameParameters> FromProto(const v1::FrameParameters& message) {
     if (message.coefficients_size() > 0) {
       return absl::InvalidArgumentError("parameters have plain and packed coefficients");
     }
-    PLEAT_ASSIGN_OR_RETURN(
-        parameters.coefficients,
-        UnpackCoefficients(message.packed_coefficients(), kMaxWireCoefficients));
+    PLEAT_ASSIGN_OR_RETURN(parameters.coefficients,
+                           UnpackCoefficients(message.packed_coefficients(), kMaxWireCoefficients));
     return parameters;
   }
   parameters.coefficients =
