@@ -50,8 +50,8 @@ class RegionalFactors {
   friend struct RegionalFactorsKernel;
 
   ptrdiff_t num_rows_ = 0;
-  // By eight rows, in these by columns in the order of the atoms, then the squared norm of the row in
-  // each atom; zeros after the last row.
+  // By eight rows, in these by columns in the order of the atoms, then the squared norm of the row
+  // in each atom; zeros after the last row.
   std::vector<double> inputs_;
   std::vector<int> columns_;        // of all atoms, one after the other
   std::vector<size_t> atom_ends_;   // in columns_
