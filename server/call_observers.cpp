@@ -23,6 +23,7 @@ void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, Toke
                    .token_id = facts.token_id,
                    .ids = facts.ids,
                    .trace_id = facts.trace_id,
+                   .request_id = facts.request_id,
                    .status = absl::StatusCodeToString(status),
                    .seconds = seconds};
   // Whoever was not let in may have shown an id of somebody else.
@@ -65,14 +66,16 @@ CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegi
             if (audit_log != nullptr && (facts.audited || refused)) {
               Audit(facts, status, seconds, tokens, audit_log);
             }
-          }};
+          },
+          [metrics](const char* step, double seconds) { metrics->FrameStep(step, seconds); }};
 }
 
 void LogJob(const JobInfo& job) {
   const bool failed = job.state == JobState::kFailed;
-  spdlog::log(failed ? spdlog::level::warn : spdlog::level::info, "{} '{}' is {}{}{}", job.id,
-              job.name, JobStateName(job.state), job.error.ok() ? "" : ": ",
-              std::string(job.error.message()));
+  spdlog::log(failed ? spdlog::level::warn : spdlog::level::info,
+              "{} '{}' is {}{}{} [project {}{}{}]", job.id, job.name, JobStateName(job.state),
+              job.error.ok() ? "" : ": ", std::string(job.error.message()), job.project,
+              job.request_id.empty() ? "" : ", created as ", job.request_id);
 }
 
 void WarnBeforeExpiry(std::optional<int64_t> certificate_expiry) {

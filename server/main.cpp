@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "call_observers.h"
 #include "options.h"
@@ -45,28 +46,39 @@ absl::Status ServeMetrics(const std::string& address, LocalCharacterService* ser
   return status;
 }
 
-int Run(const ServerOptions& options) {
-  if (const absl::Status status = ConfigureLogging(options.logging); !status.ok()) {
-    std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
-    return 2;
-  }
-  RaiseDescriptorLimit();
-  // Every thread blocks these signals, so that only sigwait below sees them.
+// Every thread blocks these signals, so that only sigwait sees them.
+sigset_t BlockSignals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  return signals;
+}
 
-  LocalServiceOptions service_options = options.service;
-  service_options.on_problem = [](const std::string& problem) { spdlog::error("{}", problem); };
-  service_options.on_job_state = LogJob;
-  service_options.on_removed = [](const std::string& sentence) { spdlog::info("{}", sentence); };
-  absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
-      LocalCharacterService::Open(service_options);
-  if (!service.ok()) return Fail(service.status());
+absl::StatusOr<std::unique_ptr<LocalCharacterService>> OpenService(LocalServiceOptions options,
+                                                                   ServerMetrics* metrics) {
+  options.on_problem = [](const std::string& problem) { spdlog::error("{}", problem); };
+  options.on_job_state = LogJob;
+  options.on_job_stage = [metrics](const std::string& stage, double seconds) {
+    metrics->JobStage(stage, seconds);
+  };
+  options.on_removed = [](const std::string& sentence) { spdlog::info("{}", sentence); };
+  return LocalCharacterService::Open(std::move(options));
+}
+
+int Run(const ServerOptions& options) {
+  if (const absl::Status status = ConfigureLogging(options.logging); !status.ok()) {
+    std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
+    return 2;
+  }
+  RaiseDescriptorLimit();
+  const sigset_t signals = BlockSignals();
   ServerMetrics metrics;
+  absl::StatusOr<std::unique_ptr<LocalCharacterService>> service =
+      OpenService(options.service, &metrics);
+  if (!service.ok()) return Fail(service.status());
   absl::StatusOr<std::unique_ptr<TokenRegistry>> tokens = OpenTokens(options.token_file);
   if (!tokens.ok()) return Fail(tokens.status());
   absl::StatusOr<std::unique_ptr<AuditLog>> audit_log = OpenAuditLog(options.audit_log);
@@ -75,8 +87,12 @@ int Run(const ServerOptions& options) {
       ObserveCalls(&metrics, audit_log->get(), tokens->get(), options.slow_call_seconds);
   GrpcServerOptions grpc = options.grpc;
   grpc.pose_executor = (*service)->poses().executor();
+  grpc.memory = &(*service)->memory().all;
   grpc.call_listener = &calls;
   grpc.tokens = tokens->get();
+  grpc.of_project = [&service](const std::string& project) {
+    return &(*service)->OfProject(project);
+  };
   grpc.probe = [&service] { return (*service)->ProbeDisk(); };
   absl::StatusOr<std::unique_ptr<GrpcServer>> server = GrpcServer::Start(service->get(), grpc);
   if (!server.ok()) return Fail(server.status());

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <sstream>
 
+#include "machine_memory.h"
 #include "pleat/base/status.h"
 #include "pleat/identity/token_file.h"
 
@@ -33,11 +34,16 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
                   "Live poses of one model that are evaluated together; 1 = none")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  app->add_option("--cache-bytes", service->cache_bytes, "Memory for models (e.g. 2GB)")
+  MemoryLimits* memory = &service->memory;
+  app->add_option("--memory-bytes", memory->memory_bytes,
+                  "Memory for everything: models, decoders, encoders, uploads, streams, requests "
+                  "and jobs (e.g. 8GB) [three quarters of this machine's or container's]")
+      ->transform(CLI::AsSizeValue(false));
+  app->add_option("--cache-bytes", memory->cache_bytes, "Of this, for models (e.g. 2GB)")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
-  app->add_option("--decode-bytes", service->decode_bytes,
-                  "Memory for decoding compressed sequences, all calls together")
+  app->add_option("--decode-bytes", memory->decode_bytes,
+                  "Of this, for decoding compressed sequences, all calls together")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   app->add_option("--reserve-bytes", service->reserve_bytes, "Kept free on the disk")
@@ -57,6 +63,24 @@ void AddServiceFlags(CLI::App* app, LocalServiceOptions* service, double* scrub_
   app->add_option("--max-frames", limits->max_frames, "Most frames of a sequence or clip")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
+}
+
+void AddProjectFlags(CLI::App* app, ProjectLimits* project) {
+  app->add_option("--project-bytes", project->max_bytes,
+                  "Stored files of one project (pleat token create --project); 0 = no limit")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+  app->add_option("--project-queued-jobs", project->max_queued_jobs,
+                  "Jobs of one project that may wait; 0 = no limit")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--project-frames-per-second", project->frames_per_second,
+                  "Frames that one project may have evaluated or decoded; 0 = no limit")
+      ->check(CLI::Range(0., 1e9))
+      ->capture_default_str();
+  app->add_flag("--share-content", project->share_content,
+                "End an upload at once when another project has the same content; whoever knows "
+                "the SHA-256 of a file can then have it");
 }
 
 constexpr double kSweepSeconds = 60;
@@ -102,7 +126,7 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   app->add_option("--request-bytes", grpc->request_bytes,
-                  "Memory for the poses of clips, all calls together")
+                  "Of all memory, for requests such as the poses of clips")
       ->transform(CLI::AsSizeValue(false))
       ->capture_default_str();
   app->add_option("--max-connections", grpc->connections.max_connections, "Of all clients together")
@@ -111,6 +135,18 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
   app->add_option("--max-connections-per-peer", grpc->connections.max_connections_per_peer,
                   "Of one address")
       ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app->add_option("--max-connection-idle-seconds", grpc->connections.max_idle_seconds,
+                  "A connection without calls is closed after this")
+      ->check(CLI::Range(1., 1e6))
+      ->capture_default_str();
+  app->add_option("--max-connection-age-seconds", grpc->connections.max_age_seconds,
+                  "An older connection takes no more calls; 0 = for ever")
+      ->check(CLI::Range(0., 1e6))
+      ->capture_default_str();
+  app->add_option("--max-connection-age-grace-seconds", grpc->connections.max_age_grace_seconds,
+                  "How long its calls may go on then")
+      ->check(CLI::Range(0., 1e6))
       ->capture_default_str();
   app->add_option("--tls-cert", grpc->tls.certificate,
                   "PEM file with the server's certificate chain")
@@ -154,11 +190,13 @@ absl::Status CheckAccess(ServerOptions* options) {
 CommandLine ParseCommandLine(int argc, const char* const* argv) {
   CommandLine line;
   line.options.grpc.listen = "127.0.0.1:7320";
+  line.options.service.memory.memory_bytes = MachineMemoryBytes() / 4 * 3;
   CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
   app.set_version_flag("--version", PLEAT_VERSION);
   AddNetworkFlags(&app, &line.options.grpc);
   double scrub_hours = kScrubHours;
   AddServiceFlags(&app, &line.options.service, &scrub_hours);
+  AddProjectFlags(&app, &line.options.service.project);
   RetentionFlags retention;
   AddRetentionFlags(&app, &line.options.service, &retention);
   std::string job_priority = "idle";

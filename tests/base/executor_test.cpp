@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <future>
+#include <latch>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -74,6 +76,40 @@ TEST(ExecutorTest, FlowsOnManyThreadsRunEverythingOnce) {
     for (std::thread& poster : posters) poster.join();
   }
   EXPECT_EQ(count, 8000);
+}
+
+TEST(ExecutorTest, KindsShareTheThreadsFourToOne) {
+  std::string order;
+  {
+    Executor executor(1);
+    std::latch begun(1), start(1);
+    executor.Post([&] {
+      begun.count_down();
+      start.wait();
+    });
+    begun.wait();  // the first turn is not one of those that are counted
+    for (int i = 0; i < 5; ++i) {
+      executor.Post([&] { order += 'b'; }, 0, TurnKind::kBulk);
+    }
+    for (int i = 0; i < 10; ++i) executor.Post([&] { order += 'i'; });
+    start.count_down();
+  }
+  EXPECT_EQ(order, "iiiibiiiibiibbb");
+}
+
+TEST(ExecutorTest, FlowsTakeTurnsWithinTheirKind) {
+  std::string order;
+  {
+    Executor executor(1);
+    std::latch start(1);
+    executor.Post([&] { start.wait(); });
+    for (int i = 0; i < 3; ++i) {
+      executor.Post([&] { order += 'a'; }, 7, TurnKind::kBulk);
+    }
+    executor.Post([&] { order += 'b'; }, 8, TurnKind::kBulk);
+    start.count_down();
+  }
+  EXPECT_EQ(order, "abaa");
 }
 
 }  // namespace

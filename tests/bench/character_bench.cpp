@@ -51,8 +51,7 @@ void EvaluatePose(benchmark::State& state, const std::string& learner) {
     if (!status.ok()) state.SkipWithError(status.ToString().c_str());
     t = t + 1 < track.num_frames() ? t + 1 : 1;
   }
-  state.counters["components"] = model->full_basis().num_components();
-  state.counters["planes"] = model->full_basis().num_planes();
+  state.counters["components"] = model->full_basis().num_coefficients();
   state.counters["model_MB"] = static_cast<double>(model->memory_bytes()) / 1e6;
 }
 BENCHMARK_CAPTURE(EvaluatePose, gp, "gp")->Unit(benchmark::kMicrosecond);

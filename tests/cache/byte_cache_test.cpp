@@ -13,6 +13,7 @@
 namespace pleat {
 namespace {
 
+using ::testing::_;
 using ::testing::HasSubstr;
 using Cache = ByteCache<std::string>;
 
@@ -73,8 +74,9 @@ TEST(ByteCacheTest, RefusesWhatDoesNotFit) {
   EXPECT_THAT(cache.Get("large", large.loader()),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("in use")));
   CountingLoader huge{.bytes = 31};
-  EXPECT_THAT(cache.Get("huge", huge.loader()),
-              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("whole cache")));
+  EXPECT_THAT(
+      cache.Get("huge", huge.loader()),
+      HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("the operator must allow more")));
   EXPECT_EQ(cache.stats().used_bytes, 20u);
 }
 
@@ -86,15 +88,54 @@ TEST(ByteCacheTest, GivesMemoryBack) {
     const Cache::Handle handle = cache.Get("a", counting.loader()).value();
     watched = handle;
     cache.Erase("a");
-    EXPECT_EQ(cache.stats().used_bytes, 0u);
-    EXPECT_EQ(*handle, "value of a");  // still ours
+    EXPECT_EQ(cache.stats().used_bytes, 10u);  // the memory is in use, so it is counted
+    EXPECT_EQ(*handle, "value of a");          // still ours
   }
+  EXPECT_EQ(cache.stats().used_bytes, 0u);
   EXPECT_TRUE(watched.expired());
   for (int round = 0; round < 1000; ++round) {
     ASSERT_TRUE(cache.Get(std::to_string(round), counting.loader()).ok());
   }
   EXPECT_EQ(cache.stats().num_entries, 100);
   EXPECT_EQ(cache.stats().evictions, 900u);
+}
+
+TEST(ByteCacheTest, GivesWhatNobodyUsesToOthersWhoNeedMemory) {
+  MemoryBudget all(100, "--memory-bytes");
+  Cache cache(100, &all);
+  all.AddReclaimer([&cache](uint64_t bytes) { cache.Reclaim(bytes); });
+  CountingLoader counting;
+  const Cache::Handle held = cache.Get("held", counting.loader()).value();
+  for (int i = 0; i < 9; ++i) {
+    ASSERT_TRUE(cache.Get(std::to_string(i), counting.loader()).ok());
+  }
+  EXPECT_EQ(all.used_bytes(), 100u);
+  {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const Reservation job, all.Reserve(45, "a job"));
+    EXPECT_EQ(cache.stats().num_entries, 5);  // the least recently used have gone
+    EXPECT_THAT(all.Reserve(60, "another"), HasStatus(absl::StatusCode::kResourceExhausted, _));
+    EXPECT_EQ(cache.stats().num_entries, 1);  // the one that is in use
+    // The cache makes its own room first and is refused when that does not suffice.
+    ASSERT_TRUE(cache.Get("new", counting.loader()).ok());
+    CountingLoader large{.bytes = 50};
+    EXPECT_THAT(cache.Get("large", large.loader()),
+                HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("--memory-bytes")));
+  }
+  EXPECT_EQ(all.used_bytes(), cache.stats().used_bytes);
+}
+
+TEST(ByteCacheTest, AHandleMayOutliveTheCache) {
+  MemoryBudget all(100, "--memory-bytes");
+  Cache::Handle handle;
+  {
+    Cache cache(100, &all);
+    CountingLoader counting;
+    handle = cache.Get("a", counting.loader()).value();
+  }
+  EXPECT_EQ(*handle, "value of a");
+  EXPECT_EQ(all.used_bytes(), 10u);
+  handle.reset();
+  EXPECT_EQ(all.used_bytes(), 0u);
 }
 
 TEST(ByteCacheTest, ErrorsAreNotKept) {
@@ -140,7 +181,7 @@ TEST(ByteCacheTest, ALoadOfAnErasedKeyIsHandedOutButNotKept) {
   });
   EXPECT_EQ(**handle, "x");
   EXPECT_EQ(cache.stats().num_entries, 0);
-  EXPECT_EQ(cache.stats().used_bytes, 0u);
+  EXPECT_EQ(cache.stats().used_bytes, 1u);  // it is in use
 }
 
 TEST(ByteCacheTest, StaysWithinCapacityUnderConcurrentUse) {

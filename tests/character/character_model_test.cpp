@@ -11,6 +11,7 @@
 #include "pleat/skinning/user_rig.h"
 #include "support/fake_training.h"
 #include "support/not_a_number.h"
+#include "support/random_data.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -127,6 +128,49 @@ TEST(CharacterModelTest, UpsamplingIsFoldedIntoTheBasis) {
             1e-6);
   EXPECT_LT((upsampled->full_basis().Dense() - full->full_basis().Dense()).cwiseAbs().maxCoeff(),
             1e-4);
+}
+
+// With parts, a vertex between them is moved by the components of all that it is interpolated from.
+TEST(CharacterModelTest, UpsamplingOfPartsIsFoldedIntoThem) {
+  const auto full = MakeFakeModel(MakeSwayingTube(2), {});
+  Parts parts = full->parts();
+  const int num_vertices = full->num_vertices(), num_control = 8;
+  std::vector<int32_t> starts = {0}, columns;
+  std::vector<float> values;
+  for (int v = 0; v < num_vertices; ++v) {
+    const int first = v % (num_control - 1);
+    columns.insert(columns.end(), {first, first + 1});
+    values.insert(values.end(), {.75f, .25f});
+    starts.push_back(static_cast<int32_t>(columns.size()));
+  }
+  parts.upsampler = RbfUpsampler::FromRows(num_control, starts, columns, values).value();
+  parts.control_vertices = {0, 1, 2, 3, 4, 5, 6, 7};
+  DetailModelParameters detail = parts.detail_model->parameters();
+  const auto basis = [](int num_control_vertices, int seed) {
+    return DetailBasis::Quantize(
+               RandomMatrix(3 * num_control_vertices, 1, seed).col(0).cast<float>(),
+               RandomMatrix(3 * num_control_vertices, 1, seed + 1),
+               Eigen::VectorXd::Constant(1, 1e-6))
+        .value()
+        .parameters();
+  };
+  detail.basis = {
+      .num_coefficients = 2,
+      .parts = {{.vertices = {0, 1, 2}, .coefficients = {0}, .basis = basis(3, 1)},
+                {.vertices = {3, 4, 5, 6, 7}, .coefficients = {1}, .basis = basis(5, 3)}}};
+  parts.detail_model =
+      std::make_shared<const DetailModel>(DetailModel::FromParameters(detail).value());
+  const Eigen::MatrixXd control = parts.detail_model->basis().Dense();
+  const Eigen::MatrixXf upsampler = parts.upsampler->matrix();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto upsampled, CharacterModel::Create(std::move(parts)));
+  EXPECT_EQ(upsampled->full_basis().num_parts(), 3);  // of the first, of the second, of both
+  const Eigen::MatrixXd dense = upsampled->full_basis().Dense();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::MatrixXd own = control(Eigen::seqN(axis, num_control, 3), Eigen::all);
+    const Eigen::MatrixXd expected = upsampler.cast<double>() * own;
+    const Eigen::MatrixXd found = dense(Eigen::seqN(axis, num_vertices, 3), Eigen::all);
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-4);
+  }
 }
 
 }  // namespace

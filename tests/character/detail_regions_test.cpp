@@ -20,6 +20,10 @@ class DetailRegionsTest : public ::testing::TestWithParam<RotationRepresentation
     std::iota(control_.begin(), control_.end(), 0);
   }
   int num_columns() const { return 3 * 17 * NumCoordinates(GetParam()); }
+  std::vector<DetailRegion> Regions(const std::vector<int>& control, double share = 1) const {
+    return DetailRegions(BoneRegions(figure_.rig, control), figure_.rig.skeleton, control, share,
+                         options_);
+  }
 
   const SkinnedFigure figure_ = MakeSkinnedFigure({.num_rings = 3, .num_sides = 4});
   TrainOptions options_;
@@ -28,18 +32,19 @@ class DetailRegionsTest : public ::testing::TestWithParam<RotationRepresentation
 
 TEST_P(DetailRegionsTest, WeightsAreASharingOutOfEveryDetail) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(control_.size()));
-  const std::vector<DetailRegion> regions = DetailRegions(figure_.rig, control_, options_);
+  const std::vector<DetailRegion> regions = Regions(control_, .75);
   EXPECT_EQ(regions.size(), 17u);  // every bone has a tube of its own
   for (const DetailRegion& region : regions) {
-    EXPECT_GE(region.weights.minCoeff(), 0);
-    sum += region.weights;
+    EXPECT_GT(region.weights.minCoeff(), 0);
+    ASSERT_EQ(region.weights.size(), static_cast<Eigen::Index>(region.rows.size()));
+    sum(region.rows) += region.weights;
   }
-  EXPECT_LT((sum.array() - 1).abs().maxCoeff(), 1e-6);
+  EXPECT_LT((sum.array() - .75).abs().maxCoeff(), 1e-6);
 }
 
 // From all features to those of the nearest bones: each set holds the next.
 TEST_P(DetailRegionsTest, FeatureSetsAreNestedAndHoldEveryPoseOfTheHistory) {
-  for (const DetailRegion& region : DetailRegions(figure_.rig, control_, options_)) {
+  for (const DetailRegion& region : Regions(control_)) {
     ASSERT_EQ(region.feature_sets.size(), 3u);
     EXPECT_EQ(static_cast<int>(region.feature_sets[0].size()), num_columns());
     for (size_t i = 0; i < 3; ++i) {
@@ -61,11 +66,11 @@ TEST_P(DetailRegionsTest, FeatureSetsAreNestedAndHoldEveryPoseOfTheHistory) {
 TEST_P(DetailRegionsTest, ABoneThatMovesNoControlVertexHasNoRegion) {
   std::vector<int> one_tube(12);  // the vertices around bone 1
   std::iota(one_tube.begin(), one_tube.end(), 0);
-  const auto regions = DetailRegions(figure_.rig, one_tube, options_);
+  const auto regions = Regions(one_tube);
   EXPECT_GE(regions.size(), 1u);
   EXPECT_LT(regions.size(), 17u);
   for (const DetailRegion& region : regions) {
-    EXPECT_EQ(region.weights.size(), 36);
+    EXPECT_LE(region.weights.size(), 36);
     EXPECT_GT(region.weights.maxCoeff(), 0);
   }
 }

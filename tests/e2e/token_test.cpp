@@ -20,9 +20,10 @@ using ::testing::Not;
 class TokenProgramTest : public testing::Test {
  protected:
   // A file that holds a token with these scopes.
-  std::string Create(const std::string& name, const std::string& scopes) {
-    const ProcessResult made =
-        pleat_.Run({"token", "create", store_, "--name", name, "--scopes", scopes});
+  std::string Create(const std::string& name, const std::string& scopes,
+                     const std::string& project = "default") {
+    const ProcessResult made = pleat_.Run(
+        {"token", "create", store_, "--name", name, "--scopes", scopes, "--project", project});
     EXPECT_EQ(made.exit_code, 0) << made.err;
     EXPECT_THAT(WriteFile(pleat_.File(name), made.out), IsOk());
     return pleat_.File(name);
@@ -74,6 +75,32 @@ TEST_F(TokenProgramTest, LetsInWhoMayAndWritesDownWhatTheyDid) {
     EXPECT_THAT(server.log() + Bytes(audit_log_) + Bytes(store_ + "/tokens.json"),
                 Not(HasSubstr(secret)));
   }
+}
+
+TEST_F(TokenProgramTest, ProjectsDoNotSeeEachOther) {
+  const std::string robots = Create("robots", "read,train,admin", "robots");
+  const std::string ghosts = Create("ghosts", "read,train,admin", "ghosts");
+  const std::string input = pleat_.GeneratePerformer(10, 800);
+  std::string id;
+  {
+    ServerProgram server(store_, {});
+    const std::string address = server.WaitForAddress();
+    ASSERT_NE(address, "") << server.log();
+    ASSERT_EQ(Run(address, {"upload", input}, robots).exit_code, 0) << server.log();
+    id = ParseJson(Run(address, {"sequences", "--json"}, robots).out)[0]["id"];
+    EXPECT_EQ(Run(address, {"sequences", "--json"}, ghosts).out, "[]\n");
+    const ProcessResult foreign = Run(address, {"sequences", "delete", id}, ghosts);
+    EXPECT_EQ(foreign.exit_code, 4);  // as for an id of nobody
+    ASSERT_EQ(Run(address, {"upload", input}, ghosts).exit_code, 0) << server.log();
+    EXPECT_EQ(Run(address, {"sequences", "delete", id}, robots).exit_code, 0) << server.log();
+    EXPECT_EQ(server.Stop().exit_code, 0);
+  }
+  EXPECT_EQ(pleat_.Run({"store", "check", store_}).exit_code, 0);
+  ServerProgram server(store_, {});  // whose is what is remembered
+  const std::string address = server.WaitForAddress();
+  EXPECT_EQ(Run(address, {"sequences", "--json"}, robots).out, "[]\n");
+  EXPECT_EQ(ParseJson(Run(address, {"sequences", "--json"}, ghosts).out)[0]["id"], id);
+  EXPECT_EQ(server.Stop().exit_code, 0);
 }
 
 }  // namespace

@@ -128,9 +128,10 @@ class SmallModelBuilder {
     }
     const Eigen::VectorXf mean = Vector(3 * num_control).cast<float>() * 0.01f;
     const Eigen::MatrixXd basis = Matrix(3 * num_control, kComponents);
-    detail.basis = DetailBasis::Quantize(mean, basis, Eigen::VectorXd::Constant(kComponents, 1e-4))
-                       .value()
-                       .parameters();
+    detail.basis = PartedBasisParameters::Whole(
+        DetailBasis::Quantize(mean, basis, Eigen::VectorXd::Constant(kComponents, 1e-4))
+            .value()
+            .parameters());
     return detail;
   }
 

@@ -136,6 +136,73 @@ TEST_P(ModelFileTest, FilesRoundTripAndErrorsNameThem) {
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("b.pleat")));
 }
 
+// A model with all that version 4 added: parts, regions with outputs of their own, the fold between
+// them and features of the skin.
+std::shared_ptr<const CharacterModel> MakePartedModel() {
+  CharacterModel::Parts parts = SmallModelBuilder(Learner::kRegional).Parts();
+  SkinFeaturesParameters skin{{{0, 3, 5}, {{0, 1}, {1, 2}}, {.5f, .25f}}, {}};
+  skin.regions = {{{0, 1}, Eigen::MatrixXf::Constant(6, 2, .125f), Eigen::Vector2f(.5f, -.25f)},
+                  {{}, {}, {}}};
+  parts.skin_features = SkinFeatures::FromParameters(parts.rig, skin).value();
+  DetailModelParameters detail = parts.detail_model->parameters();
+  RegionalGpParameters& regional = *detail.regional;
+  const auto widen = [](Eigen::VectorXd* vector, double value) {
+    vector->conservativeResize(vector->size() + 2);
+    vector->tail(2).setConstant(value);
+  };
+  widen(&regional.input_mean, .5);
+  widen(&regional.input_scales, 2);
+  regional.inputs.conservativeResize(Eigen::NoChange, 14);
+  regional.inputs.rightCols(2).setConstant(.25);
+  regional.regions[0].scales[0] = {{0, 1, 12, 13}, .5, 1.5, .25, 4};
+  regional.regions[1].first_output = 2;
+  widen(&regional.output_mean, .75);
+  const DetailBasisParameters whole = detail.basis.parts[0].basis;
+  detail.basis = {.num_coefficients = 3, .parts = {}};
+  const std::vector<std::vector<int>> vertices = {{0, 2, 4, 7}, {1, 3, 5, 6}};
+  const std::vector<std::vector<int>> coefficients = {{0, 2}, {1, 2}};
+  for (int i = 0; i < 2; ++i) {
+    DetailBasisParameters basis = whole;
+    basis.mean = whole.mean.segment(12 * i, 12).eval();
+    basis.values = whole.values.middleRows(12 * i, 12).eval();
+    detail.basis.parts.push_back({vertices[i], coefficients[i], basis});
+  }
+  detail.fold = {{0, 0, Eigen::MatrixXf::Constant(2, 3, .5f)},
+                 {2, 1, Eigen::MatrixXf::Constant(2, 2, -.5f)}};
+  parts.detail_model =
+      std::make_shared<const DetailModel>(DetailModel::FromParameters(detail).value());
+  return CharacterModel::Create(std::move(parts)).value();
+}
+
+TEST(PartedModelFileTest, RoundTripsAndPredictsTheSameBits) {
+  const auto model = MakePartedModel();
+  const std::string bytes = EncodeModel(*model);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto read, DecodeModel(bytes));
+  EXPECT_EQ(EncodeModel(*read), bytes);
+  EXPECT_EQ(read->full_basis().Dense(), model->full_basis().Dense());
+  ASSERT_TRUE(read->skin_features().has_value());
+  EXPECT_EQ(read->skin_features()->num_regions(), 2);
+  const Eigen::VectorXd features = Eigen::VectorXd::LinSpaced(14, -1, 1);
+  DetailModel::Workspace a, b;
+  Eigen::VectorXf expected(3), found(3);
+  const double confidence = model->detail_model().PredictCoefficients(features, &a, expected);
+  EXPECT_EQ(read->detail_model().PredictCoefficients(features, &b, found), confidence);
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(found.norm(), 0);
+}
+
+TEST(PartedModelFileTest, TheGoldenFileIsTheModel) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const std::string golden,
+      ReadFile(InSourceFolder("tests/golden/model_v4_regional_parts.pleat")));
+  EXPECT_EQ(golden, EncodeModel(*MakePartedModel()));
+}
+
+TEST(PartedModelFileTest, EveryTruncationIsRefused) {
+  const std::string bytes = EncodeModel(*MakePartedModel());
+  ForEachTruncation(bytes, [](const std::string& cut) { EXPECT_FALSE(DecodeModel(cut).ok()); });
+}
+
 class GoldenModelTest : public ::testing::TestWithParam<std::tuple<Learner, int>> {};
 
 TEST_P(GoldenModelTest, StaysReadable) {
@@ -148,7 +215,7 @@ TEST_P(GoldenModelTest, StaysReadable) {
   EXPECT_EQ(read->name(), "small");
   EXPECT_EQ(read->record().learner, LearnerName(learner));
   EXPECT_EQ(read->rig().rest_positions, expected->rig().rest_positions);
-  const DetailBasis& basis = read->detail_model().basis();
+  const PartedBasis& basis = read->detail_model().basis();
   EXPECT_LT((basis.Dense() - expected->detail_model().basis().Dense()).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_EQ(basis.Mean(), expected->detail_model().basis().Mean());
 }
@@ -156,7 +223,7 @@ TEST_P(GoldenModelTest, StaysReadable) {
 INSTANTIATE_TEST_SUITE_P(Versions, GoldenModelTest,
                          ::testing::Combine(::testing::Values(Learner::kGp, Learner::kSgplvm,
                                                               Learner::kRidge, Learner::kRegional),
-                                            ::testing::Values(1, 2, 3)));
+                                            ::testing::Values(1, 2, 3, 4)));
 
 }  // namespace
 }  // namespace pleat

@@ -22,7 +22,7 @@ std::vector<Token> TwoTokens() {
   read.Add(Scope::kRead);
   Token farm = MakeToken("farm", read, 100, 200).token;
   farm.revoked = 150;
-  return {farm, MakeToken("Zoë", ScopeSet::All(), 300, {}).token};
+  return {farm, MakeToken("Zoë", ScopeSet::All(), 300, {}, "robots").token};
 }
 
 absl::Status Append(const std::string& path, const Token& token) {
@@ -41,6 +41,7 @@ TEST(TokenFileTest, WhatIsWrittenIsReadBack) {
     EXPECT_EQ(read[i].name, tokens[i].name);
     EXPECT_EQ(read[i].secret_hash, tokens[i].secret_hash);
     EXPECT_EQ(read[i].scopes, tokens[i].scopes);
+    EXPECT_EQ(read[i].project, tokens[i].project);
     EXPECT_EQ(read[i].created, tokens[i].created);
     EXPECT_EQ(read[i].expires, tokens[i].expires);
     EXPECT_EQ(read[i].revoked, tokens[i].revoked);
@@ -59,6 +60,8 @@ TEST(TokenFileTest, OneWrongTokenRefusesTheFile) {
                  {tokens[0].secret_hash, std::string(64, 'g'), "64 hexadecimal"},
                  {"\"read\"", "\"all\"", where},
                  {"\"farm\"", "\"\"", where},
+                 {"\"robots\"", "\"../etc\"", "project"},
+                 {"\"robots\"", "7", "project"},
                  {": 200", ": \"soon\"", "expires"},
                  {": 150", ": 1.5", "revoked"}};
   for (const auto& change : changes) {
@@ -71,6 +74,14 @@ TEST(TokenFileTest, OneWrongTokenRefusesTheFile) {
     EXPECT_THAT(ParseTokens(good.substr(0, length)),
                 HasStatus(absl::StatusCode::kInvalidArgument, testing::HasSubstr("malformed")));
   }
+}
+
+// Files of versions without projects have no such field, and neither has the default project.
+TEST(TokenFileTest, ATokenThatNamesNoProjectIsOfTheDefaultOne) {
+  const std::vector<Token> tokens = TwoTokens();
+  const std::string text = FormatTokens({tokens[0]});
+  EXPECT_THAT(text, testing::Not(HasSubstr("project")));
+  EXPECT_EQ(ParseTokens(text)->at(0).project, kDefaultProject);
 }
 
 TEST(TokenFileTest, AMissingFileHoldsNoTokens) {

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "jobs/scripted_work.h"
+#include "pleat/base/limit_refusal.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -79,6 +80,61 @@ TEST(JobManagerTest, OneClientCannotHaveAllPlacesOfTheQueue) {
   EXPECT_THAT(create("rea"), IsOk());
   EXPECT_THAT(create("otto"),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("4 jobs are waiting")));
+}
+
+TEST(JobManagerTest, OneProjectCannotHaveAllPlacesOfTheQueue) {
+  Journal journal;
+  JobManager jobs({.max_queued_per_project = 1}, Succeeds(), journal.save());
+  const auto create = [&](const std::string& project) {
+    JobInfo draft = Named("job");
+    draft.project = project;
+    return jobs.Create(draft).status();
+  };
+  EXPECT_THAT(create("robots"), IsOk());
+  const absl::Status refused = create("robots");
+  EXPECT_THAT(refused,
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("'robots' has 1")));
+  EXPECT_EQ(LimitRefusalOf(refused)->subject, "project:robots");
+  EXPECT_THAT(create("ghosts"), IsOk());
+}
+
+TEST(JobManagerTest, RequestIdsAreThoseOfAProject) {
+  Journal journal;
+  JobManager jobs({}, Succeeds(), journal.save(), journal.erase());
+  JobInfo draft = Named("job");
+  draft.request_id = "the same";
+  draft.project = "robots";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo first, jobs.Create(draft));
+  EXPECT_EQ(jobs.Create(draft)->id, first.id);
+  draft.project = "ghosts";
+  draft.sequence_ids = {"something else"};
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo other, jobs.Create(draft));
+  EXPECT_NE(other.id, first.id);
+}
+
+TEST(JobManagerTest, TellsHowLongAJobWasInEachStage) {
+  Journal journal;
+  std::atomic<double> now = 0;
+  std::vector<std::pair<std::string, double>> stages;
+  JobManager jobs(
+      {.on_stage = [&](const std::string& stage,
+                       double seconds) { stages.emplace_back(stage, seconds); },
+       .clock = [&] { return now.load(); }},
+      [&](const JobInfo&, const Progress& progress) -> absl::StatusOr<JobOutcome> {
+        progress.Stage("read", 0, .5).Report(.1).IgnoreError();
+        now = now + 2;
+        progress.Stage("read", 0, .5).Report(.9).IgnoreError();
+        now = now + 1;
+        progress.Stage("learn", .5, 1).Report(.5).IgnoreError();
+        now = now + 5;
+        return JobOutcome{"model", {}};
+      },
+      journal.save());
+  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo job, jobs.Create(Named("job")));
+  jobs.Start();
+  EXPECT_EQ(WaitForEnd(jobs, job.id).state, JobState::kSucceeded);
+  jobs.Shutdown();
+  EXPECT_THAT(stages, testing::ElementsAre(std::pair("read", 3.), std::pair("learn", 5.)));
 }
 
 TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {

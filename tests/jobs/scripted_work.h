@@ -24,10 +24,10 @@ class Journal {
     };
   }
   EraseJob erase() {
-    return [this](const std::string& id) {
+    return [this](const JobInfo& info) {
       std::lock_guard lock(mutex_);
       if (fail_) return absl::ResourceExhaustedError("disk full");
-      saved_.erase(id);
+      saved_.erase(info.id);
       return absl::OkStatus();
     };
   }

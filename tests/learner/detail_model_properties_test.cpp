@@ -121,6 +121,7 @@ TEST_P(DetailModelPropertiesTest, OrderOfClipsDoesNotMatter) {
 // What is below the fading confidence is scaled by 3 t^2 - 2 t^3 of its share t of it, all else
 // stays to the bit.
 TEST_P(DetailModelPropertiesTest, FadingIsTheSmoothStepOfTheConfidence) {
+  if (GetParam().learner == Learner::kRegional) GTEST_SKIP() << "the regional learner never fades";
   const DetailModel faded = Train(motion_);
   DetailModelParameters parameters = faded.parameters();
   parameters.fade_confidence = 0;
@@ -157,6 +158,7 @@ TEST_P(DetailModelPropertiesTest, ManyFramesAreLearnedThroughFewRows) {
   const SyntheticMotion many = MakeSyntheticMotion(240, kNumFeatures, kNumDetails, 4);
   DetailModelOptions options = Options(many);
   options.gp.max_rows = options.regional.max_rows = options.max_latents = 60;
+  options.regional.max_exact_rows = 60;
   options.gp.max_hyperparameter_rows = options.regional.max_hyperparameter_rows = 50;
   // Clips of one frame, too short to have a row among those that are kept.
   PLEAT_ASSERT_OK_AND_ASSIGN(
@@ -185,7 +187,10 @@ TEST_P(DetailModelPropertiesTest, RoundingCostsNoMoreThanItsShare) {
     options.rounding = rounding;
     const DetailModel model =
         TrainDetailModel(motion_.features, motion_.details, {0}, options).value();
-    const size_t planes = model.basis().num_planes();
+    size_t planes = 0;
+    for (const auto& part : model.basis().parameters().parts) {
+      planes += part.basis.components.size();
+    }
     EXPECT_LE(planes, last_planes);
     last_planes = planes;
     // Each component errs by so much at most, and they err independently.
@@ -261,9 +266,10 @@ TEST_P(DetailModelPropertiesTest, MotionsThatSayLittleAreLearnedAllTheSame) {
 
 TEST_P(DetailModelPropertiesTest, ComponentsThatAreGivenAreThoseOfTheDetails) {
   const DetailModelOptions options = Options(motion_);
+  const bool regional = options.learner == Learner::kRegional;
   PrincipalComponents components =
-      ComputePca(motion_.details,
-                 {.max_components = options.max_components, .min_energy = options.pca_energy});
+      ComputePca(motion_.details, {.max_components = regional ? 256 : options.max_components,
+                                   .min_energy = regional ? 1 : options.pca_energy});
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model,
                              TrainDetailModel(motion_.features, components, {0}, options));
   EXPECT_EQ(PredictAll(model, queries_).details, PredictAll(Train(motion_), queries_).details);
@@ -278,39 +284,44 @@ TEST_P(DetailModelPropertiesTest, ComponentsThatAreGivenAreThoseOfTheDetails) {
   refused(hole, "not finite");
 }
 
-// The regional learner is the direct GP and the regions in their shares.
-TEST(RegionalMixtureTest, SharesMixTheTwoPredictions) {
+// Models before version 4 of the file: the prediction is that of the direct GP and of regions with
+// the same outputs, in their shares.
+TEST(RegionalMixtureTest, SharesMixTheTwoPredictionsOfOldModels) {
   const SyntheticMotion motion = MakeSyntheticMotion(50, kNumFeatures, kNumDetails, 4);
-  DetailModelOptions options = WithRegions(SmallOptions(Learner::kRegional), motion);
+  DetailModelOptions options = SmallOptions(Learner::kGp);
   options.fade_confidence = 0;
-  const DetailModel trained =
-      TrainDetailModel(motion.features, motion.details, {0}, options).value();
+  const DetailModel gp = TrainDetailModel(motion.features, motion.details, {0}, options).value();
+  const Eigen::MatrixXd scores =
+      ComputePca(motion.details, {.min_energy = options.pca_energy}).scores;
+  ASSERT_EQ(scores.cols(), gp.num_components());
+  std::vector<GpRegion> regions(2);
+  for (GpRegion& region : regions) region = {{{0, 1, 2}, {1, 3}}, .5 * scores};
+  RegionalGpParameters regional = RegionalGp::Train(motion.features, regions).value().parameters();
+  regional.regions[1].first_output = 0;
+  regional.output_mean = Eigen::VectorXd::Zero(scores.cols());
+  const RegionalGp of_regions = RegionalGp::FromParameters(regional).value();
   const auto with_share = [&](double share) {
-    DetailModelParameters parameters = trained.parameters();
+    DetailModelParameters parameters = gp.parameters();
+    parameters.learner = Learner::kRegional;
+    parameters.regional = regional;
     parameters.regional_share = share;
     return DetailModel::FromParameters(std::move(parameters)).value();
   };
-  DetailModelParameters direct = trained.parameters();
-  direct.learner = Learner::kGp;
-  direct.regional.reset();
-  direct.regional_share = 0;
-  const DetailModel gp = DetailModel::FromParameters(std::move(direct)).value();
   DetailModel::Workspace workspace;
   RegionalGp::Workspace regional_workspace;
-  Eigen::VectorXf at_0(trained.num_components()), at_1 = at_0, mixed = at_0, alone = at_0;
-  Eigen::VectorXd of_regions(trained.num_components());
+  Eigen::VectorXf at_0(gp.num_components()), at_1 = at_0, mixed = at_0, alone = at_0;
+  Eigen::VectorXd expected(gp.num_components());
   for (const int t : {0, 7, 31}) {
     const Eigen::VectorXd row = 1.1 * motion.features.row(t).transpose();
     const double confidence = gp.PredictCoefficients(row, &workspace, alone);
     EXPECT_EQ(with_share(0).PredictCoefficients(row, &workspace, at_0), confidence);
     EXPECT_EQ(with_share(1).PredictCoefficients(row, &workspace, at_1), confidence);
     EXPECT_EQ(with_share(.25).PredictCoefficients(row, &workspace, mixed), confidence);
-    trained.regional()->Predict(row, &regional_workspace, of_regions);
+    of_regions.Predict(row, &regional_workspace, expected);
     EXPECT_EQ(at_0, alone);
-    EXPECT_LT((at_1.cast<double>() - of_regions).norm(), 1e-6 * of_regions.norm());
+    EXPECT_LT((at_1.cast<double>() - expected).norm(), 1e-6 * expected.norm());
     EXPECT_LT((mixed - (.75f * at_0 + .25f * at_1)).norm(), 1e-5f * mixed.norm());
   }
-  EXPECT_EQ(trained.parameters().regional_share, DetailModelOptions().regional_share);
 }
 
 }  // namespace

@@ -108,7 +108,10 @@ TEST_F(DetailModelTrainTest, RegionsThatShareTheBodyAddUpToTheWhole) {
   std::vector<int> all(kFeatures);
   for (int i = 0; i < kFeatures; ++i) all[i] = i;
   const Eigen::VectorXd weights = (RandomMatrix(kDetails, 1, 8).array().sin() * .5 + .5).col(0);
-  options.regions = {{weights, {all}}, {1 - weights.array(), {all}}};
+  std::vector<int> rows(kDetails);
+  for (int i = 0; i < kDetails; ++i) rows[i] = i;
+  options.regions = {{.rows = rows, .weights = weights, .feature_sets = {all}},
+                     {.rows = rows, .weights = 1 - weights.array(), .feature_sets = {all}}};
   PLEAT_ASSERT_OK_AND_ASSIGN(const DetailModel model, Train(options));
   double square = 0;
   for (int t = 0; t < kFrames; ++t) {
@@ -147,9 +150,22 @@ TEST_F(DetailModelTrainTest, OptionsOutOfRangeAreNamed) {
   EXPECT_THAT(Train(Options(Learner::kRegional)),
               HasStatus(absl::StatusCode::kInvalidArgument, "the regional learner needs regions"));
   DetailModelOptions region = Options(Learner::kRegional);
-  region.regions = {{Eigen::VectorXd::Ones(5), {{0, 1}}}};
+  region.regions = {
+      {.rows = {0, 1, 2}, .weights = Eigen::VectorXd::Ones(5), .feature_sets = {{0, 1}}}};
   EXPECT_THAT(Train(region), HasStatus(absl::StatusCode::kInvalidArgument,
-                                       "a region has 5 weights for 18 details"));
+                                       HasSubstr("a region has 5 weights for 3 details")));
+  region.regions[0].weights = Eigen::VectorXd::Ones(3);
+  region.regions[0].rows = {0, 1, 18};
+  EXPECT_THAT(Train(region),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("ascend below 18")));
+  region.regions[0].rows = {0, 1, 2};
+  region.num_part_regions = 2;
+  EXPECT_THAT(Train(region),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("2 of 1 regions")));
+  region.num_part_regions = 0;
+  region.num_pose_features = 9;
+  EXPECT_THAT(Train(region), HasStatus(absl::StatusCode::kInvalidArgument,
+                                       HasSubstr("9 features of the pose among 8")));
 }
 
 }  // namespace

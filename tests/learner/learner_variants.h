@@ -38,9 +38,15 @@ inline DetailModelOptions WithRegions(DetailModelOptions options, const Syntheti
   std::iota(all.begin(), all.end(), 0);
   const std::vector<int> first(all.begin(), all.begin() + num_features / 2);
   const std::vector<int> second(all.begin() + num_features / 2, all.end());
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(num_details);
-  weights.head(num_details / 2).setOnes();
-  options.regions = {{weights, {all, first}}, {weights.array() * -1 + 1, {all, second}}};
+  const auto region = [&](Eigen::Index begin, Eigen::Index end, const std::vector<int>& own) {
+    DetailRegion result;
+    for (Eigen::Index row = begin; row < end; ++row) result.rows.push_back(static_cast<int>(row));
+    result.weights = Eigen::VectorXd::Ones(end - begin);
+    result.feature_sets = {all, own};
+    return result;
+  };
+  const Eigen::Index half = num_details / 6 * 3;  // whole vertices
+  options.regions = {region(0, half, first), region(half, num_details, second)};
   return options;
 }
 

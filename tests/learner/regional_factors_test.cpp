@@ -20,6 +20,12 @@ RegionalGpParameters MakeParameters(int num_rows) {
   p.regions[2] = {.scales = {{{1, 4}, .2, 2, .1}, {{0, 1}, .4, .3, .6}, {{6}, 1, 1, 0}},
                   .bias = 1,
                   .alpha = {}};
+  // Sets that share columns, of which some are longer than their bound.
+  for (RegionalGpParameters::Region& region : p.regions) {
+    for (RegionalGpParameters::Scale& scale : region.scales) {
+      if (scale.columns.size() == 2) scale.max_norm = .5;
+    }
+  }
   return p;
 }
 
@@ -28,9 +34,11 @@ double ExpectedFactor(const RegionalGpParameters& p, size_t region, Eigen::Index
   double kernel = p.regions[region].bias;
   for (const RegionalGpParameters::Scale& scale : p.regions[region].scales) {
     double distance = 0, product = 0;
+    const double norm = row(scale.columns).norm();
+    const double factor = norm > scale.max_norm ? scale.max_norm / norm : 1;
     for (const int column : scale.columns) {
-      distance += std::pow(row[column] - p.inputs(n, column), 2);
-      product += row[column] * p.inputs(n, column);
+      distance += std::pow(factor * row[column] - p.inputs(n, column), 2);
+      product += factor * row[column] * p.inputs(n, column);
     }
     kernel +=
         scale.amplitude * std::exp(-.5 * scale.inverse_width * distance) + scale.linear * product;

@@ -40,13 +40,19 @@ TwoLimbs MakeTwoLimbs(int rows, double phase_between_limbs) {
   return data;
 }
 
-double RmsError(const RegionalGp& gp, const TwoLimbs& data) {
+// The sum of what all regions predict, two outputs each.
+Eigen::Vector2d PredictSum(const RegionalGp& gp, const Eigen::VectorXd& row) {
   RegionalGp::Workspace workspace;
-  Eigen::VectorXd mean(2);
+  Eigen::VectorXd mean(gp.num_outputs());
+  gp.Predict(row, &workspace, mean);
+  return mean.reshaped(2, mean.size() / 2).rowwise().sum();
+}
+
+double RmsError(const RegionalGp& gp, const TwoLimbs& data) {
   double squares = 0;
   for (Eigen::Index t = 0; t < data.inputs.rows(); ++t) {
-    gp.Predict(data.inputs.row(t).transpose(), &workspace, mean);
-    squares += (mean - data.outputs.row(t).transpose()).squaredNorm();
+    squares += (PredictSum(gp, data.inputs.row(t).transpose()) - data.outputs.row(t).transpose())
+                   .squaredNorm();
   }
   return std::sqrt(squares / static_cast<double>(data.outputs.size()));
 }
@@ -83,6 +89,7 @@ TEST(RegionalGpTest, FewerRowsThanGivenStillPredict) {
   const TwoLimbs data = MakeTwoLimbs(120, .5);
   RegionalGpOptions options;
   options.max_hyperparameter_rows = 30;
+  options.max_exact_rows = 119;
   options.max_rows = 60;
   const absl::StatusOr<RegionalGp> gp = RegionalGp::Train(data.inputs, data.regions, options);
   ASSERT_TRUE(gp.ok()) << gp.status();
@@ -96,11 +103,8 @@ TEST(RegionalGpTest, RestoredFromItsParametersPredictsTheSame) {
   ASSERT_TRUE(gp.ok());
   const absl::StatusOr<RegionalGp> restored = RegionalGp::FromParameters(gp->parameters());
   ASSERT_TRUE(restored.ok()) << restored.status();
-  RegionalGp::Workspace workspace;
-  Eigen::VectorXd a(2), b(2);
-  gp->Predict(data.inputs.row(7).transpose(), &workspace, a);
-  restored->Predict(data.inputs.row(7).transpose(), &workspace, b);
-  EXPECT_EQ(a, b);
+  const Eigen::VectorXd row = data.inputs.row(7).transpose();
+  EXPECT_EQ(PredictSum(*gp, row), PredictSum(*restored, row));
 }
 
 TEST(RegionalGpTest, ScalesOfTheInputsAreUnitsOnly) {
@@ -113,12 +117,11 @@ TEST(RegionalGpTest, ScalesOfTheInputsAreUnitsOnly) {
   const absl::StatusOr<RegionalGp> scaled =
       RegionalGp::Train(in_other_units, data.regions, options);
   ASSERT_TRUE(plain.ok() && scaled.ok());
-  RegionalGp::Workspace workspace;
-  Eigen::VectorXd a(2), b(2);
   for (const int row : {3, 20, 33}) {
-    plain->Predict(data.inputs.row(row).transpose(), &workspace, a);
-    scaled->Predict(in_other_units.row(row).transpose(), &workspace, b);
-    EXPECT_LT((a - b).norm(), 1e-4);
+    EXPECT_LT((PredictSum(*plain, data.inputs.row(row).transpose()) -
+               PredictSum(*scaled, in_other_units.row(row).transpose()))
+                  .norm(),
+              1e-4);
   }
   options.input_scales[1] = 0;
   EXPECT_EQ(RegionalGp::Train(data.inputs, data.regions, options).status().code(),
@@ -144,6 +147,10 @@ TEST(RegionalGpTest, RefusesHostileParameters) {
   refused([](auto& p) { p.inputs(4, 1) = kNan; }, "not finite");
   refused([](auto& p) { p.output_mean[0] = kInf; }, "not finite");
   refused([](auto& p) { p.regions[0].alpha.conservativeResize(19, Eigen::NoChange); }, "19 x 2");
+  refused([](auto& p) { p.regions[1].first_output = 3; }, "from 3 on, 2 of 4");
+  refused([](auto& p) { p.regions[1].first_output = -1; }, "from -1 on");
+  refused([](auto& p) { p.regions[0].scales[0].max_norm = 0; }, "largest norm");
+  refused([](auto& p) { p.regions[0].scales[0].max_norm = kNan; }, "largest norm");
   refused([](auto& p) { p.regions[1].alpha(0, 0) = std::nanf(""); }, "not finite");
   refused([](auto& p) { p.regions[0].scales.clear(); }, "without scales");
   refused([](auto& p) { p.regions[0].bias = kNan; }, "bias");
@@ -167,7 +174,7 @@ TEST(RegionalGpTest, RefusesDataThatDoNotFitTogether) {
   refused([](auto& d, auto&) { d.regions.clear(); }, "0 regions");
   refused([](auto& d, auto&) { d.inputs(3, 2) = std::nan(""); }, "finite rows");
   refused([](auto& d, auto&) { d.regions[1].outputs.conservativeResize(19, 2); }, "region 1");
-  refused([](auto& d, auto&) { d.regions[1].outputs.conservativeResize(20, 1); }, "20 x 2");
+  refused([](auto& d, auto&) { d.regions[1].outputs.resize(20, 0); }, "region 1");
   refused([](auto& d, auto&) { d.regions[0].outputs(3, 1) = std::nan(""); }, "region 0");
   refused([](auto& d, auto&) { d.regions[1].feature_sets.clear(); }, "no feature sets");
   refused([](auto& d, auto&) { d.regions[1].feature_sets[0] = {3, 2}; }, "does not ascend");
@@ -223,15 +230,49 @@ TEST(RegionalGpTest, PartsOfARegionAddUpToIt) {
   parts[2].outputs *= -.3;
   PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp one, RegionalGp::Train(data.inputs, whole));
   PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp three, RegionalGp::Train(data.inputs, parts));
-  RegionalGp::Workspace workspace;
-  Eigen::VectorXd a(2), b(2);
   for (const double step : {0.0, .2, 3.0}) {
     const Eigen::VectorXd row = data.inputs.row(11).transpose().array() + step;
-    one.Predict(row, &workspace, a);
-    three.Predict(row, &workspace, b);
-    EXPECT_LT((a - b).norm(), 1e-4) << step;
+    EXPECT_LT((PredictSum(one, row) - PredictSum(three, row)).norm(), 1e-4) << step;
   }
   EXPECT_GT(three.memory_bytes(), one.memory_bytes());
+}
+
+// Outputs that several regions share add up, as in models before version 4 of the file.
+TEST(RegionalGpTest, SharedOutputsAddUp) {
+  const TwoLimbs data = MakeTwoLimbs(40, .5);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp own, RegionalGp::Train(data.inputs, data.regions));
+  RegionalGpParameters p = own.parameters();
+  p.regions[1].first_output = 0;
+  p.output_mean = (p.output_mean.head(2) + p.output_mean.tail(2)).eval();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp shared, RegionalGp::FromParameters(p));
+  ASSERT_EQ(shared.num_outputs(), 2);
+  for (const int row : {2, 17, 39}) {
+    const Eigen::VectorXd features = data.inputs.row(row).transpose().array() + .1;
+    EXPECT_LT((PredictSum(own, features) - PredictSum(shared, features)).norm(), 1e-5);
+  }
+}
+
+// Far from the training a prediction depends on the direction alone: it neither fades nor grows.
+TEST(RegionalGpTest, FarRowsAreShortenedToTheBound) {
+  const TwoLimbs data = MakeTwoLimbs(60, .5);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const RegionalGp gp, RegionalGp::Train(data.inputs, data.regions));
+  const Eigen::VectorXd mean = data.inputs.colwise().mean().transpose();
+  const Eigen::VectorXd direction = data.inputs.row(13).transpose() - mean;
+  const double longest = (data.inputs.rowwise() - mean.transpose()).rowwise().norm().maxCoeff();
+  // Every set of the row is beyond its bound from here on.
+  const double beyond =
+      1.5 * longest / direction.head(3).norm() + 1.5 * longest / direction.tail(3).norm();
+  const Eigen::Vector2d at = PredictSum(gp, mean + beyond * direction);
+  EXPECT_LT((PredictSum(gp, mean + 10 * beyond * direction) - at).norm(), 1e-4);
+  EXPECT_LT((PredictSum(gp, mean + 1e3 * beyond * direction) - at).norm(), 1e-3);
+  // The training itself is not touched.
+  for (const RegionalGpParameters::Region& region : gp.parameters().regions) {
+    for (const RegionalGpParameters::Scale& scale : region.scales) {
+      const double own =
+          gp.parameters().inputs(Eigen::all, scale.columns).rowwise().norm().maxCoeff();
+      EXPECT_NEAR(scale.max_norm, 1.5 * own, 1e-9);
+    }
+  }
 }
 
 // A limb that never moves, alone in a set, and a region without any detail.

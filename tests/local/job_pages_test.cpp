@@ -25,15 +25,21 @@ class JobPagesTest : public testing::Test {
   }
   // The jobs wait: no worker is started.
   void OpenJobs() {
+    jobs_.reset();
+    pool_ = std::make_unique<JobPool>(
+        &folder_.files(),
+        [this](const std::string&) -> const JobRunner& { return jobs_->runner(); },
+        JobPoolOptions{});
     jobs_ = std::make_unique<LocalJobs>(
         &folder_.files(), &folder_.sequences(),
-        JobRunner(&folder_.files(), &folder_.sequences(), TrainCharacter, 1), LocalJobsOptions{});
+        JobRunner(&folder_.files(), &folder_.sequences(), TrainCharacter, 1), pool_.get());
   }
   std::string Create() { return jobs_->CreateTraining({.sequence_ids = {sequence_id_}})->id; }
-  uint64_t num_steps() { return folder_.files().catalog().num_page_steps(); }
+  uint64_t num_steps() { return folder_.files().store().catalog().num_page_steps(); }
 
   DataFolder folder_;
   std::string sequence_id_;
+  std::unique_ptr<JobPool> pool_;
   std::unique_ptr<LocalJobs> jobs_;
 };
 

@@ -36,13 +36,14 @@ class JobRunnerTest : public testing::Test {
     job.options = std::move(options);
     return job;
   }
-  size_t NumStored(EntryKind kind) { return folder_.files().catalog().List(kind)->size(); }
+  size_t NumStored(EntryKind kind) { return folder_.files().store().catalog().List(kind)->size(); }
   size_t NumResults() {
     return NumStored(EntryKind::kModel) + NumStored(EntryKind::kCompressedSequence);
   }
   void DeleteResults() {
     for (const EntryKind kind : {EntryKind::kModel, EntryKind::kCompressedSequence}) {
-      const std::vector<CatalogEntry> entries = folder_.files().catalog().List(kind).value();
+      const std::vector<CatalogEntry> entries =
+          folder_.files().store().catalog().List(kind).value();
       for (const CatalogEntry& entry : entries) {
         ASSERT_THAT(folder_.files().Delete(kind, entry.id), IsOk());
       }

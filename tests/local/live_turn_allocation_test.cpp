@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "local_pose_stream.h"
+#include "pleat/local/frame_quota.h"
 #include "pleat/local/pose_batcher.h"
 #include "pleat/local/pose_session.h"
 #include "support/allocation_counter.h"
@@ -48,8 +49,8 @@ std::vector<LivePose> SlowMotion(const CharacterModel& model) {
 class Client final : public LiveListener {
  public:
   Client(const LiveRules& rules, PoseSessionOptions options, PoseBatcher* batcher)
-      : stream_(LocalPoseSession::Open(LargeTube(), std::move(options)).value(), rules, batcher,
-                this) {}
+      : stream_(LocalPoseSession::Open(LargeTube(), std::move(options)).value(), rules, &quota_,
+                batcher, this) {}
 
   void Send(const LivePose& pose) { stream_.Push(pose); }
   void Answer() { stream_.Answer(); }
@@ -84,6 +85,7 @@ class Client final : public LiveListener {
   uint64_t num_received_ = 0;
   int num_keyframes_ = 0;
   std::counting_semaphore<> done_{0};
+  FrameQuota quota_{1e9, kDefaultProject};  // a limit that is there costs no memory either
   LocalPoseStream stream_;
 };
 

@@ -25,7 +25,7 @@ class LocalCharacterServiceTest : public testing::Test {
   void Open(ServiceLimits limits = {}, uint64_t cache_bytes = 1 << 30) {
     service_.reset();
     auto service = LocalCharacterService::Open({.data_dir = folder_.path(),
-                                                .cache_bytes = cache_bytes,
+                                                .memory = {.cache_bytes = cache_bytes},
                                                 .limits = limits,
                                                 .train = trainer_.function()});
     ASSERT_THAT(service, IsOk());
@@ -120,6 +120,52 @@ TEST_F(LocalCharacterServiceTest, ACompressionGoesOnAfterARestartAndItsFileStays
   EXPECT_TRUE(service_->missing_files().empty());
 }
 
+TEST_F(LocalCharacterServiceTest, ModelsThatNobodyUsesMakeRoomForOthers) {
+  Open();
+  const std::string sequence_id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
+  const std::string model_id =
+      RunToEnd(service_->jobs().CreateTraining({.sequence_ids = {sequence_id}})->id).result_id;
+  auto session = service_->poses().OpenSession(model_id, {});
+  ASSERT_THAT(session, IsOk());
+  EXPECT_GT(service_->model_bytes(), 0u);
+  EXPECT_GT(service_->memory().encoders.used_bytes(), 0u);
+  MemoryBudget& all = service_->memory().all;
+  const uint64_t used = all.used_bytes();
+  EXPECT_EQ(used, service_->model_bytes() + service_->memory().encoders.used_bytes());
+  EXPECT_FALSE(all.Reserve(all.capacity_bytes() - used + 1, "all").ok());  // both are in use
+  *session = nullptr;
+  EXPECT_THAT(all.Reserve(all.capacity_bytes(), "all"), IsOk());
+  EXPECT_EQ(service_->model_bytes(), 0u);
+}
+
+TEST_F(LocalCharacterServiceTest, AJobWaitsForItsMemoryAndOneThatCanNeverHaveItIsRefused) {
+  service_ = LocalCharacterService::Open({.data_dir = folder_.path(),
+                                          .memory = {.memory_bytes = 64 << 20},
+                                          .train = trainer_.function()})
+                 .value();
+  const std::string sequence_id = service_->sequences().Upload(MakeSwayingTube(5), {})->id;
+  std::optional<Reservation> held = service_->memory().all.Reserve(60 << 20, "a test").value();
+  const std::string job_id = service_->jobs().CreateTraining({.sequence_ids = {sequence_id}})->id;
+  JobInfo last;
+  EXPECT_THAT(WatchJob(service_->jobs(), job_id,
+                       [&](const JobInfo& info) {
+                         if (info.stage == "wait for memory") held.reset();
+                         last = info;
+                         return true;
+                       }),
+              IsOk());
+  EXPECT_EQ(last.state, JobState::kSucceeded);
+  EXPECT_EQ(service_->memory().jobs.used_bytes(), 0u);
+
+  service_.reset();
+  service_ = LocalCharacterService::Open({.data_dir = folder_.path(),
+                                          .memory = {.memory_bytes = 16 << 20},
+                                          .train = trainer_.function()})
+                 .value();
+  EXPECT_THAT(service_->jobs().CreateTraining({.sequence_ids = {sequence_id}}),
+              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("--memory-bytes")));
+}
+
 TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
   Open();
   const std::string file = CompressSequence(MakeSwayingTube(20), {}, nullptr).value();
@@ -131,10 +177,10 @@ TEST_F(LocalCharacterServiceTest, DecodersShareABudget) {
   EXPECT_EQ(service_->compressed_sequences().decoder_bytes(), 0u);
 
   service_.reset();
-  service_ =
-      LocalCharacterService::Open(
-          {.data_dir = folder_.path(), .decode_bytes = 5 * one / 2, .train = trainer_.function()})
-          .value();
+  service_ = LocalCharacterService::Open({.data_dir = folder_.path(),
+                                          .memory = {.decode_bytes = 5 * one / 2},
+                                          .train = trainer_.function()})
+                 .value();
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto first, service_->compressed_sequences().OpenDecode(id, {}));
   PLEAT_ASSERT_OK_AND_ASSIGN(auto second, service_->compressed_sequences().OpenDecode(id, {5, 9}));
   EXPECT_THAT(service_->compressed_sequences().OpenDecode(id, {}),

@@ -20,10 +20,12 @@ class LocalCompressedSequencesTest : public testing::Test {
   void Open(const ServiceLimits& limits, uint64_t decode_bytes) {
     compressed_.reset();
     folder_.Open(limits);
-    compressed_ = std::make_unique<LocalCompressedSequences>(&folder_.files(), decode_bytes);
+    memory_ = std::make_unique<MemoryBudget>(decode_bytes, "--decode-bytes");
+    compressed_ = std::make_unique<LocalCompressedSequences>(&folder_.files(), memory_.get());
   }
 
   DataFolder folder_;
+  std::unique_ptr<MemoryBudget> memory_;
   std::unique_ptr<LocalCompressedSequences> compressed_;
   const MeshSequence tube_ = MakeSwayingTube(10);
   const std::string file_ = CompressSequence(tube_, {}, nullptr).value();

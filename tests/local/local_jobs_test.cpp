@@ -61,15 +61,18 @@ class LocalJobsTest : public testing::Test {
     folder_.Open({.max_clips = 2});
     a_ = folder_.sequences().Upload(MakeSwayingTube(5, "a"), {})->id;
     b_ = folder_.sequences().Upload(MakeSwayingTube(6, "b"), {})->id;
+    pool_ = std::make_unique<JobPool>(&folder_.files(), Runners(), JobPoolOptions{});
     jobs_ = std::make_unique<LocalJobs>(
         &folder_.files(), &folder_.sequences(),
-        JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1),
-        LocalJobsOptions{});
-    EXPECT_THAT(jobs_->Start(), IsOk());
+        JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1), pool_.get());
+    EXPECT_THAT(pool_->Start(), IsOk());
   }
   ~LocalJobsTest() override {
     training_.Release();
-    jobs_->Shutdown();
+    pool_->Shutdown();
+  }
+  JobPool::RunnerOf Runners() {
+    return [this](const std::string&) -> const JobRunner& { return jobs_->runner(); };
   }
   std::string Create(const std::string& sequence_id, const std::string& name = "") {
     return jobs_->CreateTraining({.sequence_ids = {sequence_id}, .model_name = name})->id;
@@ -85,13 +88,14 @@ class LocalJobsTest : public testing::Test {
     return last;
   }
   int NumModels() {
-    return static_cast<int>(folder_.files().catalog().List(EntryKind::kModel)->size());
+    return static_cast<int>(folder_.files().store().catalog().List(EntryKind::kModel)->size());
   }
 
   DataFolder folder_;
   GatedTraining training_;
   std::string a_, b_;
   std::unique_ptr<LocalJobs> jobs_;
+  std::unique_ptr<JobPool> pool_;  // ends first
 };
 
 TEST_F(LocalJobsTest, JobsAreListedInTheirOrderUnderTheNameOfTheirResult) {
@@ -168,7 +172,7 @@ TEST_F(LocalJobsTest, WhatCannotSucceedIsRefusedBeforeThereIsAJob) {
   EXPECT_THAT(jobs_->CreateCompression({a_, {.max_error_mm = -1}}),
               HasStatus(absl::StatusCode::kInvalidArgument, _));
   EXPECT_TRUE(jobs_->List()->empty());
-  EXPECT_TRUE(folder_.files().catalog().List(EntryKind::kRig)->empty());
+  EXPECT_TRUE(folder_.files().store().catalog().List(EntryKind::kRig)->empty());
 }
 
 // Counts what a listener hears, and lets a test wait for it.
@@ -223,19 +227,17 @@ TEST_F(LocalJobsTest, AShutdownEndsSubscriptionsAndTakesNoMoreJobs) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto subscription,
                              jobs_->Subscribe(waiting, counter.function()));
   training_.Release();
-  jobs_->Shutdown();
+  pool_->Shutdown();
   EXPECT_GT(counter.count(), 0);
   EXPECT_THAT(subscription->status(), HasStatus(absl::StatusCode::kUnavailable, _));
   EXPECT_THAT(jobs_->CreateCompression({a_, {}}), HasStatus(absl::StatusCode::kUnavailable, _));
-  jobs_->Shutdown();  // once more does no harm
+  pool_->Shutdown();  // once more does no harm
 }
 
 TEST_F(LocalJobsTest, ARecordThatCannotBeReadStopsNoStart) {
-  jobs_->Shutdown();
+  pool_->Shutdown();
   ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kJob, {"broken", "\xff\xff\xff"}), IsOk());
-  LocalJobs again(&folder_.files(), &folder_.sequences(),
-                  JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1),
-                  LocalJobsOptions{});
+  JobPool again(&folder_.files(), Runners(), JobPoolOptions{});
   EXPECT_THAT(again.Start(), IsOk());
   EXPECT_THAT(folder_.problems(), testing::ElementsAre(HasSubstr("the job 'broken'")));
 }

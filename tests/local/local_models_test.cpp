@@ -45,7 +45,8 @@ class LocalModelsTest : public testing::Test {
 };
 
 TEST_F(LocalModelsTest, OneModelIsLoadedOnceForAllWhoAsk) {
-  LocalModels models(&folder_.files(), 10 * bytes_);
+  ModelCache cache(10 * bytes_);
+  LocalModels models(&folder_.files(), &cache);
   std::vector<std::shared_ptr<const CharacterModel>> handles(4);
   std::vector<std::thread> threads;
   for (auto& handle : handles) {
@@ -60,7 +61,8 @@ TEST_F(LocalModelsTest, OneModelIsLoadedOnceForAllWhoAsk) {
 }
 
 TEST_F(LocalModelsTest, WhatIsInUseIsNotEvicted) {
-  LocalModels models(&folder_.files(), bytes_ + bytes_ / 2);  // one and not two
+  ModelCache cache(bytes_ + bytes_ / 2);
+  LocalModels models(&folder_.files(), &cache);  // one and not two
   auto held = models.Acquire(ids_[0]).value();
   EXPECT_THAT(models.Acquire(ids_[1]), HasStatus(absl::StatusCode::kResourceExhausted, _));
   EXPECT_EQ(models.Acquire(ids_[0]).value(), held);
@@ -72,7 +74,8 @@ TEST_F(LocalModelsTest, WhatIsInUseIsNotEvicted) {
 }
 
 TEST_F(LocalModelsTest, ADeletedModelLeavesTheMemoryAsWell) {
-  LocalModels models(&folder_.files(), 10 * bytes_);
+  ModelCache cache(10 * bytes_);
+  LocalModels models(&folder_.files(), &cache);
   ASSERT_THAT(models.Acquire(ids_[0]), IsOk());
   ASSERT_THAT(models.Delete(ids_[0]), IsOk());
   EXPECT_EQ(models.cache_stats().num_entries, 0);
@@ -87,7 +90,8 @@ TEST_F(LocalModelsTest, ADeletedModelLeavesTheMemoryAsWell) {
 }
 
 TEST_F(LocalModelsTest, PiecesAreThoseOfTheWholeFile) {
-  LocalModels models(&folder_.files(), 10 * bytes_);
+  ModelCache cache(10 * bytes_);
+  LocalModels models(&folder_.files(), &cache);
   const std::string whole = models.Download(ids_[1], {}).value();
   EXPECT_EQ(whole.size(), models.Get(ids_[1])->size_bytes);
   const auto download = models.OpenDownload(ids_[1], 0).value();
@@ -102,7 +106,8 @@ TEST_F(LocalModelsTest, PiecesAreThoseOfTheWholeFile) {
 
 // An error of the store is the error of the call, and is not remembered.
 TEST_F(LocalModelsTest, ErrorsOfTheStoreArePassedOnAndForgotten) {
-  LocalModels models(&folder_.files(), 10 * bytes_);
+  ModelCache cache(10 * bytes_);
+  LocalModels models(&folder_.files(), &cache);
   const std::string path = folder_.PathOf(ids_[0]), kept = models.Download(ids_[0], {}).value();
   std::ofstream(path, std::ios::binary) << "damaged";
   EXPECT_THAT(models.Acquire(ids_[0]), HasStatus(absl::StatusCode::kDataLoss, _));
@@ -118,9 +123,11 @@ TEST_F(LocalModelsTest, ErrorsOfTheStoreArePassedOnAndForgotten) {
 class SessionsOfModelsTest : public LocalModelsTest {
  protected:
   void Open(uint64_t cache_bytes) {
-    models_ = std::make_unique<LocalModels>(&folder_.files(), cache_bytes);
-    poses_ = std::make_unique<LocalPoses>(models_.get(),
-                                          LocalPosesOptions{.max_frames = 100, .num_threads = 1});
+    poses_.reset();
+    models_.reset();
+    cache_ = std::make_unique<ModelCache>(cache_bytes);
+    models_ = std::make_unique<LocalModels>(&folder_.files(), cache_.get());
+    poses_ = std::make_unique<LocalPoses>(models_.get(), &engine_, /*max_frames=*/100);
   }
   ~SessionsOfModelsTest() override { poses_.reset(); }
   std::unique_ptr<PoseSession> OpenSession(const std::string& id, FrameEncoding encoding) {
@@ -137,6 +144,8 @@ class SessionsOfModelsTest : public LocalModelsTest {
     EXPECT_LT((positions - truth.positions).cwiseAbs().maxCoeff(), 1e-4);
   }
 
+  PoseEngine engine_{{.num_threads = 1}};
+  std::unique_ptr<ModelCache> cache_;
   std::unique_ptr<LocalModels> models_;
   std::unique_ptr<LocalPoses> poses_;
 };

@@ -162,7 +162,7 @@ TEST_F(RetentionTest, JobsGoByTheirRulesAndTheirSequencesStay) {
   folder_.Pass(absl::Hours(1));
   EXPECT_EQ(Run({.max_job_age = absl::Minutes(59)}), 1u);
   EXPECT_THAT(removed_, ElementsAre(HasSubstr("job-2")));
-  EXPECT_EQ(folder_.files().catalog().List(EntryKind::kJob)->size(), 1u);
+  EXPECT_EQ(folder_.files().store().catalog().List(EntryKind::kJob)->size(), 1u);
   EXPECT_TRUE(Has(id));
 }
 
@@ -170,7 +170,7 @@ TEST_F(RetentionTest, UploadsThatNobodyGoesOnWithAreForgotten) {
   const std::string id(64, 'a'), held_id(64, 'b');
   for (const std::string& it : {id, held_id}) {
     PLEAT_ASSERT_OK_AND_ASSIGN(const auto upload, folder_.files().BeginUpload(it, 100, 0));
-    ASSERT_THAT(upload->Append("some bytes"), IsOk());
+    ASSERT_THAT(upload.upload->Append("some bytes"), IsOk());
   }
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto held, folder_.files().BeginUpload(held_id, 100, 10));
   // The files have the time of this machine; the folder's clock goes there.
@@ -178,8 +178,8 @@ TEST_F(RetentionTest, UploadsThatNobodyGoesOnWithAreForgotten) {
   EXPECT_EQ(Run({.max_upload_age = absl::Hours(3)}), 0u);
   EXPECT_EQ(Run({.max_upload_age = absl::Hours(1)}), 1u);
   EXPECT_THAT(removed_, ElementsAre(AllOf(HasSubstr("upload"), HasSubstr(id))));
-  EXPECT_EQ(folder_.files().uploads().ReceivedBytes(id), 0u);
-  EXPECT_EQ(folder_.files().uploads().ReceivedBytes(held_id), 10u);
+  EXPECT_EQ(folder_.files().store().uploads().ReceivedBytes(id), 0u);
+  EXPECT_EQ(folder_.files().store().uploads().ReceivedBytes(held_id), 10u);
 }
 
 TEST_F(RetentionTest, WhatCannotBeRemovedIsReportedAndTheOthersGo) {
@@ -193,7 +193,7 @@ TEST_F(RetentionTest, WhatCannotBeRemovedIsReportedAndTheOthersGo) {
   EXPECT_THAT(folder_.problems(), ElementsAre(AllOf(HasSubstr("retention"), HasSubstr(id))));
   EXPECT_FALSE(Has(other));
   // The row is gone, and the catalog remembers that the file must go.
-  EXPECT_THAT(folder_.files().catalog().PendingRemovals().value(), ElementsAre(id));
+  EXPECT_THAT(folder_.files().store().catalog().PendingRemovals().value(), ElementsAre(id));
 }
 
 }  // namespace

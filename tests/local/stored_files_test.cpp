@@ -110,8 +110,8 @@ TEST_F(StoredFilesTest, AnUploadHasOneWriter) {
   auto upload = files().BeginUpload(other_id_, 10, 0);
   ASSERT_THAT(upload, IsOk());
   EXPECT_THAT(files().BeginUpload(other_id_, 10, 0), HasStatus(absl::StatusCode::kAborted, _));
-  EXPECT_THAT((*upload)->Append("01234567890"), HasStatus(absl::StatusCode::kOutOfRange, _));
-  upload->reset();
+  EXPECT_THAT(upload->upload->Append("01234567890"), HasStatus(absl::StatusCode::kOutOfRange, _));
+  upload->upload.reset();
   EXPECT_THAT(files().BeginUpload(other_id_, 10, 0), IsOk());
 }
 

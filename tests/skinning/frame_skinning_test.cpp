@@ -159,6 +159,30 @@ TEST_F(FrameSkinningTest, EveryNumberOfVerticesFillsItsMatrixAndNothingElse) {
   }
 }
 
+TEST_F(FrameSkinningTest, LanesInAnotherOrderGiveTheSamePositions) {
+  // The vertices backwards, with a block of five that is only filled up.
+  std::vector<int> lanes;
+  for (int i = 0; i < num_vertices(); ++i) {
+    if (i == 5) lanes.resize(16, -1);
+    lanes.push_back(num_vertices() - 1 - i);
+  }
+  lanes.resize((lanes.size() + 15) / 16 * 16, -1);
+  const FrameSkinning skinning(figure_.rig, lanes);
+  ASSERT_EQ(skinning.num_blocks(), static_cast<int>(lanes.size() / 16));
+  std::vector<float> details(3 * lanes.size(), 0);
+  for (size_t lane = 0; lane < lanes.size(); ++lane) {
+    if (lanes[lane] < 0) continue;
+    const size_t v = static_cast<size_t>(lanes[lane]);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      details[lane / 16 * 48 + axis * 16 + lane % 16] =
+          details_.data()[v / 16 * 48 + axis * 16 + v % 16];
+    }
+  }
+  Eigen::Matrix3Xf positions(3, num_vertices());
+  skinning.SkinBlocks(motions_, 0, skinning.num_blocks(), details.data(), &positions);
+  EXPECT_EQ(positions, Skin(details_.data()));
+}
+
 // The bone of an unused entry may be anything in a file, and kernels read the bones of all entries.
 TEST_F(FrameSkinningTest, BonesOfUnusedEntriesDoNotMatter) {
   std::vector<VertexInfluences> odd = figure_.rig.weights.influences();

@@ -98,10 +98,11 @@ inline std::shared_ptr<const CharacterModel> MakeFakeModel(const MeshSequence& c
   detail.learner = Learner::kGp;
   detail.stages = {stage};
   const Eigen::VectorXf mean = matrix(3 * num_vertices, 1).col(0).cast<float>() * .005f;
-  detail.basis = DetailBasis::Quantize(mean, matrix(3 * num_vertices, kComponents) * .005,
-                                       Eigen::VectorXd::Constant(kComponents, 1e-6))
-                     .value()
-                     .parameters();
+  detail.basis = PartedBasisParameters::Whole(
+      DetailBasis::Quantize(mean, matrix(3 * num_vertices, kComponents) * .005,
+                            Eigen::VectorXd::Constant(kComponents, 1e-6))
+          .value()
+          .parameters());
   parts.detail_model =
       std::make_shared<const DetailModel>(DetailModel::FromParameters(std::move(detail)).value());
   parts.record.learner = "gp";

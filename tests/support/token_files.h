@@ -23,8 +23,9 @@ class TestTokens {
   const std::string& folder() const { return folder_.path(); }
   const std::string& path() const { return path_; }
 
-  NewToken Add(const std::string& name, const std::string& scopes) {
-    NewToken made = MakeToken(name, ParseScopes(scopes).value(), kNow, {});
+  NewToken Add(const std::string& name, const std::string& scopes,
+               const std::string& project = kDefaultProject) {
+    NewToken made = MakeToken(name, ParseScopes(scopes).value(), kNow, {}, project);
     EXPECT_THAT(ChangeTokens(path_,
                              [&](std::vector<Token>* tokens) {
                                tokens->push_back(made.token);

@@ -63,7 +63,10 @@ TEST(FullMessagesTest, EveryFieldCrossesTheWire) {
   ExpectEveryFieldCrosses(FullCompressedSequence(), {"lossless_at_bits", "max_error_mm"});
   EXPECT_EQ(FromProto(ToProto(FullCompressedSequence()))->record->summary.max_error_mm, 6);
   ExpectEveryFieldCrosses(FullHeader());
-  ExpectEveryFieldCrosses(FullParameters());
+  ExpectEveryFieldCrosses(FullParameters(), {"packed_coefficients"});
+  FrameParameters many = FullParameters();
+  many.coefficients = Eigen::VectorXf::LinSpaced(300, -.5f, .5f);
+  ExpectEveryFieldCrosses(many, {"coefficients"});
   ExpectEveryFieldCrosses(FullTrack());
   ExpectEveryFieldCrosses(CharacterQuery{kId, {1, 2}, true});
   ExpectEveryFieldCrosses(FrameEncoderOptions{.content = StreamContent::kControlMesh, .speed = 0},

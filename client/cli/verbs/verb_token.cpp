@@ -25,7 +25,7 @@ using nlohmann::ordered_json;
 constexpr int kSecondsPerDay = 24 * 3600;
 
 struct TokenVerbOptions {
-  std::string action, folder, id, name, scopes;
+  std::string action, folder, id, name, scopes, project = kDefaultProject;
   int days = 0;
 };
 
@@ -61,8 +61,9 @@ absl::Status Create(const TokenVerbOptions& options, const Session& session) {
   if (options.days > 0) expires = now + int64_t{options.days} * kSecondsPerDay;
   PLEAT_RETURN_IF_ERROR(CheckTokenName(options.name));
   PLEAT_ASSIGN_OR_RETURN(const ScopeSet scopes, ParseScopes(options.scopes));
+  PLEAT_RETURN_IF_ERROR(CheckProjectName(options.project));
   PLEAT_RETURN_IF_ERROR(MakeFolder(options.folder));
-  const NewToken made = MakeToken(options.name, scopes, now, expires);
+  const NewToken made = MakeToken(options.name, scopes, now, expires, options.project);
   PLEAT_RETURN_IF_ERROR(ChangeTokens(TokenPath(options.folder), [&](std::vector<Token>* tokens) {
     tokens->push_back(made.token);
     return absl::OkStatus();
@@ -84,6 +85,7 @@ absl::Status List(const TokenVerbOptions& options, const Session& session) {
     for (const Token& token : tokens) {
       list.push_back({{"id", token.id},
                       {"name", token.name},
+                      {"project", token.project},
                       {"scopes", ScopesText(token.scopes)},
                       {"state", StateName(token, now)},
                       {"created", TimeText(token.created)},
@@ -94,10 +96,11 @@ absl::Status List(const TokenVerbOptions& options, const Session& session) {
   }
   std::vector<std::vector<std::string>> rows;
   for (const Token& token : tokens) {
-    rows.push_back({token.id, token.name, ScopesText(token.scopes), StateName(token, now),
-                    TimeText(token.created), TimeText(token.expires)});
+    rows.push_back({token.id, token.name, token.project, ScopesText(token.scopes),
+                    StateName(token, now), TimeText(token.created), TimeText(token.expires)});
   }
-  *session.out << FormatTable({"id", "name", "scopes", "state", "created", "expires"}, rows);
+  *session.out << FormatTable({"id", "name", "project", "scopes", "state", "created", "expires"},
+                              rows);
   return absl::OkStatus();
 }
 
@@ -143,6 +146,9 @@ void AddTokenVerb(CLI::App& app, Session& session) {
   verb->add_option("--name", options->name, "create: whose token it is");
   verb->add_option("--scopes", options->scopes,
                    "create: what it allows, some of read,pose,train,admin");
+  verb->add_option("--project", options->project,
+                   "create: what it sees; projects do not see each other")
+      ->capture_default_str();
   verb->add_option("--days", options->days, "create: how long it is good [for ever]")
       ->check(CLI::Range(1, 36500));
 }

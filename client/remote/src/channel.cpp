@@ -14,6 +14,8 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
+#include "pleat/wire/limit_messages.h"
 #include "token_interceptor.h"
 
 namespace pleat {
@@ -38,6 +40,20 @@ constexpr char kServiceConfig[] = R"({"methodConfig":[{"name":[
   {"service":"pleat.v1.JobService","method":"ListJobs"}],
   "retryPolicy":{"maxAttempts":4,"initialBackoff":"0.1s","maxBackoff":"2s",
   "backoffMultiplier":2,"retryableStatusCodes":["UNAVAILABLE"]}}]})";
+
+std::chrono::milliseconds BackOffTime(int attempt) {
+  return std::chrono::milliseconds(std::min(100 << std::min(attempt, 6), 4000));
+}
+
+// False when `progress` was cancelled meanwhile.
+bool Wait(std::chrono::milliseconds time, const Progress& progress) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (std::chrono::steady_clock::now() < end) {
+    if (progress.cancelled()) return false;
+    std::this_thread::sleep_for(std::min(kPoll, time));
+  }
+  return true;
+}
 
 std::shared_ptr<grpc::ChannelCredentials> MakeCredentials(const RemoteOptions& options) {
   if (!options.tls) return grpc::InsecureChannelCredentials();
@@ -137,7 +153,24 @@ std::shared_ptr<grpc::Channel> MakeChannel(const std::string& address, const Rem
 }
 
 absl::Status FromGrpcStatus(const grpc::Status& status) {
-  return absl::Status(static_cast<absl::StatusCode>(status.error_code()), status.error_message());
+  return WithLimitDetails(
+      absl::Status(static_cast<absl::StatusCode>(status.error_code()), status.error_message()),
+      status.error_details());
+}
+
+std::optional<absl::Duration> RetryDelayOf(const absl::Status& status) {
+  const std::optional<LimitRefusal> refusal = LimitRefusalOf(status);
+  return refusal ? refusal->retry_after : std::nullopt;
+}
+
+bool WaitForRetry(const absl::Status& status, int attempt, const RemoteOptions& options,
+                  const Progress& progress) {
+  const std::optional<absl::Duration> delay = RetryDelayOf(status);
+  if (!delay || attempt >= options.max_attempts ||
+      *delay > absl::Seconds(options.max_retry_seconds)) {
+    return false;
+  }
+  return Wait(std::max(BackOffTime(attempt), absl::ToChronoMilliseconds(*delay)), progress);
 }
 
 bool IsTransient(const absl::Status& status) {
@@ -145,15 +178,7 @@ bool IsTransient(const absl::Status& status) {
          status.code() == absl::StatusCode::kAborted;
 }
 
-bool BackOff(int attempt, const Progress& progress) {
-  const auto wait = std::chrono::milliseconds(std::min(100 << std::min(attempt, 6), 4000));
-  const auto end = std::chrono::steady_clock::now() + wait;
-  while (std::chrono::steady_clock::now() < end) {
-    if (progress.cancelled()) return false;
-    std::this_thread::sleep_for(kPoll);
-  }
-  return true;
-}
+bool BackOff(int attempt, const Progress& progress) { return Wait(BackOffTime(attempt), progress); }
 
 CancelWatcher::CancelWatcher(grpc::ClientContext* context, const Progress& progress)
     : thread_([this, context, progress] {

@@ -6,10 +6,12 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
 #include "pleat/base/progress.h"
 #include "pleat/remote/remote_options.h"
 
@@ -33,7 +35,30 @@ grpc::Status AskForHealth(const std::shared_ptr<grpc::Channel>& channel, const s
 absl::Status WaitForConnection(const std::shared_ptr<grpc::Channel>& channel,
                                const std::string& address, const RemoteOptions& options);
 
+// With the limit that refused the call, when the server named one (limit_refusal.h).
 absl::Status FromGrpcStatus(const grpc::Status& status);
+
+// How long the server asks to wait before the same call; nothing when it says no such thing.
+std::optional<absl::Duration> RetryDelayOf(const absl::Status& status);
+// Waits as long as the server asked for, and at least as long as BackOff. Returns false, without
+// waiting, when it asked for nothing or for too much, or when this was the last attempt.
+bool WaitForRetry(const absl::Status& status, int attempt, const RemoteOptions& options,
+                  const Progress& progress = {});
+
+inline const absl::Status& StatusOf(const absl::Status& status) { return status; }
+template <typename T>
+const absl::Status& StatusOf(const absl::StatusOr<T>& result) {
+  return result.status();
+}
+// Makes a call, and makes it again after the time that the server asked for when it was refused for
+// a limit: then the server has done nothing.
+template <typename Make>
+auto RetryRefused(const RemoteOptions& options, Make make) -> decltype(make()) {
+  for (int attempt = 1;; ++attempt) {
+    auto result = make();
+    if (!WaitForRetry(StatusOf(result), attempt, options)) return result;
+  }
+}
 
 // Says whether the same call may succeed a little later after this error.
 bool IsTransient(const absl::Status& status);

@@ -170,7 +170,7 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
 
   absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
                                                                 uint64_t offset_bytes) override {
-    return OpenRemoteDownload(Start(), id, offset_bytes);
+    return OpenRemoteDownload(state_->options, Start(), id, offset_bytes);
   }
 
   absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> BeginUpload(
@@ -183,9 +183,11 @@ class RemoteCompressedSequences final : public CompressedSequenceService {
 
   absl::StatusOr<std::unique_ptr<DecodeSession>> OpenDecode(const std::string& id,
                                                             FrameRange range) override {
-    auto session = std::make_unique<RemoteDecodeSession>(state_->compressed.get(), id, range);
-    PLEAT_RETURN_IF_ERROR(session->ReadShape());
-    return session;
+    return RetryRefused(state_->options, [&]() -> absl::StatusOr<std::unique_ptr<DecodeSession>> {
+      auto session = std::make_unique<RemoteDecodeSession>(state_->compressed.get(), id, range);
+      PLEAT_RETURN_IF_ERROR(session->ReadShape());
+      return session;
+    });
   }
 
  private:

@@ -52,7 +52,7 @@ class RemoteModels final : public ModelService {
 
   absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
                                                                 uint64_t offset_bytes) override {
-    return OpenRemoteDownload(Start(), id, offset_bytes);
+    return OpenRemoteDownload(state_->options, Start(), id, offset_bytes);
   }
 
  private:

@@ -153,10 +153,12 @@ absl::StatusOr<std::unique_ptr<ClipSession>> RemotePoses::OpenClip(const std::st
   *request.mutable_character() = CharacterOf(model_id, options);
   *request.mutable_track() = ToProto(track);
   *request.mutable_options() = ToProto(options.encoder);
-  auto session = std::make_unique<RemoteClipSession>(state_->poses.get(), request,
-                                                     options.encoder.content, track.num_frames());
-  PLEAT_RETURN_IF_ERROR(session->ReadHeader());
-  return session;
+  return RetryRefused(state_->options, [&]() -> absl::StatusOr<std::unique_ptr<ClipSession>> {
+    auto session = std::make_unique<RemoteClipSession>(state_->poses.get(), request,
+                                                       options.encoder.content, track.num_frames());
+    PLEAT_RETURN_IF_ERROR(session->ReadHeader());
+    return session;
+  });
 }
 
 absl::StatusOr<std::unique_ptr<PoseStream>> RemotePoses::OpenStream(const std::string&,
@@ -223,11 +225,11 @@ absl::StatusOr<std::unique_ptr<LiveSession>> RemotePoses::OpenLiveSession(
   std::shared_ptr<grpc::Channel> channel =
       state_->address.empty() ? state_->channel
                               : MakeChannel(state_->address, state_->options, ChannelUse::kLive);
-  return OpenRemoteLiveSession(
-      std::move(channel),
+  const v1::Character message =
       CharacterOf(character.model_id,
-                  {.bone_scales = character.bone_scales, .skinned_only = character.skinned_only}),
-      options);
+                  {.bone_scales = character.bone_scales, .skinned_only = character.skinned_only});
+  return RetryRefused(state_->options,
+                      [&] { return OpenRemoteLiveSession(channel, message, options); });
 }
 
 }  // namespace pleat

@@ -43,16 +43,18 @@ struct RemoteState {
         compressed(v1::CompressedSequenceService::NewStub(channel)),
         poses(v1::PoseService::NewStub(channel)) {}
 
-  // Makes one call that is no stream, with the deadline of the options.
+  // Makes one call that is no stream, with the deadline of the options for each attempt.
   template <typename Stub, typename Request, typename Response>
   absl::Status Call(Stub* stub,
                     grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                     const Request& request, Response* response) const {
-    grpc::ClientContext context;
-    context.set_deadline(
-        std::chrono::system_clock::now() +
-        std::chrono::milliseconds(static_cast<int64_t>(options.deadline_seconds * 1000)));
-    return FromGrpcStatus((stub->*method)(&context, request, response));
+    return RetryRefused(options, [&] {
+      grpc::ClientContext context;
+      context.set_deadline(
+          std::chrono::system_clock::now() +
+          std::chrono::milliseconds(static_cast<int64_t>(options.deadline_seconds * 1000)));
+      return FromGrpcStatus((stub->*method)(&context, request, response));
+    });
   }
 };
 

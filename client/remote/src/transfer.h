@@ -144,6 +144,7 @@ absl::StatusOr<Info> UploadFile(const RemoteState& state, const UploadCalls<Info
     // kOutOfRange means that what the server holds has changed since it was asked.
     const bool again =
         IsTransient(result.status()) || result.status().code() == absl::StatusCode::kOutOfRange;
+    if (WaitForRetry(result.status(), attempt, state.options, progress)) continue;
     if (!again || attempt >= state.options.max_attempts) return result;
     if (!BackOff(attempt, progress)) return absl::CancelledError("the upload was cancelled");
   }
@@ -242,6 +243,7 @@ absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::st
     }
     if (status.ok()) break;
     PLEAT_RETURN_IF_ERROR(progress.Report(0));
+    if (WaitForRetry(status, attempt, state.options, progress)) continue;
     if (!IsTransient(status) || attempt >= state.options.max_attempts) return status;
     if (!BackOff(attempt, progress)) return absl::CancelledError("the download was cancelled");
   }
@@ -255,11 +257,14 @@ absl::StatusOr<std::string> DownloadFile(const RemoteState& state, const std::st
 // Opens a download in pieces.
 template <typename Request, typename Response>
 absl::StatusOr<std::unique_ptr<ContentDownload>> OpenRemoteDownload(
-    const StartDownload<Request, Response>& start, const std::string& id, uint64_t offset_bytes) {
-  auto download =
-      std::make_unique<RemoteDownload<Request, Response>>(start, id, offset_bytes, Progress());
-  PLEAT_RETURN_IF_ERROR(download->Open());
-  return download;
+    const RemoteOptions& options, const StartDownload<Request, Response>& start,
+    const std::string& id, uint64_t offset_bytes) {
+  return RetryRefused(options, [&]() -> absl::StatusOr<std::unique_ptr<ContentDownload>> {
+    auto download =
+        std::make_unique<RemoteDownload<Request, Response>>(start, id, offset_bytes, Progress());
+    PLEAT_RETURN_IF_ERROR(download->Open());
+    return download;
+  });
 }
 
 }  // namespace pleat

@@ -2,13 +2,19 @@
 
 #include <cerrno>
 
+#include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
 
 namespace pleat {
 
 absl::Status WithContext(absl::string_view where, absl::Status status) {
   if (status.ok()) return status;
-  return absl::Status(status.code(), absl::StrCat(where, ": ", status.message()));
+  absl::Status told(status.code(), absl::StrCat(where, ": ", status.message()));
+  // What else it carries, such as the limit that it is about (limit_refusal.h), stays.
+  status.ForEachPayload([&told](absl::string_view type, const absl::Cord& payload) {
+    told.SetPayload(type, payload);
+  });
+  return told;
 }
 
 absl::Status ErrnoStatus(int code, absl::string_view message) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -78,10 +80,15 @@ absl::Status CheckParts(const CharacterModel::Parts& parts) {
   if (!parts.detail_model) {
     return absl::InvalidArgumentError("character model: there is no detail model");
   }
-  if (parts.detail_model->num_features() !=
-      parts.feature_reference.size() * parts.options.history) {
-    return Mismatch("the number of inputs of the detail model", parts.detail_model->num_features(),
-                    parts.feature_reference.size() * parts.options.history);
+  const Eigen::Index num_pose_features = parts.feature_reference.size() * parts.options.history;
+  if (parts.detail_model->num_pose_features() != num_pose_features) {
+    return Mismatch("the number of inputs of the detail model",
+                    parts.detail_model->num_pose_features(), num_pose_features);
+  }
+  const int num_skin_features = parts.skin_features ? parts.skin_features->num_features() : 0;
+  if (parts.detail_model->num_features() != num_pose_features + num_skin_features) {
+    return Mismatch("the number of features of the skin",
+                    parts.detail_model->num_features() - num_pose_features, num_skin_features);
   }
   if (parts.detail_model->num_details() != 3 * static_cast<int>(parts.control_vertices.size())) {
     return Mismatch("the number of outputs of the detail model", parts.detail_model->num_details(),
@@ -99,6 +106,7 @@ size_t DetailModelBytes(const DetailModel& detail) {
              static_cast<size_t>(parameters.whitener.size()) * sizeof(float);
   }
   if (detail.regional()) bytes += detail.regional()->memory_bytes();
+  if (detail.fold()) bytes += detail.fold()->memory_bytes();
   return bytes;
 }
 
@@ -114,12 +122,81 @@ Eigen::MatrixXd UpsampleColumns(const RbfUpsampler& upsampler, const Eigen::Matr
   return full;
 }
 
-// Folds the upsampling into the basis. The result is quantized as finely as the basis of the
-// control vertices was, component by component, so upsampling does not add a coarser rounding.
-absl::StatusOr<DetailBasis> Upsample(const RbfUpsampler& upsampler, const DetailBasis& control) {
+// Folds the upsampling into a basis of one part. The result is quantized as finely as the basis of
+// the control vertices was, component by component, so upsampling does not add a coarser rounding.
+absl::StatusOr<PartedBasis> UpsampleWhole(const RbfUpsampler& upsampler,
+                                          const DetailBasisParameters& parameters) {
+  PLEAT_ASSIGN_OR_RETURN(const DetailBasis control, DetailBasis::FromParameters(parameters));
   const Eigen::VectorXd mean = control.Mean().cast<double>();
-  return DetailBasis::Quantize(UpsampleColumns(upsampler, mean).cast<float>(),
-                               UpsampleColumns(upsampler, control.Dense()), control.FinestSteps());
+  PLEAT_ASSIGN_OR_RETURN(
+      const DetailBasis full,
+      DetailBasis::Quantize(UpsampleColumns(upsampler, mean).cast<float>(),
+                            UpsampleColumns(upsampler, control.Dense()), control.FinestSteps()));
+  return PartedBasis::FromParameters(PartedBasisParameters::Whole(full.parameters()));
+}
+
+// The parts of the control vertices that each vertex is interpolated from, ascending.
+std::vector<std::vector<int>> PartsOfVertices(const RbfUpsampler& upsampler,
+                                              const PartedBasisParameters& control) {
+  std::vector<int> part_of(static_cast<size_t>(upsampler.matrix().cols()));
+  for (size_t p = 0; p < control.parts.size(); ++p) {
+    for (const int c : control.parts[p].vertices) part_of[c] = static_cast<int>(p);
+  }
+  std::vector<std::vector<int>> parts(static_cast<size_t>(upsampler.matrix().rows()));
+  for (Eigen::Index v = 0; v < upsampler.matrix().rows(); ++v) {
+    std::set<int> own;
+    for (RbfUpsampler::Matrix::InnerIterator entry(upsampler.matrix(), v); entry; ++entry) {
+      own.insert(part_of[entry.col()]);
+    }
+    if (own.empty()) own.insert(0);  // a vertex that does not move
+    parts[v].assign(own.begin(), own.end());
+  }
+  return parts;
+}
+
+// Folds the upsampling into a basis of several parts. A vertex between parts is moved by the
+// components of all of them, so vertices of the same parts become one.
+absl::StatusOr<PartedBasis> UpsampleParts(const RbfUpsampler& upsampler,
+                                          const PartedBasis& control) {
+  const PartedBasisParameters p = control.parameters();
+  std::map<std::vector<int>, std::vector<int>> vertices_of_parts;
+  const std::vector<std::vector<int>> parts_of = PartsOfVertices(upsampler, p);
+  for (size_t v = 0; v < parts_of.size(); ++v) {
+    vertices_of_parts[parts_of[v]].push_back(static_cast<int>(v));
+  }
+  Eigen::VectorXd steps(control.num_coefficients());
+  for (const PartedBasisParameters::Part& part : p.parts) {
+    PLEAT_ASSIGN_OR_RETURN(const DetailBasis basis, DetailBasis::FromParameters(part.basis));
+    steps(part.coefficients) = basis.FinestSteps();
+  }
+  const Eigen::MatrixXd dense = control.Dense();
+  const Eigen::VectorXf mean =
+      UpsampleColumns(upsampler, control.Mean().cast<double>()).cast<float>();
+  PartedBasisParameters full;
+  full.num_coefficients = control.num_coefficients();
+  for (const auto& [parts, vertices] : vertices_of_parts) {
+    PartedBasisParameters::Part part{vertices, {}, {}};
+    for (const int number : parts) {
+      const std::vector<int>& coefficients = p.parts[number].coefficients;
+      part.coefficients.insert(part.coefficients.end(), coefficients.begin(), coefficients.end());
+    }
+    std::vector<int> rows;
+    for (const int v : vertices) rows.insert(rows.end(), {3 * v, 3 * v + 1, 3 * v + 2});
+    const Eigen::MatrixXd columns =
+        UpsampleColumns(upsampler, dense(Eigen::all, part.coefficients));
+    PLEAT_ASSIGN_OR_RETURN(
+        const DetailBasis basis,
+        DetailBasis::Quantize(mean(rows), columns(rows, Eigen::all), steps(part.coefficients)));
+    part.basis = basis.parameters();
+    full.parts.push_back(std::move(part));
+  }
+  return PartedBasis::FromParameters(full);
+}
+
+absl::StatusOr<PartedBasis> Upsample(const RbfUpsampler& upsampler, const PartedBasis& control) {
+  const PartedBasisParameters p = control.parameters();
+  const bool whole = p.parts.size() == 1 && p.parts[0].vertices.empty();
+  return whole ? UpsampleWhole(upsampler, p.parts[0].basis) : UpsampleParts(upsampler, control);
 }
 
 }  // namespace
@@ -128,7 +205,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> CharacterModel::Create(Par
   PLEAT_RETURN_IF_ERROR(CheckParts(parts));
   PoseFeatures features(FeatureOptionsOf(parts.options), parts.rig.skeleton.num_joints(),
                         parts.feature_reference);
-  DetailBasis upsampled_basis;
+  PartedBasis upsampled_basis;
   if (parts.upsampler) {
     PLEAT_ASSIGN_OR_RETURN(upsampled_basis,
                            Upsample(*parts.upsampler, parts.detail_model->basis()));
@@ -137,11 +214,12 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> CharacterModel::Create(Par
       new CharacterModel(std::move(parts), std::move(features), std::move(upsampled_basis)));
 }
 
-CharacterModel::CharacterModel(Parts parts, PoseFeatures features, DetailBasis upsampled_basis)
+CharacterModel::CharacterModel(Parts parts, PoseFeatures features, PartedBasis upsampled_basis)
     : parts_(std::move(parts)),
       features_(std::move(features)),
-      skinning_(parts_.rig),
-      upsampled_basis_(std::move(upsampled_basis)) {}
+      upsampled_basis_(std::move(upsampled_basis)) {
+  skinning_ = FrameSkinning(parts_.rig, full_basis().LaneVertices());
+}
 
 std::shared_ptr<const CharacterModel> CharacterModel::WithRecord(TrainingRecord record) const {
   const std::shared_ptr<CharacterModel> copy(new CharacterModel(*this));
@@ -167,6 +245,7 @@ size_t CharacterModel::memory_bytes() const {
         static_cast<size_t>(parts_.upsampler->matrix().nonZeros()) * (sizeof(float) + sizeof(int));
   }
   bytes += upsampled_basis_.memory_bytes();
+  if (parts_.skin_features) bytes += parts_.skin_features->memory_bytes();
   return bytes;
 }
 

@@ -1,5 +1,7 @@
 #include "detail_regions.h"
 
+#include <algorithm>
+#include <cassert>
 #include <set>
 #include <utility>
 
@@ -49,36 +51,62 @@ std::vector<int> ColumnsOf(const std::set<int>& bones, int num_joints,
   return columns;
 }
 
-}  // namespace
-
-std::vector<DetailRegion> DetailRegions(const Rig& rig, const std::vector<int>& control_vertices,
-                                        const TrainOptions& options) {
-  const Skeleton& skeleton = rig.skeleton;
-  const int num_joints = skeleton.num_joints();
-  std::vector<Eigen::VectorXd> weights(num_joints,
-                                       Eigen::VectorXd::Zero(3 * control_vertices.size()));
+// Returns a region's shares of the details of the control vertices, times `share`.
+DetailRegion SharesOfControl(const BodyRegion& region, const std::vector<int>& control_vertices,
+                             double share) {
+  DetailRegion result;
+  std::vector<double> weights;
+  size_t i = 0;
   for (size_t c = 0; c < control_vertices.size(); ++c) {
-    const VertexInfluences& influences = rig.weights.vertex(control_vertices[c]);
-    for (int k = 0; k < kMaxInfluences && influences.weights[k] > 0; ++k) {
-      weights[influences.bones[k]].segment<3>(3 * c).array() += influences.weights[k];
+    while (i < region.vertices.size() && region.vertices[i] < control_vertices[c]) ++i;
+    if (i == region.vertices.size()) break;
+    if (region.vertices[i] != control_vertices[c]) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      result.rows.push_back(3 * static_cast<int>(c) + axis);
+      weights.push_back(share * region.weights[i]);
     }
   }
+  result.weights =
+      Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<Eigen::Index>(weights.size()));
+  return result;
+}
+
+}  // namespace
+
+std::vector<DetailRegion> DetailRegions(const std::vector<BodyRegion>& body,
+                                        const Skeleton& skeleton,
+                                        const std::vector<int>& control_vertices, double share,
+                                        const TrainOptions& options) {
+  const int num_joints = skeleton.num_joints();
   std::set<int> all;
   for (int bone = 1; bone < num_joints; ++bone) all.insert(bone);
   std::vector<DetailRegion> regions;
-  for (int bone = 0; bone < num_joints; ++bone) {
-    if (weights[bone].isZero(0)) continue;
-    const std::set<int> near = Grown(skeleton, {bone});
-    const std::set<int> wider = Grown(skeleton, near);
-    DetailRegion region{std::move(weights[bone]), {}};
-    for (std::set<int> moving : {all, wider, near}) {
+  for (const BodyRegion& part : body) {
+    DetailRegion region = SharesOfControl(part, control_vertices, share);
+    region.max_components = part.max_components;
+    for (std::set<int> moving : {all, Grown(skeleton, part.bones), part.bones}) {
       moving.erase(0);  // the root moves vertices but has no features
       if (moving.empty()) continue;
-      region.feature_sets.push_back(ColumnsOf(moving, num_joints, options));
+      std::vector<int> columns = ColumnsOf(moving, num_joints, options);
+      const auto& sets = region.feature_sets;
+      if (std::find(sets.begin(), sets.end(), columns) != sets.end()) continue;
+      region.feature_sets.push_back(std::move(columns));
     }
     regions.push_back(std::move(region));
   }
   return regions;
+}
+
+void AddSkinFeatureSets(const SkinFeatures& features, int first_column,
+                        std::vector<DetailRegion>* regions) {
+  assert(features.num_regions() == static_cast<int>(regions->size()));
+  for (int r = 0; r < features.num_regions(); ++r) {
+    std::vector<int> columns;
+    for (int i = features.region_begin(r); i < features.region_end(r); ++i) {
+      columns.push_back(first_column + i);
+    }
+    if (!columns.empty()) (*regions)[r].feature_sets.push_back(std::move(columns));
+  }
 }
 
 std::vector<std::vector<int>> FeatureGroups(int num_joints, const TrainOptions& options) {

@@ -96,9 +96,9 @@ absl::StatusOr<ModelsByLearner> LearnModels(const RiggedFrames& rigged, const Le
   for (size_t i = 0; i < learners.size(); ++i) {
     const double begin = static_cast<double>(i) / static_cast<double>(learners.size());
     const double end = static_cast<double>(i + 1) / static_cast<double>(learners.size());
-    PLEAT_ASSIGN_OR_RETURN(
-        const std::shared_ptr<const DetailModel> detail_model,
-        LearnDetails(data, learners[i], options, progress.Stage("learn", begin, end), &direct_gp));
+    PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> detail_model,
+                           LearnDetails(data, rigged.rig, learners[i], options,
+                                        progress.Stage("learn", begin, end), &direct_gp));
     PLEAT_ASSIGN_OR_RETURN(
         models[ChoiceName(learners[i])],
         AssembleModel(rigged, data, options, learners[i], detail_model, diagonal_m));
@@ -183,8 +183,8 @@ absl::StatusOr<EvaluateReport> EvaluateLearning(const EvaluationSetup& setup,
                                              options.resources, progress.Stage("detail", 0, .1)));
   report.num_control_vertices = static_cast<int>(data.control_vertices.size());
   PLEAT_ASSIGN_OR_RETURN(const LearnerChoice learner,
-                         ChooseLearner(data, train, report.diagonal_m, &report.validation,
-                                       progress.Stage("validate", .1, .25)));
+                         ChooseLearner(data, setup.rigged.rig, train, report.diagonal_m,
+                                       &report.validation, progress.Stage("validate", .1, .25)));
   report.learner = ChoiceName(learner);
   PLEAT_ASSIGN_OR_RETURN(const ModelsByLearner models,
                          LearnModels(setup.rigged, data, LearnersToMeasure(options, learner), train,

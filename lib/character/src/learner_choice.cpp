@@ -63,7 +63,7 @@ double HeldOutError(const DetailModel& model, const LearningData& data,
   int count = 0;
   for (size_t i = 0; i < rows.size(); i += step, ++count) {
     const int t = rows[i];
-    model.Predict(data.features.row(t).transpose(), &workspace, predicted);
+    model.Predict(data.FeaturesOf(model, t), &workspace, predicted);
     const Eigen::VectorXd difference =
         data.DetailOf(data.details.scores.row(t).transpose()) - predicted.cast<double>();
     sum += difference.reshaped(3, difference.size() / 3).colwise().norm().mean();
@@ -74,12 +74,15 @@ double HeldOutError(const DetailModel& model, const LearningData& data,
 DetailModelOptions ModelOptionsOf(LearnerChoice learner, const TrainOptions& options,
                                   const LearningData& data) {
   DetailModelOptions result;
-  result.regions = data.regions;
   result.gp.input_groups = data.feature_groups;
+  result.max_components = options.max_components;
+  result.pca_energy = options.detail_energy;
+  result.num_pose_features = static_cast<int>(data.features.cols());
   switch (learner) {
     case LearnerChoice::kAuto:  // refused by LearnDetails
       break;
     case LearnerChoice::kRegional:
+    case LearnerChoice::kRegionalFast:
       result.learner = Learner::kRegional;
       break;
     case LearnerChoice::kGp:
@@ -102,11 +105,17 @@ DetailModelOptions ModelOptionsOf(LearnerChoice learner, const TrainOptions& opt
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
-                                                                LearnerChoice learner,
-                                                                const TrainOptions& options,
-                                                                const Progress& progress,
-                                                                DirectGp* direct_gp) {
+Eigen::VectorXd LearningData::FeaturesOf(const DetailModel& model, int t) const {
+  Eigen::VectorXd row(model.num_features());
+  row.head(features.cols()) = features.row(t).transpose();
+  const Eigen::Index num_skin = row.size() - features.cols();
+  if (num_skin > 0) row.tail(num_skin) = regional.skin_rows.row(t).head(num_skin).transpose();
+  return row;
+}
+
+absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(
+    const LearningData& data, const Rig& rig, LearnerChoice learner, const TrainOptions& options,
+    const Progress& progress, DirectGp* direct_gp) {
   if (learner == LearnerChoice::kAuto) {
     return absl::InternalError("a learner must be chosen before it can be trained");
   }
@@ -117,16 +126,31 @@ absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningDa
       return data.differential->DecodeColumns(columns);
     };
   }
-  PLEAT_ASSIGN_OR_RETURN(DetailModel model,
-                         TrainDetailModel(data.features, data.details, data.clip_starts,
-                                          model_options, nullptr, progress));
-  const bool has_direct_gp = learner == LearnerChoice::kGp || learner == LearnerChoice::kRegional;
-  if (direct_gp && has_direct_gp && !*direct_gp) *direct_gp = model.stages().front();
+  Eigen::MatrixXd features = data.features;
+  if (model_options.learner == Learner::kRegional) {
+    const RegionalData regional =
+        learner == LearnerChoice::kRegionalFast ? data.regional.WithoutPatches(rig) : data.regional;
+    model_options.regions = regional.regions;
+    model_options.num_part_regions = regional.num_bone_regions;
+    if (regional.skin_features) {
+      features.conservativeResize(Eigen::NoChange,
+                                  data.features.cols() + regional.skin_rows.cols());
+      features.rightCols(regional.skin_rows.cols()) = regional.skin_rows;
+    }
+  }
+  PLEAT_ASSIGN_OR_RETURN(
+      DetailModel model,
+      TrainDetailModel(features, data.details, data.clip_starts, model_options, nullptr, progress));
+  // That of a regional model has kept one output only.
+  if (direct_gp && learner == LearnerChoice::kGp && !*direct_gp) {
+    *direct_gp = model.stages().front();
+  }
   return std::make_shared<const DetailModel>(std::move(model));
 }
 
-absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const TrainOptions& options,
-                                            double diagonal_m, LearnerValidation* validation,
+absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Rig& rig,
+                                            const TrainOptions& options, double diagonal_m,
+                                            LearnerValidation* validation,
                                             const Progress& progress) {
   if (options.learner != LearnerChoice::kAuto) return options.learner;
   const int num_rows = static_cast<int>(data.features.rows());
@@ -136,10 +160,10 @@ absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Trai
   // is the same for every candidate.
   LearningData part;
   part.features = data.features(split.train, Eigen::all);
+  part.regional = data.regional.OfRows(split.train);
   part.details = data.details;
   part.details.scores = data.details.scores(split.train, Eigen::all);
   part.clip_starts = split.train_clip_starts;
-  part.regions = data.regions;
   part.feature_groups = data.feature_groups;
   part.differential = data.differential;
   const std::vector<LearnerChoice> candidates = {LearnerChoice::kGp, LearnerChoice::kRegional,
@@ -151,7 +175,7 @@ absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Trai
     const double begin = static_cast<double>(i) / candidates.size();
     PLEAT_ASSIGN_OR_RETURN(
         const std::shared_ptr<const DetailModel> model,
-        LearnDetails(part, candidates[i], options,
+        LearnDetails(part, rig, candidates[i], options,
                      progress.Stage(absl::StrCat("validate ", ChoiceName(candidates[i])), begin,
                                     begin + 1.0 / candidates.size()),
                      &direct_gp));

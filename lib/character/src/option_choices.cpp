@@ -9,7 +9,9 @@ template <>
 std::span<const NamedChoice<LearnerChoice>> ChoicesOf() {
   static constexpr NamedChoice<LearnerChoice> kChoices[] = {
       {LearnerChoice::kAuto, "auto", "chosen on held-out training frames"},
-      {LearnerChoice::kRegional, "regional", "a Gaussian process per body region"},
+      {LearnerChoice::kRegional, "regional",
+       "Gaussian processes per bone and per patch of the surface"},
+      {LearnerChoice::kRegionalFast, "regional-fast", "Gaussian processes per bone alone"},
       {LearnerChoice::kGp, "gp", "one Gaussian process"},
       {LearnerChoice::kSgplvm, "sgplvm", "the paper's shared GPLVM"},
       {LearnerChoice::kBackConstrained, "back-constrained",

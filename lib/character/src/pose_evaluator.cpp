@@ -1,6 +1,7 @@
 // A query goes through four steps, and a batch goes through each of them together:
 //
-//   Prepare      copies the poses, normalized, and computes the row of features.
+//   Prepare      copies the poses, normalized, and computes the row of features: of the pose, and
+//                of the skin that it stretches.
 //   Predict      turns features into the coefficients of the detail basis and a confidence.
 //   Place        computes the motions of the bones and the axes of the details, for one query.
 //   FillFrames   expands the coefficients to details and skins the vertices.
@@ -40,14 +41,15 @@ struct PoseEvaluator::Scratch {
   std::vector<Pose> history;  // normalized copies; [0] is the pose to show
   std::vector<const Pose*> history_pointers;
   BoneTransforms transforms;
+  SkinFeatures::Workspace skin_features;
   std::vector<Eigen::Matrix3d> axes;  // J: the axes in which the details of a bone are written
   BoneMotions motions;
   bool has_details = false;
   double confidence = 0;
-  Eigen::VectorXd features;      // D_S
+  Eigen::VectorXd features;      // of the pose, then of the skin
   Eigen::VectorXf coefficients;  // r
   DetailModel::Workspace workspace;
-  DetailBasis::Query expansion;
+  PartedBasis::Query expansion;
   std::vector<float> details;  // the details of one tile, block by block
 };
 
@@ -122,11 +124,12 @@ constexpr int kTileBlocks = 2;
 }  // namespace
 
 static_assert(DetailBasis::kLanes == kSkinningLanes);
+static_assert(kMostTogether <= PartedBasis::kMostTogether);
 
 PoseEvaluator::Scratch::Scratch(const CharacterModel& model)
     : history(model.options().history, Pose::Rest(model.skeleton())),
-      features(model.features().num_features()),
-      coefficients(model.full_basis().num_components()),
+      features(model.detail_model().num_features()),
+      coefficients(model.full_basis().num_coefficients()),
       details(kTileBlocks * DetailBasis::kBlockDetails) {
   for (const Pose& pose : history) history_pointers.push_back(&pose);
 }
@@ -241,7 +244,14 @@ void PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) const {
   }
   s.has_details = !query.skinned_only;
   s.confidence = 1;
-  if (s.has_details) model_->features().ComputeRow(s.history_pointers, s.features);
+  if (!s.has_details) return;
+  model_->features().ComputeRow(s.history_pointers,
+                                s.features.head(model_->features().num_features()));
+  const std::optional<SkinFeatures>& skin = model_->skin_features();
+  if (!skin) return;
+  // Without the scales of the bones: the learner knows the body in its own proportions.
+  ComputeBoneTransforms(model_->skeleton(), s.history[0], {}, &s.transforms);
+  skin->Compute(s.transforms, &s.skin_features, s.features.tail(skin->num_features()));
 }
 
 void PoseEvaluator::Predict(std::span<Scratch* const> scratches) const {
@@ -281,10 +291,10 @@ absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
   const int num_joints = model_->skeleton().num_joints();
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
   PLEAT_RETURN_IF_ERROR(CheckFits(parameters.pose, num_joints));
-  if (coefficients.size() != 0 && coefficients.size() != model_->full_basis().num_components()) {
+  if (coefficients.size() != 0 && coefficients.size() != model_->full_basis().num_coefficients()) {
     return absl::InvalidArgumentError(
         absl::StrCat(coefficients.size(), " detail coefficients for a model of ",
-                     model_->full_basis().num_components(), "; is it another model?"));
+                     model_->full_basis().num_coefficients(), "; is it another model?"));
   }
   if (!coefficients.allFinite()) {
     return absl::InvalidArgumentError("a detail coefficient is not finite");
@@ -301,7 +311,7 @@ absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
 
 void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
                                std::span<EvaluatedFrame* const> frames) {
-  std::array<const DetailBasis::Query*, kMostTogether> expansions{};
+  std::array<const PartedBasis::Query*, kMostTogether> expansions{};
   std::array<float*, kMostTogether> details{};
   size_t num_detailed = 0;
   for (size_t q = 0; q < scratches.size(); ++q) {

@@ -118,11 +118,12 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
       const LearningData data,
       ComputeLearningData(rigged, track, options, resources, progress.Stage("detail", .3, .33)));
   LearnerValidation validation;
+  PLEAT_ASSIGN_OR_RETURN(const LearnerChoice learner,
+                         ChooseLearner(data, rigged.rig, options, diagonal_m, &validation,
+                                       progress.Stage("validate", .33, .68)));
   PLEAT_ASSIGN_OR_RETURN(
-      const LearnerChoice learner,
-      ChooseLearner(data, options, diagonal_m, &validation, progress.Stage("validate", .33, .68)));
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const DetailModel> detail_model,
-                         LearnDetails(data, learner, options, progress.Stage("learn", .68, .97)));
+      const std::shared_ptr<const DetailModel> detail_model,
+      LearnDetails(data, rigged.rig, learner, options, progress.Stage("learn", .68, .97)));
 
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> unmeasured,
                          AssembleModel(rigged, data, options, learner, detail_model, diagonal_m));

@@ -122,6 +122,16 @@ absl::Status ProjectAllFrames(const RiggedFrames& rigged, const PoseTrack& track
   return absl::OkStatus();
 }
 
+// Returns how many components the basis of all details may have: what the regional learner asks
+// for, but no more than a gigabyte of them beyond what the options allow.
+int MaxFineComponents(const TrainOptions& options, Eigen::Index num_details) {
+  constexpr Eigen::Index kMaxBytes = Eigen::Index{1} << 30;
+  const Eigen::Index in_memory = kMaxBytes / (static_cast<Eigen::Index>(sizeof(double)) *
+                                              std::max<Eigen::Index>(num_details, 1));
+  return std::max(options.max_components, static_cast<int>(std::min<Eigen::Index>(
+                                              RegionalBasisOptions().max_components, in_memory)));
+}
+
 // Fills in the details and the upsampler of `data`, whose control vertices are known. The order is
 // explained at the top of this file.
 absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& track,
@@ -155,7 +165,7 @@ absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& 
   }
   if (data->differential) details = data->differential->Encode(details);
   data->details = ComputePca(
-      details, {.max_components = options.max_components, .min_energy = options.detail_energy});
+      details, {.max_components = MaxFineComponents(options, details.cols()), .min_energy = 1});
   if (num_basis == num_frames) return absl::OkStatus();
   details.resize(0, 0);
   return ProjectAllFrames(rigged, track, detail_options, progress, data);
@@ -278,8 +288,11 @@ absl::StatusOr<LearningData> ComputeLearningData(const RiggedFrames& rigged, con
   data.features =
       PoseFeatures(feature_options, rigged.rig.skeleton.num_joints(), data.feature_reference)
           .ComputeTrack(filled.track)(filled.rows, Eigen::all);
-  data.regions = DetailRegions(rigged.rig, data.control_vertices, options);
   data.feature_groups = FeatureGroups(rigged.rig.skeleton.num_joints(), options);
+  PLEAT_ASSIGN_OR_RETURN(
+      data.regional,
+      ComputeRegionalData(sequence.topology(), rigged.rig, track, data.control_vertices,
+                          static_cast<int>(data.features.cols()), options, resources.num_threads));
   return data;
 }
 
@@ -296,8 +309,14 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> AssembleModel(
                               .feature_reference = data.feature_reference,
                               .control_vertices = data.control_vertices,
                               .upsampler = data.upsampler,
+                              .skin_features = {},
                               .detail_model = std::move(detail_model),
                               .record = {}};
+  if (learner == LearnerChoice::kRegional) {
+    parts.skin_features = data.regional.skin_features;
+  } else if (learner == LearnerChoice::kRegionalFast) {
+    parts.skin_features = data.regional.WithoutPatches(rigged.rig).skin_features;
+  }
   parts.record.learner = ChoiceName(learner);
   parts.record.num_frames = sequence.num_frames();
   parts.record.rest_frame = rigged.rig_summary.rest_frame;

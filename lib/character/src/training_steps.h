@@ -19,6 +19,7 @@
 #include "pleat/rigging/auto_rig.h"
 #include "pleat/skeleton/pose_track.h"
 #include "pleat/skinning/user_rig.h"
+#include "regional_data.h"
 
 namespace pleat {
 
@@ -65,17 +66,21 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
 struct LearningData {
   Eigen::VectorXd feature_reference;  // PoseFeatures::Reference
   Eigen::MatrixXd features;           // T x D_S
+  RegionalData regional;
   // The details of the control vertices as T rows of scores (T x r) in a basis of 3C values, which
-  // are offsets in meters or what `differential` encodes.
+  // are offsets in meters or what `differential` encodes. The regional learner needs a finer basis
+  // than the others, which take its first components.
   PrincipalComponents details;
   std::vector<int> clip_starts;
   std::vector<int> control_vertices;  // C
   std::optional<RbfUpsampler> upsampler;
   // The coordinates of the details, with the option detail_coordinates=differential.
   std::optional<DifferentialCoordinates> differential;
-  std::vector<DetailRegion> regions;             // one for each bone that moves a control vertex
   std::vector<std::vector<int>> feature_groups;  // columns of `features`, by joint and pose
 
+  // Returns the features of frame t as `model` reads them: of the pose, and of the skin if it has
+  // such (those of the patches stand last, and a model without patches does not read them).
+  Eigen::VectorXd FeaturesOf(const DetailModel& model, int t) const;
   // Returns the offsets (3C, meters) that one row of scores (r) stands for.
   Eigen::VectorXd DetailOf(const Eigen::VectorXd& scores) const;
 };
@@ -91,17 +96,16 @@ using DirectGp = std::optional<GpRegression>;
 // Trains `learner`, which must not be "auto". The model predicts offsets, whatever coordinates it
 // was trained in. `direct_gp` may be null. Otherwise a learner that needs the direct GP takes it
 // from there, or trains it and leaves it there; all calls must then have the same data and options.
-absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(const LearningData& data,
-                                                                LearnerChoice learner,
-                                                                const TrainOptions& options,
-                                                                const Progress& progress,
-                                                                DirectGp* direct_gp = nullptr);
+absl::StatusOr<std::shared_ptr<const DetailModel>> LearnDetails(
+    const LearningData& data, const Rig& rig, LearnerChoice learner, const TrainOptions& options,
+    const Progress& progress, DirectGp* direct_gp = nullptr);
 
 // Returns the learner of `options`; for "auto", the one with the lowest error on contiguous blocks
 // of training frames that it did not see. `validation` may be null; for "auto" it is filled in, in
 // % of diagonal_m.
-absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const TrainOptions& options,
-                                            double diagonal_m, LearnerValidation* validation,
+absl::StatusOr<LearnerChoice> ChooseLearner(const LearningData& data, const Rig& rig,
+                                            const TrainOptions& options, double diagonal_m,
+                                            LearnerValidation* validation,
                                             const Progress& progress);
 
 // Makes the model with everything but the errors in its record. diagonal_m: the bounding-box

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/math/array_io.h"
+#include "regional_section.h"
 
 namespace pleat {
 namespace {
@@ -69,25 +70,6 @@ absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_un
   return absl::OkStatus();
 }
 
-// Files before version 3 have one scale for all inputs, which stands before the matrices.
-constexpr uint32_t kFirstWithInputScales = 3;
-
-absl::Status ReadOldInputScale(ByteReader* reader, uint32_t version, double* scale) {
-  if (version >= kFirstWithInputScales) return absl::OkStatus();
-  PLEAT_ASSIGN_OR_RETURN(*scale, reader->Read<double>("input scale"));
-  return absl::OkStatus();
-}
-
-absl::Status ReadMeanAndScales(ByteReader* reader, uint32_t version, uint32_t num_inputs,
-                               double old_scale, Eigen::VectorXd* mean, Eigen::VectorXd* scales) {
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_inputs, 1, "input mean", mean));
-  if (version >= kFirstWithInputScales) {
-    return ReadMatrix(reader, num_inputs, 1, "input scales", scales);
-  }
-  scales->setConstant(num_inputs, old_scale);
-  return absl::OkStatus();
-}
-
 absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint32_t version,
                                                  uint64_t max_unfolded_bytes) {
   GpRegressionParameters stage;
@@ -118,68 +100,6 @@ absl::StatusOr<GpRegressionParameters> ReadStage(ByteReader* reader, uint32_t ve
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_outputs, "alpha", &stage.alpha));
   PLEAT_RETURN_IF_ERROR(ReadWhitener(reader, num_rows, max_unfolded_bytes, &stage.whitener));
   return stage;
-}
-
-void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer) {
-  writer->Write(static_cast<uint32_t>(regional.inputs.rows()));
-  writer->Write(static_cast<uint32_t>(regional.inputs.cols()));
-  writer->Write(static_cast<uint32_t>(regional.output_mean.size()));
-  writer->Write(static_cast<uint32_t>(regional.regions.size()));
-  WriteMatrix(regional.input_mean, writer);
-  WriteMatrix(regional.input_scales, writer);
-  WriteMatrix(regional.inputs, writer);
-  WriteMatrix(regional.output_mean, writer);
-  for (const RegionalGpParameters::Region& region : regional.regions) {
-    writer->Write(region.bias);
-    writer->Write(static_cast<uint32_t>(region.scales.size()));
-    for (const RegionalGpParameters::Scale& scale : region.scales) {
-      const std::array<double, 3> numbers = {scale.inverse_width, scale.amplitude, scale.linear};
-      writer->WriteArray(std::span<const double>(numbers));
-      const std::vector<int32_t> columns(scale.columns.begin(), scale.columns.end());
-      writer->Write(static_cast<uint32_t>(columns.size()));
-      writer->WriteArray(std::span<const int32_t>(columns));
-    }
-    WriteMatrix(region.alpha, writer);
-  }
-}
-
-absl::StatusOr<RegionalGpParameters::Scale> ReadScale(ByteReader* reader) {
-  RegionalGpParameters::Scale scale;
-  std::array<double, 3> numbers;
-  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<double>(numbers), "scale"));
-  scale.inverse_width = numbers[0];
-  scale.amplitude = numbers[1];
-  scale.linear = numbers[2];
-  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_columns, reader->Read<uint32_t>("column count"));
-  std::vector<int32_t> columns;
-  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_columns, "columns of a scale", &columns));
-  scale.columns.assign(columns.begin(), columns.end());
-  return scale;
-}
-
-absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader, uint32_t version) {
-  RegionalGpParameters regional;
-  std::array<uint32_t, 4> counts;
-  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of the regions"));
-  const auto [num_rows, num_inputs, num_outputs, num_regions] = counts;
-  double old_scale = 1;
-  PLEAT_RETURN_IF_ERROR(ReadOldInputScale(reader, version, &old_scale));
-  PLEAT_RETURN_IF_ERROR(ReadMeanAndScales(reader, version, num_inputs, old_scale,
-                                          &regional.input_mean, &regional.input_scales));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_inputs, "inputs", &regional.inputs));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_outputs, 1, "output mean", &regional.output_mean));
-  for (uint32_t r = 0; r < num_regions; ++r) {
-    RegionalGpParameters::Region region;
-    PLEAT_ASSIGN_OR_RETURN(region.bias, reader->Read<double>("bias of a region"));
-    PLEAT_ASSIGN_OR_RETURN(const uint32_t num_scales, reader->Read<uint32_t>("scale count"));
-    for (uint32_t s = 0; s < num_scales; ++s) {
-      PLEAT_ASSIGN_OR_RETURN(RegionalGpParameters::Scale scale, ReadScale(reader));
-      region.scales.push_back(std::move(scale));
-    }
-    PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_rows, num_outputs, "alpha", &region.alpha));
-    regional.regions.push_back(std::move(region));
-  }
-  return regional;
 }
 
 void WriteBasis(const DetailBasisParameters& basis, ByteWriter* writer) {
@@ -238,6 +158,57 @@ absl::StatusOr<DetailBasisParameters> ReadFloatBasis(ByteReader* reader) {
   return rounded.parameters();
 }
 
+void WriteNumbers(const std::vector<int>& numbers, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(numbers.size()));
+  writer->WriteArray(std::span<const int>(numbers));
+}
+
+absl::Status ReadNumbers(ByteReader* reader, absl::string_view what, std::vector<int>* numbers) {
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>(what));
+  return ReadVector(reader, count, what, numbers);
+}
+
+void WriteParts(const PartedBasisParameters& basis, ByteWriter* writer) {
+  writer->Write(static_cast<uint32_t>(basis.num_coefficients));
+  writer->Write(static_cast<uint32_t>(basis.parts.size()));
+  for (const PartedBasisParameters::Part& part : basis.parts) {
+    WriteNumbers(part.vertices, writer);
+    WriteNumbers(part.coefficients, writer);
+    WriteBasis(part.basis, writer);
+  }
+}
+
+absl::StatusOr<PartedBasisParameters> ReadParts(ByteReader* reader) {
+  PartedBasisParameters basis;
+  std::array<uint32_t, 2> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "parts of the basis"));
+  // Whoever has a coefficient has its column of the fold, or of alpha, in the file as well; the
+  // limit stops counts that only want memory.
+  constexpr uint32_t kMaxCoefficients = 1 << 16;
+  if (counts[0] > kMaxCoefficients) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(counts[0], " coefficients, the limit is ", kMaxCoefficients));
+  }
+  basis.num_coefficients = static_cast<int>(counts[0]);
+  constexpr uint64_t kMinPartBytes = 5 * sizeof(uint32_t);
+  PLEAT_RETURN_IF_ERROR(reader->Require(counts[1], kMinPartBytes, "parts of the basis"));
+  for (uint32_t i = 0; i < counts[1]; ++i) {
+    PartedBasisParameters::Part part;
+    PLEAT_RETURN_IF_ERROR(ReadNumbers(reader, "vertices of a part", &part.vertices));
+    PLEAT_RETURN_IF_ERROR(ReadNumbers(reader, "coefficients of a part", &part.coefficients));
+    PLEAT_ASSIGN_OR_RETURN(part.basis, ReadBasis(reader));
+    basis.parts.push_back(std::move(part));
+  }
+  return basis;
+}
+
+absl::StatusOr<PartedBasisParameters> ReadAnyBasis(ByteReader* reader, uint32_t version) {
+  if (version >= kFirstWithParts) return ReadParts(reader);
+  PLEAT_ASSIGN_OR_RETURN(DetailBasisParameters basis,
+                         version == 1 ? ReadFloatBasis(reader) : ReadBasis(reader));
+  return PartedBasisParameters::Whole(std::move(basis));
+}
+
 absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
   for (const Learner learner : kAllLearners) {
     if (LearnerName(learner) == name) return learner;
@@ -250,12 +221,13 @@ absl::StatusOr<Learner> LearnerFromName(const std::string& name) {
 void WriteDetail(const DetailModelParameters& parameters, ByteWriter* writer) {
   writer->WriteString(LearnerName(parameters.learner));
   writer->Write(parameters.fade_confidence);
-  WriteBasis(parameters.basis, writer);
+  WriteParts(parameters.basis, writer);
   writer->Write(static_cast<uint32_t>(parameters.stages.size()));
   for (const GpRegressionParameters& stage : parameters.stages) WriteStage(stage, writer);
   if (parameters.regional) {
     writer->Write(parameters.regional_share);
     WriteRegional(*parameters.regional, writer);
+    WriteFold(parameters.fold, writer);
   }
 }
 
@@ -265,8 +237,7 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t ve
   PLEAT_ASSIGN_OR_RETURN(const std::string learner, reader->ReadString(64, "learner"));
   PLEAT_ASSIGN_OR_RETURN(parameters.learner, LearnerFromName(learner));
   PLEAT_ASSIGN_OR_RETURN(parameters.fade_confidence, reader->Read<double>("fade confidence"));
-  PLEAT_ASSIGN_OR_RETURN(parameters.basis,
-                         version == 1 ? ReadFloatBasis(reader) : ReadBasis(reader));
+  PLEAT_ASSIGN_OR_RETURN(parameters.basis, ReadAnyBasis(reader, version));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_stages, reader->Read<uint32_t>("stage count"));
   if (num_stages == 0 || num_stages > kMaxStages) {
     return absl::InvalidArgumentError(
@@ -280,6 +251,9 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t ve
   if (parameters.learner == Learner::kRegional) {
     PLEAT_ASSIGN_OR_RETURN(parameters.regional_share, reader->Read<double>("share of the regions"));
     PLEAT_ASSIGN_OR_RETURN(parameters.regional, ReadRegional(reader, version));
+    if (version >= kFirstWithParts) {
+      PLEAT_ASSIGN_OR_RETURN(parameters.fold, ReadFold(reader));
+    }
   }
   return parameters;
 }

@@ -25,8 +25,9 @@
 namespace pleat {
 namespace {
 
-constexpr FileKind kKind = {"PLEATMDL", 3, 1, "model file"};
+constexpr FileKind kKind = {"PLEATMDL", 4, 1, "model file"};
 constexpr uint32_t kNumSections = 10;
+constexpr uint32_t kFirstWithSkinFeatures = 4;  // version of the file
 constexpr uint64_t kTableEntryBytes = 24;
 constexpr uint64_t kFirstSectionOffset = kFileKindBytes + 4 + kNumSections * kTableEntryBytes;
 
@@ -45,6 +46,7 @@ std::array<std::string, kNumSections> EncodeSections(const CharacterModel::Parts
   writers[5].WriteRaw(FormatTrainOptions(parts.options));
   writers[6].Write(static_cast<uint32_t>(parts.feature_reference.size()));
   WriteMatrix(parts.feature_reference, &writers[6]);
+  WriteSkinFeatures(parts.skin_features, &writers[6]);
   WriteControl(parts, &writers[7]);
   WriteDetail(parts.detail_model->parameters(), &writers[8]);
   WriteRecord(parts.record, &writers[9]);
@@ -143,7 +145,10 @@ absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
                          ParseTrainOptions(absl::string_view(options.data(), options.size())));
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 6, [&](ByteReader* reader) -> absl::Status {
     PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>("feature count"));
-    return ReadMatrix(reader, count, 1, "feature reference", &parts->feature_reference);
+    PLEAT_RETURN_IF_ERROR(
+        ReadMatrix(reader, count, 1, "feature reference", &parts->feature_reference));
+    if (version < kFirstWithSkinFeatures) return absl::OkStatus();
+    return Assign(ReadSkinFeatures(reader, parts->rig), &parts->skin_features);
   }));
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 7, [&](ByteReader* reader) {
     return ReadControl(reader, parts->topology.num_vertices(), &parts->control_vertices,
@@ -152,7 +157,7 @@ absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 8, [&](ByteReader* reader) -> absl::Status {
     PLEAT_ASSIGN_OR_RETURN(DetailModelParameters parameters,
                            ReadDetail(reader, version, limits.max_unfolded_bytes));
-    const auto num_components = static_cast<uint64_t>(parameters.basis.num_components);
+    const auto num_components = static_cast<uint64_t>(parameters.basis.num_coefficients);
     PLEAT_RETURN_IF_ERROR(CheckUnfoldedSize(*parts, num_components, limits.max_unfolded_bytes));
     PLEAT_ASSIGN_OR_RETURN(DetailModel model, DetailModel::FromParameters(std::move(parameters)));
     parts->detail_model = std::make_shared<const DetailModel>(std::move(model));

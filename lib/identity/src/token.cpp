@@ -44,12 +44,13 @@ absl::Status CheckTokenName(std::string_view name) {
 }
 
 NewToken MakeToken(std::string_view name, ScopeSet scopes, int64_t now,
-                   std::optional<int64_t> expires) {
+                   std::optional<int64_t> expires, std::string_view project) {
   const std::string secret = RandomHexId(kSecretWords);
   Token token{.id = RandomHexId(kIdWords),
               .name = std::string(name),
               .secret_hash = HashOf(secret),
               .scopes = scopes,
+              .project = std::string(project),
               .created = now,
               .expires = expires,
               .revoked = {}};

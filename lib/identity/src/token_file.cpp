@@ -52,6 +52,10 @@ absl::StatusOr<Token> ReadToken(const ordered_json& object) {
   const std::string where = absl::StrCat("token ", token.id);
   PLEAT_RETURN_IF_ERROR(WithContext(where, CheckTokenName(token.name)));
   PLEAT_ASSIGN_OR_RETURN(token.scopes, WithContext(where, ParseScopes(StringIn(object, "scopes"))));
+  if (object.contains("project")) {  // older files know none
+    token.project = StringIn(object, "project");
+    PLEAT_RETURN_IF_ERROR(WithContext(where, CheckProjectName(token.project)));
+  }
   std::optional<int64_t> created;
   PLEAT_RETURN_IF_ERROR(WithContext(where, ReadTime(object, "created", &created)));
   PLEAT_RETURN_IF_ERROR(WithContext(where, ReadTime(object, "expires", &token.expires)));
@@ -111,6 +115,7 @@ std::string FormatTokens(const std::vector<Token>& tokens) {
                         {"scopes", ScopesText(token.scopes)},
                         {"secret_sha256", token.secret_hash},
                         {"created", token.created}};
+    if (token.project != kDefaultProject) object["project"] = token.project;
     if (token.expires) object["expires"] = *token.expires;
     if (token.revoked) object["revoked"] = *token.revoked;
     list.push_back(std::move(object));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/random_id.h"
 #include "pleat/base/status.h"
 #include "pleat/base/thread_priority.h"
@@ -13,7 +14,38 @@
 namespace pleat {
 namespace {
 
+// Jobs take seconds to minutes, so places in the queue become free at that pace.
+constexpr absl::Duration kRetryAfter = absl::Seconds(10);
+
+// Two projects may choose the same request id, and neither must notice.
+std::string RequestKey(const JobInfo& info) {
+  return absl::StrCat(info.project, "\n", info.request_id);
+}
+
 std::string MakeJobId() { return "job-" + RandomHexId(2); }
+
+// How long a job is in each of its stages.
+class StageClock {
+ public:
+  explicit StageClock(const JobManagerOptions& options) : options_(options) {}
+  ~StageClock() { Enter(""); }
+
+  void Enter(const std::string& stage) {
+    if (!options_.on_stage) return;
+    std::lock_guard lock(mutex_);
+    if (stage == stage_) return;
+    const double now = options_.clock();
+    if (!stage_.empty()) options_.on_stage(stage_, now - since_);
+    stage_ = stage;
+    since_ = now;
+  }
+
+ private:
+  const JobManagerOptions& options_;
+  std::mutex mutex_;
+  std::string stage_;  // guarded by mutex_, as is the next; empty before the first
+  double since_ = 0;
+};
 
 }  // namespace
 
@@ -67,7 +99,7 @@ void JobManager::Register(std::shared_ptr<JobStateMachine> job) {
   const JobInfo info = job->snapshot().info;
   const uint64_t number = next_number_++;
   order_.emplace(number, info.id);
-  if (!info.request_id.empty()) ids_by_request_.emplace(info.request_id, info.id);
+  if (!info.request_id.empty()) ids_by_request_.emplace(RequestKey(info), info.id);
   if (info.state == JobState::kQueued) queue_.Add(job, info.client);
   jobs_.emplace(info.id, Registered{std::move(job), number});
 }
@@ -80,7 +112,7 @@ void JobManager::Start() {
 
 absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
     const JobInfo& draft) const {
-  const auto id = ids_by_request_.find(draft.request_id);
+  const auto id = ids_by_request_.find(RequestKey(draft));
   if (id == ids_by_request_.end()) return nullptr;
   const std::shared_ptr<JobStateMachine>& job = jobs_.at(id->second).job;
   const JobInfo info = job->snapshot().info;
@@ -103,16 +135,7 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
     if (shutting_down()) return absl::UnavailableError("the server is shutting down");
     PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> known, FindRequest(draft));
     if (known != nullptr) return known->snapshot().info;
-    if (static_cast<int>(queue_.size()) >= options_.max_queued) {
-      return absl::ResourceExhaustedError(absl::StrCat(queue_.size(),
-                                                       " jobs are waiting, the limit is ",
-                                                       options_.max_queued, "; try again later"));
-    }
-    if (queue_.NumOf(draft.client) >= options_.max_queued_per_client) {
-      return absl::ResourceExhaustedError(
-          absl::StrCat("this client has ", options_.max_queued_per_client,
-                       " waiting jobs, which is its limit; try again when some of them have run"));
-    }
+    PLEAT_RETURN_IF_ERROR(CheckQueue(draft));
   }
   // Saved first: a job that was accepted is never lost. Saving waits for the disk, so those who ask
   // for jobs must not wait for it.
@@ -123,6 +146,32 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   }
   changed_.notify_all();  // one that may not take it would keep the word to itself
   return draft;
+}
+
+absl::Status JobManager::CheckQueue(const JobInfo& draft) const {
+  if (static_cast<int>(queue_.size()) >= options_.max_queued) {
+    return RefuseForLimit({.limit = "waiting jobs", .retry_after = kRetryAfter},
+                          absl::StrCat(queue_.size(), " jobs are waiting, the limit is ",
+                                       options_.max_queued, "; try again later"));
+  }
+  if (queue_.NumOf(draft.client) >= options_.max_queued_per_client) {
+    return RefuseForLimit(
+        {.subject = kClientLimit,
+         .limit = "--max-queued-jobs-per-client",
+         .retry_after = kRetryAfter},
+        absl::StrCat("this client has ", options_.max_queued_per_client,
+                     " waiting jobs, which is its limit; try again when some of them have run"));
+  }
+  const int per_project = options_.max_queued_per_project;
+  if (per_project > 0 && queue_.NumOfProject(draft.project) >= per_project) {
+    return RefuseForLimit(
+        {.subject = absl::StrCat("project:", draft.project),
+         .limit = "--project-queued-jobs",
+         .retry_after = kRetryAfter},
+        absl::StrCat("the project '", draft.project, "' has ", per_project,
+                     " waiting jobs, which is its limit; try again when some of them have run"));
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::Find(const std::string& id) const {
@@ -187,12 +236,12 @@ absl::Status JobManager::Delete(const std::string& id) {
         absl::StrCat("job '", id, "' is ", JobStateName(info.state),
                      "; only jobs that have ended are deleted, so cancel it first"));
   }
-  PLEAT_RETURN_IF_ERROR(erase_(id));
+  PLEAT_RETURN_IF_ERROR(erase_(info));
   std::lock_guard lock(mutex_);
   const auto registered = jobs_.find(id);
   order_.erase(registered->second.number);
   jobs_.erase(registered);
-  const auto request = ids_by_request_.find(info.request_id);
+  const auto request = ids_by_request_.find(RequestKey(info));
   if (request != ids_by_request_.end() && request->second == id) ids_by_request_.erase(request);
   return absl::OkStatus();
 }
@@ -249,8 +298,13 @@ void JobManager::Work() {
 }
 
 void JobManager::RunOne(JobStateMachine* job) {
-  const Progress progress([job](const ProgressUpdate& update) { job->Report(update); },
-                          [this, job] { return shutting_down() || job->cancel_requested(); });
+  StageClock stages(options_);
+  const Progress progress(
+      [job, &stages](const ProgressUpdate& update) {
+        stages.Enter(update.stage);
+        job->Report(update);
+      },
+      [this, job] { return shutting_down() || job->cancel_requested(); });
   absl::StatusOr<JobOutcome> outcome = absl::UnknownError("the job did not run");
   try {
     outcome = run_(job->snapshot().info, progress);

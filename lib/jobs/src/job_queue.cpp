@@ -27,6 +27,12 @@ int JobQueue::NumOf(const std::string& client) const {
   return static_cast<int>(std::ranges::count(waiting_, client, &Waiting::client));
 }
 
+int JobQueue::NumOfProject(const std::string& project) const {
+  return static_cast<int>(std::ranges::count_if(waiting_, [&](const Waiting& waiting) {
+    return waiting.job->snapshot().info.project == project;
+  }));
+}
+
 std::vector<JobQueue::Job> JobQueue::jobs() const {
   std::vector<Job> jobs;
   for (const Waiting& waiting : waiting_) jobs.push_back(waiting.job);

@@ -62,12 +62,7 @@ absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters pa
     return Refuse(absl::StrCat("the first stage has ", model.stages_[0].num_outputs(),
                                " outputs, the second ", model.stages_[1].num_inputs(), " inputs"));
   }
-  PLEAT_ASSIGN_OR_RETURN(model.basis_, DetailBasis::FromParameters(parameters.basis));
-  if (model.basis_.num_components() != model.stages_.back().num_outputs()) {
-    return Refuse(absl::StrCat("the basis has ", model.basis_.num_components(),
-                               " components, the last stage ", model.stages_.back().num_outputs(),
-                               " outputs"));
-  }
+  PLEAT_ASSIGN_OR_RETURN(model.basis_, PartedBasis::FromParameters(parameters.basis));
   if (!(parameters.fade_confidence >= 0 && parameters.fade_confidence <= 1)) {
     return Refuse("the fading confidence is not between 0 and 1");
   }
@@ -75,18 +70,31 @@ absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters pa
       !(parameters.regional_share >= 0 && parameters.regional_share <= 1)) {
     return Refuse("regions and learner do not belong together, or their share is not in 0 to 1");
   }
-  if (parameters.regional) {
-    PLEAT_ASSIGN_OR_RETURN(model.regional_,
-                           RegionalGp::FromParameters(*std::move(parameters.regional)));
-    if (model.regional_->num_inputs() != model.stages_[0].num_inputs() ||
-        model.regional_->num_outputs() != model.stages_[0].num_outputs()) {
-      return Refuse("the regions have other inputs or outputs than the first stage");
-    }
+  if (parameters.fold.empty() &&
+      model.basis_.num_coefficients() != model.stages_.back().num_outputs()) {
+    return Refuse(absl::StrCat("the basis has ", model.basis_.num_coefficients(),
+                               " components, the last stage ", model.stages_.back().num_outputs(),
+                               " outputs"));
   }
+  if (parameters.regional) PLEAT_RETURN_IF_ERROR(model.TakeRegional(&parameters));
   model.regional_share_ = parameters.regional_share;
   model.learner_ = parameters.learner;
   model.fade_confidence_ = parameters.fade_confidence;
   return model;
+}
+
+absl::Status DetailModel::TakeRegional(DetailModelParameters* parameters) {
+  PLEAT_ASSIGN_OR_RETURN(regional_, RegionalGp::FromParameters(*std::move(parameters->regional)));
+  if (!parameters->fold.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(
+        fold_, CoefficientFold::FromBlocks(std::move(parameters->fold), regional_->num_outputs(),
+                                           basis_.num_coefficients()));
+    if (regional_->num_inputs() >= stages_[0].num_inputs()) return absl::OkStatus();
+  } else if (regional_->num_inputs() == stages_[0].num_inputs() &&
+             regional_->num_outputs() == stages_[0].num_outputs()) {
+    return absl::OkStatus();
+  }
+  return Refuse("the regions have other inputs or outputs than the first stage");
 }
 
 DetailModelParameters DetailModel::parameters() const {
@@ -97,25 +105,25 @@ DetailModelParameters DetailModel::parameters() const {
   p.fade_confidence = fade_confidence_;
   p.regional_share = regional_share_;
   if (regional_) p.regional = regional_->parameters();
+  if (fold_) p.fold = fold_->blocks();
   return p;
 }
 
 DetailModel::Certainty DetailModel::PredictStages(const Eigen::Ref<const Eigen::VectorXd>& features,
                                                   Workspace* workspace) const {
   Workspace& w = *workspace;
-  assert(features.size() == num_features());
   w.stages.resize(stages_.size());
-  w.coefficients.resize(num_components());
+  w.outputs.resize(stages_.back().num_outputs());
   double variance = 0;
   double fade_confidence = 0;
   if (stages_.size() == 1) {
-    stages_[0].Predict(features, 0, &w.stages[0], w.coefficients, &variance);
+    stages_[0].Predict(features, 0, &w.stages[0], w.outputs, &variance);
     fade_confidence = Confidence(variance, stages_[0]);
   } else {
     w.latent.resize(stages_[0].num_outputs());
     double latent_variance = 0;
     stages_[0].Predict(features, 0, &w.stages[0], w.latent, &latent_variance);
-    stages_[1].Predict(w.latent, latent_variance, &w.stages[1], w.coefficients, &variance);
+    stages_[1].Predict(w.latent, latent_variance, &w.stages[1], w.outputs, &variance);
     // The first-order variance is too careful to fade by: where the detail varies fast along the
     // latent points it is above the prior long before the back-map is lost.
     fade_confidence = Confidence(latent_variance, stages_[0]);
@@ -124,19 +132,32 @@ DetailModel::Certainty DetailModel::PredictStages(const Eigen::Ref<const Eigen::
           .fade = Fade(fade_confidence, fade_confidence_)};
 }
 
-// The regional prediction at workspace->regional's rows takes its share.
-void DetailModel::MixRegional(std::span<Workspace* const> workspaces) const {
+// Takes what the regions predict at workspace->regional's rows: with a fold it is the prediction,
+// else it has its share beside that of the stage.
+void DetailModel::PredictRegional(std::span<Workspace* const> workspaces) const {
   std::array<RegionalGp::Workspace*, kMostTogether> regional{};
   std::array<double*, kMostTogether> means{};
+  std::array<CoefficientFold::Query, kMostTogether> folds;
   for (size_t q = 0; q < workspaces.size(); ++q) {
-    workspaces[q]->regional_coefficients.resize(num_components());
+    workspaces[q]->regional_outputs.resize(regional_->num_outputs());
     regional[q] = &workspaces[q]->regional;
-    means[q] = workspaces[q]->regional_coefficients.data();
+    means[q] = workspaces[q]->regional_outputs.data();
   }
   regional_->PredictRows({regional.data(), workspaces.size()}, {means.data(), workspaces.size()});
-  for (Workspace* w : workspaces) {
-    w->coefficients += regional_share_ * (w->regional_coefficients - w->coefficients);
+  for (size_t q = 0; q < workspaces.size(); ++q) {
+    Workspace& w = *workspaces[q];
+    if (!fold_) {
+      w.coefficients = w.outputs + regional_share_ * (w.regional_outputs - w.outputs);
+      continue;
+    }
+    w.single_regional = w.regional_outputs.cast<float>();
+    w.folded.resize(num_components());
+    folds[q] = {
+        .inputs = w.single_regional.data(), .outputs = w.folded.data(), .workspace = &w.fold};
   }
+  if (!fold_) return;
+  fold_->Apply({folds.data(), workspaces.size()});
+  for (Workspace* w : workspaces) w->coefficients = w->folded.cast<double>();
 }
 
 double DetailModel::PredictCoefficients(const Eigen::Ref<const Eigen::VectorXd>& features,
@@ -158,15 +179,20 @@ void DetailModel::PredictCoefficients(std::span<Query> queries) const {
     for (size_t q = 0; q < part.size(); ++q) {
       const Eigen::Map<const Eigen::VectorXd> features(part[q].features, num_features());
       workspaces[q] = part[q].workspace;
-      certainties[q] = PredictStages(features, workspaces[q]);
+      certainties[q] = PredictStages(features.head(num_pose_features()), workspaces[q]);
       if (regional_) regional_->SetRow(features, &workspaces[q]->regional);
     }
-    if (regional_) MixRegional({workspaces.data(), part.size()});
+    if (regional_) {
+      PredictRegional({workspaces.data(), part.size()});
+    } else {
+      for (size_t q = 0; q < part.size(); ++q) workspaces[q]->coefficients = workspaces[q]->outputs;
+    }
     for (size_t q = 0; q < part.size(); ++q) {
       Eigen::Map<Eigen::VectorXf> coefficients(part[q].coefficients, num_components());
       part[q].confidence = certainties[q].confidence;
-      // A fade of zero also removes what is not finite.
-      if (certainties[q].fade > 0) {
+      // A fade of zero also removes what is not finite, and so does a prediction that never fades.
+      if (certainties[q].fade > 0 &&
+          (fade_confidence_ > 0 || workspaces[q]->coefficients.allFinite())) {
         coefficients = (certainties[q].fade * workspaces[q]->coefficients).cast<float>();
       } else {
         coefficients.setZero();

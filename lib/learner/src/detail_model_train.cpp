@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -8,6 +9,8 @@
 #include "pleat/learner/detail_model.h"
 #include "pleat/math/clip_starts.h"
 #include "pleat/math/pca.h"
+#include "regional_training.h"
+#include "score_pca.h"
 
 namespace pleat {
 namespace {
@@ -36,26 +39,30 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
     return absl::InvalidArgumentError(
         "a detail model needs a fading confidence in [0, 1] and a rounding of at least 0");
   }
+  if (options.num_pose_features < 0 || options.num_pose_features > features.cols()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(options.num_pose_features, " features of the pose among ", features.cols()));
+  }
   if (options.learner == Learner::kRegional && options.regions.empty()) {
     return absl::InvalidArgumentError("the regional learner needs regions");
   }
   for (const DetailRegion& region : options.regions) {
-    if (region.weights.size() != num_details) {
-      return absl::InvalidArgumentError(absl::StrCat("a region has ", region.weights.size(),
-                                                     " weights for ", num_details, " details"));
+    if (region.rows.empty() ||
+        region.weights.size() != static_cast<Eigen::Index>(region.rows.size()) ||
+        region.rows.front() < 0 || region.rows.back() >= num_details ||
+        std::adjacent_find(region.rows.begin(), region.rows.end(), std::greater_equal<>()) !=
+            region.rows.end()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("a region has ", region.weights.size(), " weights for ", region.rows.size(),
+                       " details, or they do not ascend below ", num_details));
     }
   }
-  return CheckClipStarts(clip_starts, features.rows());
-}
-
-// The share of a region in each component, in terms of all: basis^T diag(weights) basis (r x r).
-Eigen::MatrixXd ShareOfRegion(const Eigen::MatrixXd& basis, const Eigen::VectorXd& weights) {
-  std::vector<Eigen::Index> rows;
-  for (Eigen::Index d = 0; d < weights.size(); ++d) {
-    if (weights[d] != 0) rows.push_back(d);
+  if (options.num_part_regions < 0 ||
+      options.num_part_regions > static_cast<int>(options.regions.size())) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        options.num_part_regions, " of ", options.regions.size(), " regions make the parts"));
   }
-  const Eigen::MatrixXd part = basis(rows, Eigen::all);
-  return part.transpose() * (weights(rows).asDiagonal() * part);
+  return CheckClipStarts(clip_starts, features.rows());
 }
 
 // Rows spread evenly over all clips, and which of them begin a clip.
@@ -119,7 +126,10 @@ class DetailModelTrainer {
                      const DetailModelOptions& options, DetailModelSummary& summary,
                      const Progress& progress)
       : features_(features),
-        details_(details),
+        pose_features_(features.leftCols(options.num_pose_features > 0 ? options.num_pose_features
+                                                                       : features.cols())),
+        fine_details_(details),
+        details_(FirstComponents(details, options.max_components, options.pca_energy)),
         clip_starts_(clip_starts),
         options_(options),
         summary_(summary),
@@ -127,13 +137,8 @@ class DetailModelTrainer {
 
   absl::StatusOr<DetailModel> Train() {
     model_.learner_ = options_.learner;
-    const Eigen::MatrixXd basis = Mapped(details_.basis);
-    PLEAT_ASSIGN_OR_RETURN(model_.basis_,
-                           DetailBasis::Quantize(Mapped(details_.mean).cast<float>(), basis,
-                                                 LargestSteps(basis, details_.scores, options_)));
     model_.fade_confidence_ = options_.fade_confidence;
-    summary_.num_components = static_cast<int>(details_.basis.cols());
-    summary_.kept_energy = details_.kept_energy;
+    if (options_.learner != Learner::kRegional) PLEAT_RETURN_IF_ERROR(MakeBasis());
     PLEAT_RETURN_IF_ERROR(progress_.Stage("basis", 0, .1).Report(1));
     if (options_.learner == Learner::kSgplvm) {
       PLEAT_RETURN_IF_ERROR(TrainSgplvm());
@@ -142,7 +147,8 @@ class DetailModelTrainer {
     } else {
       PLEAT_RETURN_IF_ERROR(TrainGp());
     }
-    if (options_.learner == Learner::kRegional) PLEAT_RETURN_IF_ERROR(TrainRegional());
+    if (options_.learner == Learner::kRegional) PLEAT_RETURN_IF_ERROR(TrainRegions());
+    summary_.num_components = model_.num_components();
     PLEAT_RETURN_IF_ERROR(MeasureTraining());
     PLEAT_RETURN_IF_ERROR(progress_.Stage("done", 0, 1).Report(1));
     return std::move(model_);
@@ -153,16 +159,27 @@ class DetailModelTrainer {
     return options_.output_map ? options_.output_map(columns) : columns;
   }
 
+  // The basis of all learners but the regional one: the components of all details.
+  absl::Status MakeBasis() {
+    const Eigen::MatrixXd basis = Mapped(details_.basis);
+    PLEAT_ASSIGN_OR_RETURN(const DetailBasis rounded,
+                           DetailBasis::Quantize(Mapped(details_.mean).cast<float>(), basis,
+                                                 LargestSteps(basis, details_.scores, options_)));
+    PLEAT_ASSIGN_OR_RETURN(model_.basis_, PartedBasis::FromParameters(
+                                              PartedBasisParameters::Whole(rounded.parameters())));
+    return absl::OkStatus();
+  }
+
   absl::Status TrainRidge() {
     PLEAT_ASSIGN_OR_RETURN(GpRegression stage,
-                           TrainRidgeGp(features_, details_.scores, options_.ridge));
+                           TrainRidgeGp(pose_features_, details_.scores, options_.ridge));
     model_.stages_.push_back(std::move(stage));
     return absl::OkStatus();
   }
 
   absl::Status TrainGp() {
     if (options_.trained_gp) {
-      if (options_.trained_gp->num_inputs() != features_.cols() ||
+      if (options_.trained_gp->num_inputs() != pose_features_.cols() ||
           options_.trained_gp->num_outputs() != details_.scores.cols()) {
         return absl::InvalidArgumentError("the trained GP has other inputs or outputs");
       }
@@ -171,27 +188,32 @@ class DetailModelTrainer {
     }
     const double end = options_.learner == Learner::kRegional ? .3 : .95;
     PLEAT_ASSIGN_OR_RETURN(GpRegression stage,
-                           GpRegression::Train(features_, details_.scores, options_.gp,
+                           GpRegression::Train(pose_features_, details_.scores, options_.gp,
                                                &summary_.gp, progress_.Stage("gp", .1, end)));
     model_.stages_.push_back(std::move(stage));
     return absl::OkStatus();
   }
 
-  // A region's outputs are its share of the details in the common basis, so that the regions add up
-  // to coefficients and a query expands them once.
-  absl::Status TrainRegional() {
-    std::vector<GpRegion> regions;
-    for (const DetailRegion& region : options_.regions) {
-      regions.push_back(
-          {region.feature_sets, details_.scores * ShareOfRegion(details_.basis, region.weights)});
-    }
+  absl::Status TrainRegions() {
     // What the direct GP has learned about the joints holds for their parts of the body too.
-    RegionalGpOptions options = options_.regional;
-    options.input_scales = model_.stages_.front().parameters().input_scales;
+    GpRegressionParameters direct = model_.stages_.front().parameters();
+    PLEAT_ASSIGN_OR_RETURN(RegionalTraining training,
+                           TrainRegional(features_, fine_details_, direct.input_scales, options_,
+                                         progress_.Stage("regions", .3, .95)));
+    PLEAT_ASSIGN_OR_RETURN(model_.basis_, PartedBasis::FromParameters(training.basis));
+    PLEAT_ASSIGN_OR_RETURN(model_.regional_,
+                           RegionalGp::FromParameters(std::move(training.regional)));
     PLEAT_ASSIGN_OR_RETURN(
-        model_.regional_,
-        RegionalGp::Train(features_, regions, options, progress_.Stage("regions", .3, .95)));
-    model_.regional_share_ = options_.regional_share;
+        model_.fold_,
+        CoefficientFold::FromBlocks(std::move(training.fold), model_.regional_->num_outputs(),
+                                    model_.basis_.num_coefficients()));
+    scores_to_coefficients_ = std::move(training.scores_to_coefficients);
+    // Of the direct GP only the variance is asked for: one output is enough.
+    direct.alpha = direct.alpha.leftCols(1).eval();
+    direct.output_mean = direct.output_mean.head(1).eval();
+    PLEAT_ASSIGN_OR_RETURN(model_.stages_.front(), GpRegression::FromParameters(std::move(direct)));
+    model_.regional_share_ = 1;
+    model_.fade_confidence_ = 0;
     return absl::OkStatus();
   }
 
@@ -199,7 +221,7 @@ class DetailModelTrainer {
     const SharedGplvmOptions& options = options_.sgplvm;
     // A latent point for every frame is too many where there are thousands.
     const SpreadClips part = SpreadOverClips(features_.rows(), clip_starts_, options_.max_latents);
-    const Eigen::MatrixXd features = features_(part.rows, Eigen::all);
+    const Eigen::MatrixXd features = pose_features_(part.rows, Eigen::all);
     const Eigen::MatrixXd scores = details_.scores(part.rows, Eigen::all);
     PLEAT_ASSIGN_OR_RETURN(
         const SharedGplvm latent,
@@ -226,27 +248,37 @@ class DetailModelTrainer {
 
   // RMS of the model on its own training frames; the dropped components count in full.
   absl::Status MeasureTraining() {
+    const bool regional = options_.learner == Learner::kRegional;
+    const PrincipalComponents& details = regional ? fine_details_ : details_;
     DetailModel::Workspace workspace;
-    Eigen::VectorXd row(features_.cols());
+    Eigen::VectorXd row, truth;
     Eigen::VectorXf coefficients(model_.num_components());
-    double squares = 0;
+    const Eigen::RowVectorXd mean = details.scores.colwise().mean();
+    double squares = 0, kept = 0;
     for (Eigen::Index i = 0; i < features_.rows(); ++i) {
       if (i % 64 == 0)
         PLEAT_RETURN_IF_ERROR(
             progress_.Stage("check", .95, 1).Report(double(i) / double(features_.rows())));
-      row = features_.row(i).transpose();
+      row = features_.row(i).head(model_.num_features()).transpose();
       model_.PredictCoefficients(row, &workspace, coefficients);
-      squares += (coefficients.cast<double>().transpose() - details_.scores.row(i)).squaredNorm();
+      truth = details.scores.row(i).transpose();
+      if (regional) truth = scores_to_coefficients_ * (truth - mean.transpose());
+      kept += truth.squaredNorm();
+      squares += (coefficients.cast<double>() - truth).squaredNorm();
     }
-    const double kept = details_.scores.squaredNorm(), energy = details_.kept_energy;
+    const double energy = details.kept_energy;
     if (energy > 0) squares += kept * (1 - energy) / energy;
     summary_.training_rms =
-        std::sqrt(squares / (double(features_.rows()) * double(details_.mean.size())));
+        std::sqrt(squares / (double(features_.rows()) * double(details.mean.size())));
+    summary_.kept_energy = energy;
     return absl::OkStatus();
   }
 
   const Eigen::Ref<const Eigen::MatrixXd>& features_;
-  const PrincipalComponents& details_;
+  const Eigen::MatrixXd pose_features_;  // the leading columns
+  const PrincipalComponents& fine_details_;
+  const PrincipalComponents details_;       // the first components of the fine ones
+  Eigen::MatrixXd scores_to_coefficients_;  // of the regional learner
   const std::vector<int>& clip_starts_;
   const DetailModelOptions& options_;
   DetailModelSummary& summary_;
@@ -285,9 +317,13 @@ absl::StatusOr<DetailModel> TrainDetailModel(const Eigen::Ref<const Eigen::Matri
     return absl::InvalidArgumentError(
         "a detail model needs at least one component and an energy in (0, 1]");
   }
+  const bool regional = options.learner == Learner::kRegional;
+  const int max_components =
+      regional ? std::max(options.max_components, options.regional_basis.max_components)
+               : options.max_components;
   return TrainDetailModel(features,
-                          ComputePca(details, {.max_components = options.max_components,
-                                               .min_energy = options.pca_energy}),
+                          ComputePca(details, {.max_components = max_components,
+                                               .min_energy = regional ? 1 : options.pca_energy}),
                           clip_starts, options, summary, progress);
 }
 

@@ -1,6 +1,8 @@
 #include "regional_factors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "pleat/simd/dense.h"
@@ -24,9 +26,12 @@ std::map<std::vector<int>, int> DifferentSets(const RegionalGpParameters& parame
 RegionalFactors::RegionalFactors(const RegionalGpParameters& parameters)
     : num_rows_(parameters.inputs.rows()) {
   const std::map<std::vector<int>, int> sets = DifferentSets(parameters);
+  set_bounds_.assign(sets.size(), std::numeric_limits<double>::infinity());
   for (const RegionalGpParameters::Region& region : parameters.regions) {
     for (const RegionalGpParameters::Scale& scale : region.scales) {
-      scales_.push_back({.set = sets.at(scale.columns),
+      const int set = sets.at(scale.columns);
+      set_bounds_[set] = std::min(set_bounds_[set], scale.max_norm);
+      scales_.push_back({.set = set,
                          .exponent = -.5 * scale.inverse_width,
                          .amplitude = scale.amplitude,
                          .linear = scale.linear});
@@ -58,17 +63,26 @@ RegionalFactors::RegionalFactors(const RegionalGpParameters& parameters)
     set_ends_.push_back(set_atoms_.size());
   }
   const ptrdiff_t num_chunks = (num_rows_ + kLanes - 1) / kLanes;
-  inputs_.assign(num_chunks * kLanes * columns_.size(), 0);
+  const size_t chunk_size = kLanes * (columns_.size() + atom_ends_.size());
+  inputs_.assign(static_cast<size_t>(num_chunks) * chunk_size, 0);
   for (ptrdiff_t n = 0; n < num_rows_; ++n) {
-    for (size_t c = 0; c < columns_.size(); ++c) {
-      inputs_[(n / kLanes * columns_.size() + c) * kLanes + n % kLanes] =
-          parameters.inputs(n, columns_[c]);
+    double* const lane = inputs_.data() + static_cast<size_t>(n / kLanes) * chunk_size + n % kLanes;
+    size_t c = 0;
+    for (size_t a = 0; a < atom_ends_.size(); ++a) {
+      double square = 0;
+      for (; c < atom_ends_[a]; ++c) {
+        const double value = parameters.inputs(n, columns_[c]);
+        lane[c * kLanes] = value;
+        square += value * value;
+      }
+      lane[(columns_.size() + a) * kLanes] = square;
     }
   }
 }
 
 size_t RegionalFactors::scratch_size() const {
-  return kLanes * (2 * atom_ends_.size() + 2 * set_ends_.size() + scales_.size());
+  return kLanes * (2 * atom_ends_.size() + 2 * set_ends_.size() + scales_.size()) +
+         3 * set_ends_.size() + atom_ends_.size();
 }
 
 // The kernel; a struct, so that it can be a friend.
@@ -80,19 +94,49 @@ struct RegionalFactorsKernel {
     return *reinterpret_cast<Lanes*>(values + i * kLanes);
   }
 
-  // Of the rows of one chunk: the exponents of all scales and the products of all sets.
-  static PLEAT_ALWAYS_INLINE void Sums(const RegionalFactors& f, const double* inputs,
-                                       const double* row, double* atoms, double* products,
-                                       double* exponents) {
+  // How the sums over one set change when its row is shortened; a row within the bound leaves them
+  // as they are, to the bit.
+  struct Shortening {
+    double factor;          // s
+    double distance_more;   // (s^2 - 1) |x|^2
+    double distance_slope;  // 2 (1 - s)
+  };
+
+  static PLEAT_ALWAYS_INLINE void Shorten(const RegionalFactors& f, const double* row,
+                                          double* atom_squares, Shortening* shortenings) {
     size_t c = 0;
     for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
-      Lanes distance = {}, product = {};
+      double square = 0;
+      for (; c < f.atom_ends_[a]; ++c) square += row[f.columns_[c]] * row[f.columns_[c]];
+      atom_squares[a] = square;
+    }
+    size_t i = 0;
+    for (size_t set = 0; set < f.set_ends_.size(); ++set) {
+      double square = 0;
+      for (; i < f.set_ends_[set]; ++i) square += atom_squares[f.set_atoms_[i]];
+      const double norm = std::sqrt(square);
+      shortenings[set] = {1, 0, 0};
+      if (!(norm > f.set_bounds_[set])) continue;
+      const double s = f.set_bounds_[set] / norm;
+      shortenings[set] = {s, (s * s - 1) * square, 2 * (1 - s)};
+    }
+  }
+
+  // Of the rows of one chunk: the exponents of all scales and the products of all sets.
+  static PLEAT_ALWAYS_INLINE void Sums(const RegionalFactors& f, const double* inputs,
+                                       const double* row, const double* atom_squares,
+                                       const Shortening* shortenings, double* atoms,
+                                       double* products, double* exponents) {
+    // |x - x_n|^2 = |x|^2 + |x_n|^2 - 2 x . x_n: of every column only the product is needed.
+    const double* squares = inputs + kLanes * f.columns_.size();
+    size_t c = 0;
+    for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
+      Lanes product = {};
       for (; c < f.atom_ends_[a]; ++c) {
-        const Lanes x = *reinterpret_cast<const Lanes*>(inputs + c * kLanes);
-        const double value = row[f.columns_[c]];
-        distance += (x - value) * (x - value);
-        product += value * x;
+        product += row[f.columns_[c]] * *reinterpret_cast<const Lanes*>(inputs + c * kLanes);
       }
+      const Lanes square = *reinterpret_cast<const Lanes*>(squares + a * kLanes);
+      const Lanes distance = atom_squares[a] + square - 2 * product;
       At(atoms, 2 * a) = distance;
       At(atoms, 2 * a + 1) = product;
     }
@@ -104,8 +148,12 @@ struct RegionalFactorsKernel {
         distance += At(atoms, 2 * f.set_atoms_[i]);
         product += At(atoms, 2 * f.set_atoms_[i] + 1);
       }
-      At(distances, set) = distance;
-      At(products, set) = product;
+      const Shortening& shortening = shortenings[set];
+      const Lanes shortened =
+          distance + shortening.distance_more + shortening.distance_slope * product;
+      // Rounding may leave less than nothing, which a narrow kernel would blow up.
+      At(distances, set) = shortened > 0 ? shortened : Lanes{};
+      At(products, set) = shortening.factor * product;
     }
     for (size_t s = 0; s < f.scales_.size(); ++s) {
       At(exponents, s) = f.scales_[s].exponent * At(distances, f.scales_[s].set);
@@ -132,13 +180,16 @@ struct RegionalFactorsKernel {
     double* atoms = scratch;
     double* products = atoms + 2 * kLanes * f.atom_ends_.size();
     double* exponents = products + 2 * kLanes * f.set_ends_.size();
+    double* atom_squares = exponents + kLanes * f.scales_.size();
+    auto* shortenings = reinterpret_cast<Shortening*>(atom_squares + f.atom_ends_.size());
+    Shorten(f, row, atom_squares, shortenings);
     const auto exp_in_place = ChosenDenseOps().exp_in_place;
     const double* inputs = f.inputs_.data();
     for (ptrdiff_t n = 0; n < f.num_rows_; n += kLanes) {
-      Sums(f, inputs, row, atoms, products, exponents);
+      Sums(f, inputs, row, atom_squares, shortenings, atoms, products, exponents);
       exp_in_place(exponents, kLanes * static_cast<ptrdiff_t>(f.scales_.size()));
       Kernels(f, products, exponents, std::min(kLanes, f.num_rows_ - n), factors + n);
-      inputs += kLanes * f.columns_.size();
+      inputs += kLanes * (f.columns_.size() + f.atom_ends_.size());
     }
   }
 };

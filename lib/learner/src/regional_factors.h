@@ -13,6 +13,11 @@ namespace pleat {
 // The kernels of all regions in the order in which a query computes them. Columns that belong to
 // the same sets are one atom: distances are summed over them only once, and the sum over a set that
 // several scales share is formed only once.
+//
+// A row of a set that is longer than the bound of the set is shortened to it, by s = bound / |x|.
+// Its columns are shared with other sets, so not the row is changed but the sums over it:
+//
+//   s x . x_n = s (x . x_n),   |s x - x_n|^2 = |x - x_n|^2 + (s^2 - 1) |x|^2 + 2 (1 - s) x . x_n
 class RegionalFactors {
  public:
   RegionalFactors() = default;
@@ -45,13 +50,15 @@ class RegionalFactors {
   friend struct RegionalFactorsKernel;
 
   ptrdiff_t num_rows_ = 0;
-  // By eight rows, in these by columns in the order of the atoms; zeros after the last row.
+  // By eight rows, in these by columns in the order of the atoms, then the squared norm of the row
+  // in each atom; zeros after the last row.
   std::vector<double> inputs_;
-  std::vector<int> columns_;       // of all atoms, one after the other
-  std::vector<size_t> atom_ends_;  // in columns_
-  std::vector<int> set_atoms_;     // of all sets, one after the other
-  std::vector<size_t> set_ends_;   // in set_atoms_
-  std::vector<Scale> scales_;      // of all regions, one after the other
+  std::vector<int> columns_;        // of all atoms, one after the other
+  std::vector<size_t> atom_ends_;   // in columns_
+  std::vector<int> set_atoms_;      // of all sets, one after the other
+  std::vector<size_t> set_ends_;    // in set_atoms_
+  std::vector<double> set_bounds_;  // the longest row of each set
+  std::vector<Scale> scales_;       // of all regions, one after the other
   std::vector<Region> regions_;
 };
 

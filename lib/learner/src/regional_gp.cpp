@@ -1,20 +1,22 @@
-// What a query costs, and how the memory is laid out for it. With R regions, N kept rows and r
-// outputs a prediction is
+// What a query costs, and how the memory is laid out for it. With N kept rows and a region R of r_R
+// outputs, a prediction is
 //
-//   mean = output_mean + sum_R sum_n k_R(x, x_n) alpha_R,n
+//   mean_R = output_mean_R + sum_n k_R(x, x_n) alpha_R,n
 //
-// that is R N kernel values and one product with an (R N) x r matrix. For 17 regions, 600 rows and
-// 128 outputs that matrix has 1.3 million entries, 5 MB of floats that every query has to read.
-// Three decisions follow:
+// that is N kernel values and one product with an N x r_R matrix for each region. For 17 regions,
+// 600 rows and 64 outputs each, these matrices have .65 million entries, 2.6 MB of floats that
+// every query has to read. Three decisions follow:
 //
 // - All regions share one set of rows and one input scaling (RegionalGp::Train), so the rows are
 //   stored once, and distances over columns that several sets share are summed only once
 //   (regional_factors.h).
-// - The regions are added up as coefficients. Each region's alpha has all r columns, and since the
-//   sum over regions is the sum over rows of one tall matrix, no region needs a pass of its own.
-// - The alphas are float, row after row, in memory that begins on large pages, and are read from
-//   front to back. Several queries at a time share one such pass (PredictRows). Each query still
-//   sums in the same order, so a batch gives the same bits as single predictions.
+// - The alphas are float, row after row, region after region, in memory that begins on large pages,
+//   and are read from front to back. Several queries at a time share one such pass (PredictRows).
+//   Each query still sums in the same order, so a batch gives the same bits as single predictions.
+// - Rows of alphas are filled up to whole registers, so that no output is summed by itself.
+//
+// Where regions share outputs, as in models before version 4 of the file, their sums add up in the
+// order of the regions.
 //
 // `parameters_` keeps what else a model file needs, with the alphas taken out; parameters() puts
 // them back. A RegionalGp is immutable, and copies share the kernels.
@@ -31,6 +33,7 @@
 #include "pleat/base/status.h"
 #include "pleat/simd/weighted_rows.h"
 #include "regional_factors.h"
+#include "register_rows.h"
 
 namespace pleat {
 namespace {
@@ -39,14 +42,13 @@ absl::Status Refuse(const std::string& what) {
   return absl::InvalidArgumentError("regional GP parameters: " + what);
 }
 
-using RowMajorMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false for NaN
 
 absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index num_inputs) {
   if (!IsFeatureSet(scale.columns, num_inputs)) {
     return Refuse(absl::StrCat("the columns of a scale do not ascend below ", num_inputs));
   }
+  if (!(scale.max_norm > 0)) return Refuse("the largest norm of a scale is not positive");
   if (!IsPositive(scale.inverse_width) || !IsPositive(scale.amplitude) || !(scale.linear >= 0) ||
       !(scale.linear < 1e30)) {
     return Refuse("a width, amplitude or slope is out of range");
@@ -68,9 +70,13 @@ absl::Status CheckParameters(const RegionalGpParameters& p) {
     return Refuse("an input or a mean is not finite");
   }
   for (const RegionalGpParameters::Region& region : p.regions) {
-    if (region.alpha.rows() != n || region.alpha.cols() != r || !region.alpha.allFinite()) {
+    if (region.alpha.rows() != n || region.alpha.cols() < 1 || !region.alpha.allFinite()) {
       return Refuse(absl::StrCat("alpha is ", region.alpha.rows(), " x ", region.alpha.cols(),
-                                 " or not finite, expected ", n, " x ", r));
+                                 " or not finite, expected ", n, " rows"));
+    }
+    if (region.first_output < 0 || region.alpha.cols() > r - region.first_output) {
+      return Refuse(absl::StrCat("a region has the outputs from ", region.first_output, " on, ",
+                                 region.alpha.cols(), " of ", r));
     }
     if (region.scales.empty() || !(region.bias >= 0) || !(region.bias < 1e30)) {
       return Refuse("a region without scales, or its bias is out of range");
@@ -93,11 +99,17 @@ RegionalGp::RegionalGp(RegionalGpParameters parameters)
     : parameters_(std::move(parameters)),
       factors_(std::make_shared<const RegionalFactors>(parameters_)) {
   const Eigen::Index n = parameters_.inputs.rows();
-  alphas_.resize(static_cast<size_t>(n) * num_outputs() * parameters_.regions.size());
+  size_t size = 0;
+  for (const RegionalGpParameters::Region& region : parameters_.regions) {
+    num_region_outputs_.push_back(region.alpha.cols());
+    size += static_cast<size_t>(n * FilledUp(region.alpha.cols()));
+  }
+  alphas_.assign(size, 0);
   float* alpha = alphas_.data();
   for (RegionalGpParameters::Region& region : parameters_.regions) {
-    Eigen::Map<RowMajorMatrix>(alpha, n, num_outputs()) = region.alpha;
-    alpha += n * num_outputs();
+    const Eigen::Index stride = FilledUp(region.alpha.cols());
+    Eigen::Map<RowMajorFloats>(alpha, n, stride).leftCols(region.alpha.cols()) = region.alpha;
+    alpha += n * stride;
     region.alpha.resize(0, 0);
   }
 }
@@ -106,9 +118,11 @@ RegionalGpParameters RegionalGp::parameters() const {
   RegionalGpParameters p = parameters_;
   const Eigen::Index n = p.inputs.rows();
   const float* alpha = alphas_.data();
-  for (RegionalGpParameters::Region& region : p.regions) {
-    region.alpha = Eigen::Map<const RowMajorMatrix>(alpha, n, num_outputs());
-    alpha += n * num_outputs();
+  for (size_t i = 0; i < p.regions.size(); ++i) {
+    const Eigen::Index stride = FilledUp(num_region_outputs_[i]);
+    p.regions[i].alpha =
+        Eigen::Map<const RowMajorFloats>(alpha, n, stride).leftCols(num_region_outputs_[i]);
+    alpha += n * stride;
   }
   return p;
 }
@@ -141,14 +155,27 @@ void RegionalGp::PredictRows(std::span<Workspace* const> workspaces,
     const size_t count = std::min<size_t>(kMaxWeightedTogether, workspaces.size() - begin);
     std::array<const float*, kMaxWeightedTogether> factors{};
     std::array<float*, kMaxWeightedTogether> sums{};
-    for (size_t q = 0; q < count; ++q) {
-      Workspace& w = *workspaces[begin + q];
-      w.sum.setZero(num_outputs());
-      factors[q] = w.factors.data();
-      sums[q] = w.sum.data();
+    for (size_t q = 0; q < count; ++q) workspaces[begin + q]->sum.setZero(num_outputs());
+    const Eigen::Index num_rows = parameters_.inputs.rows();
+    const float* alpha = alphas_.data();
+    for (size_t i = 0; i < parameters_.regions.size(); ++i) {
+      const Eigen::Index first = parameters_.regions[i].first_output;
+      const Eigen::Index num = num_region_outputs_[i], stride = FilledUp(num);
+      for (size_t q = 0; q < count; ++q) {
+        Workspace& w = *workspaces[begin + q];
+        // The sum goes on from the regions before, so that shared outputs add up row by row.
+        w.part.assign(static_cast<size_t>(stride), 0);
+        std::copy_n(w.sum.data() + first, num, w.part.data());
+        factors[q] = w.factors.data() + static_cast<Eigen::Index>(i) * num_rows;
+        sums[q] = w.part.data();
+      }
+      AddWeightedRows({factors.data(), count}, alpha, num_rows, stride, {sums.data(), count});
+      for (size_t q = 0; q < count; ++q) {
+        Workspace& w = *workspaces[begin + q];
+        std::copy_n(w.part.data(), num, w.sum.data() + first);
+      }
+      alpha += num_rows * stride;
     }
-    AddWeightedRows({factors.data(), count}, alphas_.data(), num_factors(), num_outputs(),
-                    {sums.data(), count});
     for (size_t q = 0; q < count; ++q) {
       Eigen::Map<Eigen::VectorXd>(means[begin + q], num_outputs()) =
           parameters_.output_mean + workspaces[begin + q]->sum.cast<double>();

@@ -1,8 +1,8 @@
 // Training many additive GPs, one per region, on the same frames. Regions share the inputs: their
 // rows, their mean and their scales, which may come from a GpRegression that has learned the
 // relevance of joints, so that it is learned once. What a region has for itself is the choice of
-// its feature sets, its outputs (its share of the details, which sum to the whole over regions),
-// and 3 E + 2 hyperparameters for E sets.
+// its feature sets, its outputs (its share of the details, in a basis of its own), and 3 E + 2
+// hyperparameters for E sets.
 //
 // Units. For the likelihood, each set's columns are divided by one number (`unit`) that brings its
 // rows to mean squared norm 1, and a region's outputs by one that brings entries to mean square 1.
@@ -11,11 +11,11 @@
 // squared input unit, hence divided by the square), and that of the outputs into alpha. A query
 // then knows only one scaling of inputs, and no region needs its own.
 //
-// Rows. Hyperparameters are learned on at most 400 rows, as each of up to sixty iterations costs
-// their cube. Predictions are made from at most 600 rows, since a query reads them all. With more
-// frames than that, the 600 rows are inducing rows: they are spread evenly and the same for all
-// regions, and all frames are learned through them (pleat/gp/inducing.h), at a cost that grows
-// linearly with the frames. The regions compute no variance; the direct GP beside them does.
+// Rows. Hyperparameters are learned on at most 400 rows, as each iteration costs their cube.
+// Predictions are made from all rows up to 1,000, since a query reads them all. With more frames
+// than that there are 600 inducing rows: they are spread evenly and the same for all regions, and
+// all frames are learned through them (pleat/gp/inducing.h), at a cost that grows linearly with the
+// frames. The regions compute no variance; the direct GP beside them does.
 //
 // Threads. Regions are independent, so they are trained in parallel, each in memory of its own: a
 // likelihood keeps 3 E + 3 square matrices of its rows. They go in batches of four. That bounds the
@@ -50,10 +50,10 @@ absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
   for (size_t i = 0; i < regions.size(); ++i) {
     const GpRegion& region = regions[i];
     if (region.outputs.rows() != inputs.rows() || region.outputs.cols() < 1 ||
-        region.outputs.cols() != regions[0].outputs.cols() || !region.outputs.allFinite()) {
+        !region.outputs.allFinite()) {
       return absl::InvalidArgumentError(absl::StrCat("the outputs of region ", i,
-                                                     " are not finite or not ", inputs.rows(),
-                                                     " x ", regions[0].outputs.cols()));
+                                                     " are not finite or none, or not in ",
+                                                     inputs.rows(), " rows"));
     }
     if (region.feature_sets.empty()) {
       return absl::InvalidArgumentError(absl::StrCat("region ", i, " has no feature sets"));
@@ -177,8 +177,13 @@ absl::Status TrainRegion(const Eigen::MatrixXd& inputs, const GpRegion& region,
   result->bias = values[3 * scales + 1];
   for (int e = 0; e < scales; ++e) {
     const double square = set_units[e] * set_units[e];
-    result->scales.push_back({region.feature_sets[e], values[e] / square, values[scales + e],
-                              values[2 * scales + e] / square});
+    const double longest = inputs(Eigen::all, region.feature_sets[e]).rowwise().norm().maxCoeff();
+    result->scales.push_back({.columns = region.feature_sets[e],
+                              .inverse_width = values[e] / square,
+                              .amplitude = values[scales + e],
+                              .linear = values[2 * scales + e] / square});
+    // Columns that never differ bound nothing: whatever they are later says nothing either.
+    if (longest > 0) result->scales.back().max_norm = options.max_norm_ratio * longest;
   }
   return absl::OkStatus();
 }
@@ -200,17 +205,26 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
   const double unit = PositiveRoot(normalized.squaredNorm() / static_cast<double>(inputs.rows()));
   p.input_scales *= unit;
   normalized /= unit;
+  // The rows are kept as floats, in the file and in memory, so they are learned as such.
+  normalized = normalized.cast<float>().cast<double>();
   const auto learning_rows = SpreadRows(inputs.rows(), options.max_hyperparameter_rows);
-  const auto rows = SpreadRows(inputs.rows(), options.max_rows);
+  const bool exact = inputs.rows() <= options.max_exact_rows;
+  const auto rows = SpreadRows(inputs.rows(), exact ? inputs.rows() : options.max_rows);
 
-  p.output_mean = Eigen::VectorXd::Zero(regions[0].outputs.cols());
-  for (const GpRegion& region : regions) {
-    p.output_mean += region.outputs.colwise().mean().transpose();
-  }
   // The sink of `progress` is not for several threads: reports come between batches.
   const int num_regions = static_cast<int>(regions.size());
   const Progress cancellation(nullptr, [&progress] { return progress.cancelled(); });
   p.regions.resize(num_regions);
+  int num_outputs = 0;
+  for (int i = 0; i < num_regions; ++i) {
+    p.regions[i].first_output = num_outputs;
+    num_outputs += static_cast<int>(regions[i].outputs.cols());
+  }
+  p.output_mean.resize(num_outputs);
+  for (int i = 0; i < num_regions; ++i) {
+    p.output_mean.segment(p.regions[i].first_output, regions[i].outputs.cols()) =
+        regions[i].outputs.colwise().mean().transpose();
+  }
   std::vector<absl::Status> statuses(num_regions);
   constexpr int kBatch = 4;
   for (int begin = 0; begin < num_regions; begin += kBatch) {

@@ -7,10 +7,22 @@
 #include "pleat/base/status.h"
 #include "pleat/character/train_with_rig.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/local/job_memory.h"
 #include "pleat/service/compression.h"
 #include "pleat/store/records.h"
 
 namespace pleat {
+namespace {
+
+// How long a job that waits for memory may take to notice that it was cancelled.
+constexpr absl::Duration kCancellationPause = absl::Milliseconds(200);
+
+uint64_t BytesOf(const JobOptions& options, const std::vector<SequenceInfo>& clips) {
+  if (std::holds_alternative<TrainOptions>(options)) return TrainingBytes(clips);
+  return clips.empty() ? 0 : CompressionBytes(clips[0]);
+}
+
+}  // namespace
 
 absl::StatusOr<RigFile> JobRunner::DecodeUserRig(const std::string& text) const {
   MeshLimits limits;
@@ -19,7 +31,34 @@ absl::StatusOr<RigFile> JobRunner::DecodeUserRig(const std::string& text) const 
   return DecodeRigJson(text, limits);
 }
 
+absl::Status JobRunner::CheckMemory(const JobOptions& options,
+                                    const std::vector<SequenceInfo>& clips) const {
+  const uint64_t bytes = BytesOf(options, clips);
+  if (memory_ == nullptr || memory_->CanFit(bytes)) return absl::OkStatus();
+  return memory_->Reserve(bytes, "this job").status();
+}
+
+absl::StatusOr<Reservation> JobRunner::TakeMemory(const JobInfo& job,
+                                                  const Progress& progress) const {
+  if (memory_ == nullptr) return Reservation();
+  std::vector<SequenceInfo> clips;
+  for (const std::string& id : job.sequence_ids) {
+    PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(id));
+    clips.push_back(std::move(info));
+  }
+  const uint64_t bytes = BytesOf(job.options, clips);
+  const Progress waiting = progress.Stage("wait for memory", 0, 0);
+  while (true) {
+    const uint64_t num_releases = memory_->num_releases();
+    absl::StatusOr<Reservation> memory = memory_->Reserve(bytes, "this job");
+    if (memory.ok() || !memory_->CanFit(bytes)) return memory;
+    PLEAT_RETURN_IF_ERROR(waiting.Report(0));  // says that the job was cancelled
+    memory_->WaitForRelease(num_releases, kCancellationPause);
+  }
+}
+
 absl::StatusOr<JobOutcome> JobRunner::Run(const JobInfo& job, const Progress& progress) const {
+  PLEAT_ASSIGN_OR_RETURN(const Reservation memory, TakeMemory(job, progress));
   if (const auto* training = std::get_if<TrainOptions>(&job.options)) {
     return Train(job, *training, progress);
   }

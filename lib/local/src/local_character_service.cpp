@@ -14,17 +14,16 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
                                       .on_problem = options.on_problem}));
   std::unique_ptr<LocalCharacterService> service(
       new LocalCharacterService(options, std::move(store)));
-  PLEAT_RETURN_IF_ERROR(service->jobs_.Start());
+  PLEAT_RETURN_IF_ERROR(service->jobs_->Start());
   if (options.scrub_seconds > 0) {
-    service->scrubber_ =
-        std::make_unique<Scrubber>(&service->files_.store(), options.scrub_seconds);
+    service->scrubber_ = std::make_unique<Scrubber>(service->store_.get(), options.scrub_seconds);
   }
   if (options.sweep_seconds > 0) {
-    LocalModels* const models = &service->models_;
+    ModelCache* const models = &service->model_cache_;
     service->sweeper_ = std::make_unique<Sweeper>(
-        RetentionTarget{.files = &service->files_,
-                        .jobs = service->jobs_.retention(),
-                        .on_model_removed = [models](const std::string& id) { models->Forget(id); },
+        RetentionTarget{.files = &service->default_->files(),
+                        .jobs = service->jobs_->retention(),
+                        .on_model_removed = [models](const std::string& id) { models->Erase(id); },
                         .on_removed = options.on_removed},
         options.retention, options.sweep_seconds);
   }
@@ -33,28 +32,58 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
 
 LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                                              std::unique_ptr<Store> store)
-    : files_(std::move(store), options.limits, options.wall_clock),
-      sequences_(&files_),
-      models_(&files_, options.cache_bytes),
-      compressed_sequences_(&files_, options.decode_bytes),
-      poses_(&models_, {.max_frames = options.limits.max_frames,
-                        .encoder_bytes = options.encoder_bytes,
-                        .num_threads = options.num_pose_threads,
-                        .max_batch = options.max_batch}),
-      jobs_(&files_, &sequences_,
-            JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job),
-            {.num_workers = options.num_workers,
-             .max_queued_per_client = options.max_queued_jobs_per_client,
-             .in_idle_time = options.jobs_in_idle_time,
-             .on_state = options.on_job_state}) {}
+    : options_(options),
+      memory_(options.memory),
+      store_(std::move(store)),
+      model_cache_(options.memory.cache_bytes, &memory_.all),
+      pose_engine_({.encoder_bytes = options.memory.encoder_bytes,
+                    .encoder_memory = &memory_.encoders,
+                    .num_threads = options.num_pose_threads,
+                    .max_batch = options.max_batch}) {
+  memory_.all.AddReclaimer([this](uint64_t bytes) { pose_engine_.encoders().Reclaim(bytes); });
+  memory_.all.AddReclaimer([this](uint64_t bytes) { model_cache_.Reclaim(bytes); });
+  reporter_ = std::make_unique<StoredFiles>(store_, options.limits, options.wall_clock);
+  jobs_ = std::make_unique<JobPool>(
+      reporter_.get(),
+      [this](const std::string& project) -> const JobRunner& {
+        return OfProject(project).runner();
+      },
+      JobPoolOptions{.num_workers = options.num_workers,
+                     .max_queued_per_client = options.max_queued_jobs_per_client,
+                     .max_queued_per_project = options.project.max_queued_jobs,
+                     .in_idle_time = options.jobs_in_idle_time,
+                     .on_state = options.on_job_state,
+                     .on_stage = options.on_job_stage});
+  default_ = &OfProject(kDefaultProject);
+}
+
+LocalProject& LocalCharacterService::OfProject(const std::string& name) {
+  std::lock_guard lock(projects_mutex_);
+  std::unique_ptr<LocalProject>& project = projects_[name];
+  if (project == nullptr) {
+    project = std::make_unique<LocalProject>(
+        SharedByProjects{.store = store_,
+                         .memory = &memory_,
+                         .model_cache = &model_cache_,
+                         .pose_engine = &pose_engine_,
+                         .jobs = jobs_.get()},
+        LocalProjectOptions{.name = name,
+                            .limits = options_.limits,
+                            .project = options_.project,
+                            .wall_clock = options_.wall_clock,
+                            .train = options_.train,
+                            .num_threads_per_job = options_.num_threads_per_job});
+  }
+  return *project;
+}
 
 double LocalCharacterService::FreeDiskBytes() const {
-  const absl::StatusOr<uint64_t> bytes = files_.store().blobs().FreeBytes();
+  const absl::StatusOr<uint64_t> bytes = store_->blobs().FreeBytes();
   return bytes.ok() ? static_cast<double>(*bytes) : -1;
 }
 
 size_t LocalCharacterService::NumQuarantinedFiles() const {
-  const auto files = files_.store().quarantine().List();
+  const auto files = store_->quarantine().List();
   return files.ok() ? files->size() : 0;
 }
 

@@ -1,5 +1,6 @@
 #include "pleat/local/local_compressed_sequences.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -33,7 +34,7 @@ absl::StatusOr<SequenceDecoder> LocalCompressedSequences::OpenDecoder(std::strin
                                {.max_vertices = static_cast<uint32_t>(limits.max_vertices),
                                 .max_faces = static_cast<uint32_t>(2 * limits.max_vertices),
                                 .max_frames = static_cast<uint32_t>(limits.max_frames),
-                                .max_field_bytes = decode_bytes_});
+                                .max_field_bytes = memory_->capacity_bytes()});
 }
 
 absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::Upload(const std::string& file,
@@ -54,7 +55,7 @@ absl::StatusOr<std::unique_ptr<CompressedSequenceUpload>> LocalCompressedSequenc
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<CompressedSequenceUpload> known,
                          FindComplete<CompressedSequenceInfo>(files_, id, ttl));
   if (known != nullptr) return known;
-  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
+  PLEAT_ASSIGN_OR_RETURN(StoredFiles::BegunUpload upload,
                          files_->BeginUpload(id, size_bytes, offset_bytes));
   return std::make_unique<StoredUpload<CompressedSequenceInfo>>(
       std::move(upload),
@@ -66,6 +67,8 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(pl
   // When a job has made the same file, its row has a record that an upload must not replace. The
   // bytes that came are checked all the same.
   absl::StatusOr<CompressedSequenceInfo> known = Get(upload->id());
+  PLEAT_ASSIGN_OR_RETURN(const Reservation file_memory,
+                         files_->ReserveForUpload(upload->size_bytes()));
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, upload->ReadComplete());
   PLEAT_ASSIGN_OR_RETURN(const std::unique_ptr<CompressedSequenceUpload> stored,
                          FindComplete<CompressedSequenceInfo>(files_, upload->id(), ttl));
@@ -74,7 +77,7 @@ absl::StatusOr<CompressedSequenceInfo> LocalCompressedSequences::FinishUpload(pl
     return stored->Finish();
   }
   PLEAT_ASSIGN_OR_RETURN(const Reservation memory,
-                         decode_memory_.Reserve(bytes.size(), "checking the upload"));
+                         memory_->Reserve(bytes.size(), "checking the upload"));
   const uint64_t size_bytes = bytes.size();
   const absl::StatusOr<SequenceDecoder> decoder = OpenDecoder(std::move(bytes));
   if (!decoder.ok()) {
@@ -120,14 +123,18 @@ absl::StatusOr<std::unique_ptr<ContentDownload>> LocalCompressedSequences::OpenD
 absl::StatusOr<std::unique_ptr<DecodeSession>> LocalCompressedSequences::OpenDecode(
     const std::string& id, FrameRange range) {
   PLEAT_ASSIGN_OR_RETURN(const CompressedSequenceInfo info, Get(id));
+  const int end_frame = range.end == 0 ? info.num_frames : range.end;
+  if (frames_ != nullptr && end_frame > range.begin) {
+    PLEAT_RETURN_IF_ERROR(frames_->Take(std::min(end_frame, info.num_frames) - range.begin));
+  }
   const std::string what = absl::StrCat("decoding '", id, "'");
   // The memory is reserved in two steps, because only the opened file says what its decoder will
   // take: first for the bytes of the file, then for everything.
-  PLEAT_ASSIGN_OR_RETURN(Reservation memory, decode_memory_.Reserve(info.size_bytes, what));
+  PLEAT_ASSIGN_OR_RETURN(Reservation memory, memory_->Reserve(info.size_bytes, what));
   PLEAT_ASSIGN_OR_RETURN(std::string bytes, files_->Read(id));
   PLEAT_ASSIGN_OR_RETURN(SequenceDecoder decoder, OpenDecoder(std::move(bytes)));
   memory = Reservation();
-  PLEAT_ASSIGN_OR_RETURN(memory, decode_memory_.Reserve(decoder.memory_bytes(), what));
+  PLEAT_ASSIGN_OR_RETURN(memory, memory_->Reserve(decoder.memory_bytes(), what));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<DecodeSession> session,
                          MakeDecodeSession(std::move(decoder), range));
   return std::make_unique<ReservedSession>(std::move(session), std::move(memory));

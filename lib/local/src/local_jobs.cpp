@@ -1,13 +1,11 @@
 #include "pleat/local/local_jobs.h"
 
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
 #include "pleat/character/train_with_rig.h"
-#include "pleat/store/records.h"
 #include "stored_infos.h"
 
 namespace pleat {
@@ -54,69 +52,6 @@ class LocalSubscription final : public JobSubscription {
 
 }  // namespace
 
-LocalJobs::LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner,
-                     const LocalJobsOptions& options)
-    : files_(files),
-      sequences_(sequences),
-      runner_(std::move(runner)),
-      manager_(
-          JobManagerOptions{.num_workers = options.num_workers,
-                            .max_queued_per_client = options.max_queued_per_client,
-                            .in_idle_time = options.in_idle_time,
-                            .wall_clock = files->clock()},
-          [this](const JobInfo& job, const Progress& progress) {
-            return runner_.Run(job, progress);
-          },
-          [this, on_state = options.on_state](const JobInfo& info, int attempts) {
-            const absl::Status status =
-                files_->catalog().Put(EntryKind::kJob, {info.id, EncodeRecord(info), attempts});
-            if (status.ok() && on_state) on_state(info);
-            return status;
-          },
-          [this](const std::string& id) {
-            const absl::Status status = files_->catalog().Delete(EntryKind::kJob, id);
-            return absl::IsNotFound(status) ? absl::OkStatus() : status;
-          }) {}
-
-absl::Status LocalJobs::Start() {
-  PLEAT_RETURN_IF_ERROR(Restore());
-  manager_.Start();
-  return absl::OkStatus();
-}
-
-absl::Status LocalJobs::Restore() {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries,
-                         files_->catalog().List(EntryKind::kJob));
-  // The rigs of jobs are deleted here and nowhere else: those that no unfinished job needs any
-  // more, and those whose job was never created because the process ended in between.
-  std::vector<StoredJob> jobs;
-  std::set<std::string> needed_rigs;
-  bool all_rows_are_read = true;
-  for (const CatalogEntry& entry : entries) {
-    absl::StatusOr<JobInfo> info = DecodeJobRecord(entry.record);
-    if (!info.ok()) {
-      files_->ReportBadRow(EntryKind::kJob, entry.id, info.status());
-      all_rows_are_read = false;
-      continue;
-    }
-    if (!IsFinal(info->state)) needed_rigs.insert(info->rig_id);
-    jobs.push_back({*std::move(info), entry.attempts});
-  }
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> rigs,
-                         files_->catalog().List(EntryKind::kRig));
-  for (const CatalogEntry& rig : rigs) {
-    // A job whose row cannot be read may need any of them.
-    if (needed_rigs.contains(rig.id) || !all_rows_are_read) continue;
-    if (const absl::Status status = files_->Delete(EntryKind::kRig, rig.id); !status.ok()) {
-      files_->store().Report(
-          absl::StrCat("the rig '", rig.id,
-                       "' of an ended job cannot be removed: ", std::string(status.message())));
-    }
-  }
-  manager_.Restore(std::move(jobs));
-  return absl::OkStatus();
-}
-
 absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request) {
   PLEAT_RETURN_IF_ERROR(request.rig.empty() ? ValidateTrainOptions(request.options)
                                             : CheckOptionsWithRig(request.options));
@@ -125,12 +60,15 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
     return absl::InvalidArgumentError(absl::StrCat(
         "a training job needs 1 to ", files_->limits().max_clips, " sequences, not ", num_clips));
   }
+  PLEAT_RETURN_IF_ERROR(files_->ReserveRoom(1).status());  // for the result
   JobInfo draft;
+  draft.project = files_->project();
   std::vector<SequenceInfo> clips;
   for (const std::string& id : request.sequence_ids) {
     PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(id));
     clips.push_back(std::move(info));
   }
+  PLEAT_RETURN_IF_ERROR(runner_.CheckMemory(request.options, clips));
   draft.sequence_ids = request.sequence_ids;
   draft.options = request.options;
   draft.request_id = request.request_id;
@@ -144,59 +82,60 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
     draft.rig_id = ToHex(ComputeSha256(request.rig));
     PLEAT_RETURN_IF_ERROR(files_->Add(EntryKind::kRig, {draft.rig_id, ""}, request.rig));
   }
-  return manager_.Create(std::move(draft));
+  return pool_->manager().Create(std::move(draft));
 }
 
 absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& request) {
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(request.options));
   PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(request.sequence_id));
+  PLEAT_RETURN_IF_ERROR(runner_.CheckMemory(request.options, {info}));
+  PLEAT_RETURN_IF_ERROR(files_->ReserveRoom(1).status());  // for the result
   JobInfo draft;
+  draft.project = files_->project();
   draft.sequence_ids = {request.sequence_id};
   draft.options = request.options;
   draft.request_id = request.request_id;
   draft.client = request.client;
   draft.result_ttl = request.result_ttl;
   draft.name = std::move(info.name);
-  return manager_.Create(std::move(draft));
+  return pool_->manager().Create(std::move(draft));
 }
 
-absl::StatusOr<JobInfo> LocalJobs::Get(const std::string& id) { return manager_.Get(id); }
+absl::StatusOr<std::shared_ptr<JobStateMachine>> LocalJobs::Find(const std::string& id) const {
+  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job, pool_->manager().Find(id));
+  if (job->snapshot().info.project == files_->project()) return job;
+  return absl::NotFoundError(absl::StrCat("no job '", id, "'"));  // the manager's words
+}
+
+absl::StatusOr<JobInfo> LocalJobs::Get(const std::string& id) {
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
+  return job->snapshot().info;
+}
 
 absl::StatusOr<Page<JobInfo>> LocalJobs::ListPage(const PageRequest& request) {
   PLEAT_ASSIGN_OR_RETURN(Page<JobInfo> page, ListStoredPage<JobInfo>(files_, request));
   // The rows give the order; how far a job is, the manager knows better.
   for (JobInfo& info : page.items) {
-    if (absl::StatusOr<JobInfo> now = manager_.Get(info.id); now.ok()) info = *std::move(now);
+    if (absl::StatusOr<JobInfo> now = Get(info.id); now.ok()) info = *std::move(now);
   }
   return page;
 }
 
-JobsOfRetention LocalJobs::retention() {
-  return {.ended = [this]() -> absl::StatusOr<std::vector<EndedJob>> {
-            std::vector<EndedJob> ended;
-            manager_.Visit([&](const JobInfo& job) {
-              if (IsFinal(job.state)) ended.push_back({job.id, job.name, job.ended});
-            });
-            return ended;
-          },
-          .remove = [this](const std::string& id) { return manager_.Delete(id); },
-          .sequences_in_use = [this]() -> absl::StatusOr<std::set<std::string>> {
-            std::set<std::string> ids;
-            manager_.Visit([&](const JobInfo& job) {
-              if (!IsFinal(job.state)) ids.insert(job.sequence_ids.begin(), job.sequence_ids.end());
-            });
-            return ids;
-          }};
+absl::Status LocalJobs::Cancel(const std::string& id) {
+  PLEAT_RETURN_IF_ERROR(Find(id).status());
+  return pool_->manager().Cancel(id);
 }
 
-absl::Status LocalJobs::Cancel(const std::string& id) { return manager_.Cancel(id); }
-
-absl::Status LocalJobs::Delete(const std::string& id) { return manager_.Delete(id); }
+absl::Status LocalJobs::Delete(const std::string& id) {
+  PLEAT_RETURN_IF_ERROR(Find(id).status());
+  return pool_->manager().Delete(id);
+}
 
 absl::StatusOr<std::unique_ptr<JobSubscription>> LocalJobs::Subscribe(
     const std::string& id, std::function<void()> listener) {
-  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job, manager_.Find(id));
-  return std::make_unique<LocalSubscription>(&manager_, std::move(job), std::move(listener));
+  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job, Find(id));
+  return std::make_unique<LocalSubscription>(&pool_->manager(), std::move(job),
+                                             std::move(listener));
 }
 
 }  // namespace pleat

@@ -18,7 +18,8 @@ absl::StatusOr<Page<ModelInfo>> LocalModels::ListPage(const PageRequest& request
 
 absl::Status LocalModels::Delete(const std::string& id) {
   PLEAT_RETURN_IF_ERROR(files_->Delete(EntryKind::kModel, id));
-  cache_.Erase(id);  // sessions that use the model keep it until they end
+  // Sessions that use the model keep it until they end. Other projects keep theirs in the cache.
+  if (!files_->store().catalog().GetInAnyProject(EntryKind::kModel, id).ok()) cache_->Erase(id);
   return absl::OkStatus();
 }
 
@@ -37,10 +38,11 @@ absl::StatusOr<std::unique_ptr<ContentDownload>> LocalModels::OpenDownload(const
 }
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> LocalModels::Acquire(const std::string& id) {
-  using Loaded = ByteCache<CharacterModel>::Loaded;
-  return cache_.Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
-    // Files of all kinds lie in one place; the row says that this one is a model.
-    PLEAT_RETURN_IF_ERROR(files_->catalog().Get(EntryKind::kModel, key).status());
+  using Loaded = ModelCache::Loaded;
+  // Files of all kinds lie in one place, and the cache knows the models of all projects; the row
+  // says that this is a model and that the project has it.
+  PLEAT_RETURN_IF_ERROR(files_->catalog().Get(EntryKind::kModel, id).status());
+  return cache_->Get(id, [this](const std::string& key) -> absl::StatusOr<Loaded> {
     PLEAT_ASSIGN_OR_RETURN(const std::string bytes, files_->Read(key));
     PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, DecodeModel(bytes));
     const uint64_t charge = model->memory_bytes();

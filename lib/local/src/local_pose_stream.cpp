@@ -36,8 +36,9 @@
 namespace pleat {
 
 LocalPoseStream::LocalPoseStream(std::unique_ptr<LocalPoseSession> session, const LiveRules& rules,
-                                 PoseBatcher* batcher, LiveListener* listener)
-    : batcher_(batcher),
+                                 FrameQuota* frames, PoseBatcher* batcher, LiveListener* listener)
+    : frames_(frames),
+      batcher_(batcher),
       listener_(listener),
       session_(std::move(session)),
       queue_(rules, session_->model().options().history,
@@ -77,6 +78,8 @@ bool LocalPoseStream::Prepare(PoseQuery* query) {
     queue_.Take(&turn_);
   }
   start_ = std::chrono::steady_clock::now();
+  // Charged here and not when it comes: a pose that was superseded has cost nothing.
+  if (turn_.status.ok() && frames_ != nullptr) turn_.status = frames_->Take(1);
   if (!turn_.status.ok()) return false;
   poses_.clear();
   for (const Pose& pose : turn_.poses) poses_.push_back(&pose);

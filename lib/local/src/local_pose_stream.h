@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "pleat/local/frame_quota.h"
 #include "pleat/local/live_queue.h"
 #include "pleat/local/pose_batcher.h"
 #include "pleat/local/pose_session.h"
@@ -17,8 +18,9 @@ namespace pleat {
 // the frames where it is. `batcher` and `listener` must outlive the stream.
 class LocalPoseStream final : public PoseStream, private PoseWork {
  public:
+  // frames: what each pose that is evaluated is charged to; null: nothing.
   LocalPoseStream(std::unique_ptr<LocalPoseSession> session, const LiveRules& rules,
-                  PoseBatcher* batcher, LiveListener* listener);
+                  FrameQuota* frames, PoseBatcher* batcher, LiveListener* listener);
 
   const StreamHeader& header() const override { return session_->header(); }
   bool HasRoom() const override;
@@ -36,6 +38,7 @@ class LocalPoseStream final : public PoseStream, private PoseWork {
   // Fills reply_.frame, or says why it cannot.
   absl::Status Encode(const PoseQuery& query, double evaluate_us);
 
+  FrameQuota* const frames_;
   PoseBatcher* const batcher_;
   LiveListener* const listener_;
   // Everything up to start_ belongs to the one answer that is under way and needs no lock. Apart

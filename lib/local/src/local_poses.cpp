@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "local_pose_stream.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 #include "pleat/local/pose_session.h"
 
@@ -11,8 +12,9 @@ namespace pleat {
 
 absl::Status LocalPoses::CheckClip(const PoseTrack& track) const {
   if (track.num_frames() <= max_frames_) return absl::OkStatus();
-  return absl::ResourceExhaustedError(absl::StrCat(
-      "the clip has ", track.num_frames(), " frames, the limit (--max-frames) is ", max_frames_));
+  return RefuseForLimit({.limit = "--max-frames"},
+                        absl::StrCat("the clip has ", track.num_frames(),
+                                     " frames, the limit (--max-frames) is ", max_frames_));
 }
 
 absl::Status LocalPoses::EvaluateClip(
@@ -29,8 +31,9 @@ absl::Status LocalPoses::EvaluateClip(
 absl::StatusOr<std::unique_ptr<PoseSession>> LocalPoses::OpenSession(const std::string& model_id,
                                                                      PoseSessionOptions options) {
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
+  PLEAT_RETURN_IF_ERROR(Charge(1));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
-                         encoders_.Take(model_id, *model, options.encoder));
+                         engine_->encoders().Take(model_id, *model, options.encoder));
   return LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder));
 }
 
@@ -39,8 +42,9 @@ absl::StatusOr<std::unique_ptr<ClipSession>> LocalPoses::OpenClip(const std::str
                                                                   PoseSessionOptions options) {
   PLEAT_RETURN_IF_ERROR(CheckClip(track));
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
+  PLEAT_RETURN_IF_ERROR(Charge(track.num_frames()));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
-                         encoders_.Take(model_id, *model, options.encoder));
+                         engine_->encoders().Take(model_id, *model, options.encoder));
   return LocalClipSession::Open(std::move(model), std::move(track), std::move(options),
                                 std::move(encoder));
 }
@@ -51,11 +55,12 @@ absl::StatusOr<std::unique_ptr<PoseStream>> LocalPoses::OpenStream(const std::st
                                                                    LiveListener* listener) {
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model, models_->Acquire(model_id));
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<EncoderPool::Lease> encoder,
-                         encoders_.Take(model_id, *model, options.encoder));
+                         engine_->encoders().Take(model_id, *model, options.encoder));
   PLEAT_ASSIGN_OR_RETURN(
       std::unique_ptr<LocalPoseSession> session,
       LocalPoseSession::Open(std::move(model), std::move(options), std::move(encoder)));
-  return std::make_unique<LocalPoseStream>(std::move(session), rules, &batcher_, listener);
+  return std::make_unique<LocalPoseStream>(std::move(session), rules, frames_, &engine_->batcher(),
+                                           listener);
 }
 
 }  // namespace pleat

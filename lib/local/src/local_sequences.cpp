@@ -4,12 +4,17 @@
 
 #include "absl/strings/str_cat.h"
 #include "infos.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/sequence_file.h"
 #include "stored_infos.h"
 
 namespace pleat {
 namespace {
+
+// What checking a sequence takes at most, in sizes of its file: the bytes, the frames out of them,
+// and room for what the allocator keeps of the upload before.
+constexpr uint64_t kCheckFactor = 3;
 
 MeshLimits FileLimits(const ServiceLimits& limits) {
   const auto max_bytes = static_cast<uint64_t>(limits.max_upload_bytes);
@@ -25,14 +30,15 @@ MeshLimits FileLimits(const ServiceLimits& limits) {
 absl::Status LocalSequences::Check(const MeshSequence& sequence) const {
   const ServiceLimits& limits = files_->limits();
   if (sequence.num_vertices() > limits.max_vertices) {
-    return absl::ResourceExhaustedError(absl::StrCat("the sequence has ", sequence.num_vertices(),
-                                                     " vertices, the limit (--max-vertices) is ",
-                                                     limits.max_vertices));
+    return RefuseForLimit(
+        {.limit = "--max-vertices"},
+        absl::StrCat("the sequence has ", sequence.num_vertices(),
+                     " vertices, the limit (--max-vertices) is ", limits.max_vertices));
   }
   if (sequence.num_frames() > limits.max_frames) {
-    return absl::ResourceExhaustedError(absl::StrCat("the sequence has ", sequence.num_frames(),
-                                                     " frames, the limit (--max-frames) is ",
-                                                     limits.max_frames));
+    return RefuseForLimit({.limit = "--max-frames"},
+                          absl::StrCat("the sequence has ", sequence.num_frames(),
+                                       " frames, the limit (--max-frames) is ", limits.max_frames));
   }
   return absl::OkStatus();
 }
@@ -42,11 +48,13 @@ absl::StatusOr<SequenceInfo> LocalSequences::Upload(const MeshSequence& sequence
   PLEAT_RETURN_IF_ERROR(Check(sequence));
   const std::string bytes = EncodeSequence(sequence);
   if (bytes.size() > static_cast<uint64_t>(files_->limits().max_upload_bytes)) {
-    return absl::ResourceExhaustedError(absl::StrCat("the sequence has ", bytes.size(),
-                                                     " bytes, the limit (--max-upload-bytes) is ",
-                                                     files_->limits().max_upload_bytes));
+    return RefuseForLimit({.limit = "--max-upload-bytes"},
+                          absl::StrCat("the sequence has ", bytes.size(),
+                                       " bytes, the limit (--max-upload-bytes) is ",
+                                       files_->limits().max_upload_bytes));
   }
   PLEAT_RETURN_IF_ERROR(progress.Report(.5));
+  PLEAT_ASSIGN_OR_RETURN(const SpaceReservation room, files_->ReserveRoom(bytes.size()));
   const SequenceInfo info = MakeSequenceInfo(sequence, SequenceId(bytes), bytes.size());
   PLEAT_RETURN_IF_ERROR(
       files_->Add(EntryKind::kSequence, {info.id, EncodeRecord(info)}, bytes, ttl));
@@ -71,7 +79,8 @@ absl::Status LocalSequences::SetPinned(const std::string& id, bool pinned) {
 }
 
 absl::Status LocalSequences::DeleteUpload(const std::string& id) {
-  return files_->uploads().Remove(id);
+  PLEAT_ASSIGN_OR_RETURN(UploadArea* const uploads, files_->uploads());
+  return uploads->Remove(id);
 }
 
 absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) {
@@ -87,7 +96,13 @@ absl::StatusOr<UploadStatus> LocalSequences::QueryUpload(const std::string& id) 
   for (const absl::Status& status : {sequence.status(), compressed.status()}) {
     if (!status.ok() && !absl::IsNotFound(status) && !absl::IsDataLoss(status)) return status;
   }
-  return UploadStatus{files_->uploads().ReceivedBytes(id), false};
+  for (const EntryKind kind : {EntryKind::kSequence, EntryKind::kCompressedSequence}) {
+    if (const auto shared = files_->FindShared(kind, id)) {
+      return UploadStatus{shared->file_bytes, true};
+    }
+  }
+  PLEAT_ASSIGN_OR_RETURN(UploadArea* const uploads, files_->uploads());
+  return UploadStatus{uploads->ReceivedBytes(id), false};
 }
 
 absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(const std::string& id,
@@ -97,7 +112,7 @@ absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(cons
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<SequenceUpload> known,
                          FindComplete<SequenceInfo>(files_, id, ttl));
   if (known != nullptr) return known;
-  PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<pleat::Upload> upload,
+  PLEAT_ASSIGN_OR_RETURN(StoredFiles::BegunUpload upload,
                          files_->BeginUpload(id, size_bytes, offset_bytes));
   return std::make_unique<StoredUpload<SequenceInfo>>(
       std::move(upload),
@@ -106,6 +121,9 @@ absl::StatusOr<std::unique_ptr<SequenceUpload>> LocalSequences::BeginUpload(cons
 
 absl::StatusOr<SequenceInfo> LocalSequences::FinishUpload(pleat::Upload* upload,
                                                           absl::Duration ttl) {
+  // The file and, beside it, the sequence, whose numbers the file has as they are in memory.
+  PLEAT_ASSIGN_OR_RETURN(const Reservation memory,
+                         files_->ReserveForUpload(kCheckFactor * upload->size_bytes()));
   PLEAT_ASSIGN_OR_RETURN(const std::string bytes, upload->ReadComplete());
   absl::StatusOr<MeshSequence> sequence = DecodeSequence(bytes, FileLimits(files_->limits()));
   absl::Status status = sequence.status();

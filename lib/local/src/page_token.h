@@ -1,4 +1,4 @@
-// The tokens of pages: where in a list the next page begins.
+// Tokens of pages: where the next page of a list begins.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,27 @@
 
 namespace pleat {
 
-// Says that the next page of the entries of this kind begins behind `position`. It is good as long
-// as the store, also when the entry at that position is deleted. Callers must not look into it.
-std::string MakePageToken(EntryKind kind, int64_t position);
+// The lists of one project. A position counts the entries of all projects, so a token that could be
+// read would tell how much others store. It is encrypted and authenticated with a key that only the
+// catalog knows: a token says nothing, and none can be made up or used in another list.
+class PageTokens {
+ public:
+  PageTokens(std::string secret, std::string project)
+      : secret_(std::move(secret)), project_(std::move(project)) {}
 
-// The position of a token; 0, which is before all entries, for the empty one. kInvalidArgument for
-// what MakePageToken has not made for this kind, such as the tokens of older versions.
-absl::StatusOr<int64_t> ParsePageToken(EntryKind kind, const std::string& token);
+  // One position has one token.
+  std::string Make(EntryKind kind, int64_t position) const;
+  // 0 for the empty token, which is that of the first page. kInvalidArgument for a token that this
+  // list did not give.
+  absl::StatusOr<int64_t> Parse(EntryKind kind, const std::string& token) const;
+
+ private:
+  // Eight bytes that depend on everything that a token stands for.
+  std::string TagOf(EntryKind kind, int64_t position) const;
+  // Eight bytes that hide the position.
+  uint64_t MaskOf(const std::string& tag) const;
+
+  const std::string secret_, project_;
+};
 
 }  // namespace pleat

@@ -12,16 +12,18 @@ EntryLife LifeOf(const CatalogEntry& entry) {
   return life;
 }
 
-absl::StatusOr<EntryPage> ReadEntryPage(Catalog& catalog, EntryKind kind,
+absl::StatusOr<EntryPage> ReadEntryPage(StoredFiles* files, EntryKind kind,
                                         const PageRequest& request) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string secret, files->store().catalog().Secret());
+  const PageTokens tokens(secret, files->project());
   PLEAT_ASSIGN_OR_RETURN(const int max_items, MaxItemsOf(request));
-  PLEAT_ASSIGN_OR_RETURN(const int64_t after, ParsePageToken(kind, request.token));
+  PLEAT_ASSIGN_OR_RETURN(const int64_t after, tokens.Parse(kind, request.token));
   EntryPage page;
   // One more, which says whether there is a next page.
-  PLEAT_ASSIGN_OR_RETURN(page.entries, catalog.ListPage(kind, after, max_items + 1));
+  PLEAT_ASSIGN_OR_RETURN(page.entries, files->catalog().ListPage(kind, after, max_items + 1));
   if (page.entries.size() > static_cast<size_t>(max_items)) {
     page.entries.pop_back();
-    page.next_token = MakePageToken(kind, page.entries.back().position);
+    page.next_token = tokens.Make(kind, page.entries.back().position);
   }
   return page;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,12 +45,16 @@ EntryLife LifeOf(const CatalogEntry& entry);
 template <typename Info>
 absl::StatusOr<Info> InfoOf(const CatalogEntry& entry) {
   PLEAT_ASSIGN_OR_RETURN(Info info, StoredKind<Info>::decode(entry.record));
-  if constexpr (StoredKind<Info>::kind != EntryKind::kJob) info.life = LifeOf(entry);
+  if constexpr (StoredKind<Info>::kind == EntryKind::kJob) {
+    info.project = entry.project;
+  } else {
+    info.life = LifeOf(entry);
+  }
   return info;
 }
 
 template <typename Info>
-absl::StatusOr<Info> GetStored(Catalog& catalog, const std::string& id) {
+absl::StatusOr<Info> GetStored(ProjectCatalog& catalog, const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(const CatalogEntry entry, catalog.Get(StoredKind<Info>::kind, id));
   return InfoOf<Info>(entry);
 }
@@ -60,8 +65,15 @@ template <typename Info>
 absl::StatusOr<std::unique_ptr<ContentUpload<Info>>> FindComplete(StoredFiles* files,
                                                                   const std::string& id,
                                                                   absl::Duration ttl) {
-  if (!GetStored<Info>(files->catalog(), id).ok() || !files->IsIntact(id)) return nullptr;
-  const absl::Status prolonged = files->Prolong(StoredKind<Info>::kind, id, ttl);
+  constexpr EntryKind kKind = StoredKind<Info>::kind;
+  if (!GetStored<Info>(files->catalog(), id).ok()) {
+    const std::optional<CatalogEntry> shared = files->FindShared(kKind, id);
+    if (!shared) return nullptr;
+    PLEAT_RETURN_IF_ERROR(files->TakeShared(kKind, *shared, ttl));
+  } else if (!files->IsIntact(id)) {
+    return nullptr;
+  }
+  const absl::Status prolonged = files->Prolong(kKind, id, ttl);
   if (absl::IsNotFound(prolonged)) return nullptr;  // deleted in this moment
   PLEAT_RETURN_IF_ERROR(prolonged);
   absl::StatusOr<Info> info = GetStored<Info>(files->catalog(), id);
@@ -74,7 +86,7 @@ struct EntryPage {
   std::vector<CatalogEntry> entries;
   std::string next_token;
 };
-absl::StatusOr<EntryPage> ReadEntryPage(Catalog& catalog, EntryKind kind,
+absl::StatusOr<EntryPage> ReadEntryPage(StoredFiles* files, EntryKind kind,
                                         const PageRequest& request);
 
 // Leaves out rows that cannot be read, and tells the operator: one of them must not hide the
@@ -82,7 +94,7 @@ absl::StatusOr<EntryPage> ReadEntryPage(Catalog& catalog, EntryKind kind,
 template <typename Info>
 absl::StatusOr<Page<Info>> ListStoredPage(StoredFiles* files, const PageRequest& request) {
   constexpr EntryKind kKind = StoredKind<Info>::kind;
-  PLEAT_ASSIGN_OR_RETURN(EntryPage rows, ReadEntryPage(files->catalog(), kKind, request));
+  PLEAT_ASSIGN_OR_RETURN(EntryPage rows, ReadEntryPage(files, kKind, request));
   Page<Info> page{.items = {}, .next_token = std::move(rows.next_token)};
   for (const CatalogEntry& entry : rows.entries) {
     absl::StatusOr<Info> info = InfoOf<Info>(entry);

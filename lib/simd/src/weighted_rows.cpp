@@ -66,6 +66,10 @@ struct AddRows {
                                       ptrdiff_t num_rows, ptrdiff_t num_cols, Scalar* const* sums) {
     constexpr int kRegisters = kVectors == 1 ? 8 : 4;
     ptrdiff_t begin = AddColumns<kVectors, kRegisters>(factors, rows, num_rows, num_cols, 0, sums);
+    if constexpr (kRegisters > 4) {
+      begin = AddColumns<kVectors, 4>(factors, rows, num_rows, num_cols, begin, sums);
+    }
+    begin = AddColumns<kVectors, 2>(factors, rows, num_rows, num_cols, begin, sums);
     begin = AddColumns<kVectors, 1>(factors, rows, num_rows, num_cols, begin, sums);
     for (int q = 0; q < kVectors; ++q) {
       for (ptrdiff_t n = 0; n < num_rows; ++n) {

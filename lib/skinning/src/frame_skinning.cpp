@@ -10,13 +10,21 @@
 
 namespace pleat {
 
-FrameSkinning::FrameSkinning(const Rig& rig) : num_vertices_(rig.weights.num_vertices()) {
+FrameSkinning::FrameSkinning(const Rig& rig, std::vector<int> lane_vertices)
+    : num_vertices_(rig.weights.num_vertices()), lane_vertices_(std::move(lane_vertices)) {
   for (const Joint& joint : rig.skeleton.joints()) parents_.push_back(joint.parent);
-  blocks_.resize((num_vertices_ + kSkinningLanes - 1) / kSkinningLanes);
+  const size_t num_lanes =
+      lane_vertices_.empty() ? static_cast<size_t>(num_vertices_) : lane_vertices_.size();
+  blocks_.resize((num_lanes + kSkinningLanes - 1) / kSkinningLanes);
+  int v = 0;  // stays where a lane is only filled up
   // Most pairs of bones never share a vertex, so SetMotions() compares the signs of few.
   std::set<std::pair<int, int>> pairs;
   for (size_t i = 0; i < blocks_.size() * kSkinningLanes; ++i) {
-    const int v = std::min(static_cast<int>(i), num_vertices_ - 1);
+    if (lane_vertices_.empty()) {
+      v = std::min(static_cast<int>(i), num_vertices_ - 1);
+    } else if (lane_vertices_[i] >= 0) {
+      v = lane_vertices_[i];
+    }
     Block& block = blocks_[i / kSkinningLanes];
     const size_t lane = i % kSkinningLanes;
     const VertexInfluences& influences = rig.weights.vertex(v);
@@ -35,7 +43,16 @@ FrameSkinning::FrameSkinning(const Rig& rig) : num_vertices_(rig.weights.num_ver
 }
 
 size_t FrameSkinning::memory_bytes() const {
-  return blocks_.size() * sizeof(Block) + pairs_.size() * sizeof(BonePair);
+  return blocks_.size() * sizeof(Block) + pairs_.size() * sizeof(BonePair) +
+         lane_vertices_.size() * sizeof(int);
+}
+
+void FrameSkinning::Scatter(int block, const float* lanes, Eigen::Matrix3Xf* positions) const {
+  const int* vertices = lane_vertices_.data() + static_cast<ptrdiff_t>(block) * kSkinningLanes;
+  for (int lane = 0; lane < kSkinningLanes && vertices[lane] >= 0; ++lane) {
+    std::copy_n(lanes + 3 * lane, 3,
+                positions->data() + 3 * static_cast<ptrdiff_t>(vertices[lane]));
+  }
 }
 
 void FrameSkinning::SetMotions(const BoneTransforms& transforms,
@@ -87,8 +104,8 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
   constexpr int kLanes = kSkinningLanes;
   assert(positions->cols() == num_vertices_ && first_block >= 0 &&
          first_block + num_blocks <= this->num_blocks());
-  // The kernels write whole blocks, but the last one may reach beyond the matrix: it goes here
-  // first.
+  // The kernels write whole blocks. What reaches beyond the matrix, or whose vertices do not follow
+  // each other, goes here first.
   float last[3 * kLanes];
   float signed_weights[kMaxInfluences * kLanes];
   SkinBlockInputs inputs{.columns = motions.columns.data(),
@@ -110,9 +127,14 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
       inputs.quaternion_weights = signed_weights;
     }
     const int begin = i * kLanes, count = std::min(kLanes, num_vertices_ - begin);
-    float* target = positions->data() + 3 * static_cast<ptrdiff_t>(begin);
-    skin_block(inputs, count == kLanes ? target : last);
-    if (count < kLanes) std::copy_n(last, 3 * count, target);
+    if (lane_vertices_.empty()) {
+      float* target = positions->data() + 3 * static_cast<ptrdiff_t>(begin);
+      skin_block(inputs, count == kLanes ? target : last);
+      if (count < kLanes) std::copy_n(last, 3 * count, target);
+    } else {
+      skin_block(inputs, last);
+      Scatter(i, last, positions);
+    }
     if (inputs.details != nullptr) inputs.details += 3 * kLanes;
   }
 }

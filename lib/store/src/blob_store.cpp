@@ -105,10 +105,11 @@ std::string BlobStore::PathOf(const std::string& id) const {
   return absl::StrCat(FolderOf(id), "/", id);
 }
 
-absl::StatusOr<StagedFile> BlobStore::Stage(std::string_view bytes) {
+absl::StatusOr<StagedFile> BlobStore::Stage(std::string_view bytes, IfThere if_there) {
   std::string id = ToHex(ComputeSha256(bytes));
   // A file that is there but damaged is written anew; Publish puts the new one in its place.
-  if (Verify(id).ok()) return StagedFile::AlreadyStored(std::move(id));
+  if (if_there == IfThere::kKeep && Verify(id).ok())
+    return StagedFile::AlreadyStored(std::move(id));
   PLEAT_ASSIGN_OR_RETURN(const SpaceReservation room, ReserveSpace(bytes.size()));
   PLEAT_RETURN_IF_ERROR(MakeFolder(FolderOf(id)));
   std::string path = PathOf(id) + kTemporarySuffix;

@@ -4,38 +4,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "catalog_schema.h"
 #include "database.h"
 #include "pleat/base/status.h"
 #include "sync_hook_vfs.h"
 
 namespace pleat {
 namespace {
-
-// Version 1 had no tables but `entries`. Version 2 had neither the indexes nor the last three
-// columns of `entries`.
-constexpr int kSchemaVersion = 3;
-
-// The two triggers keep `removals` right whatever changes the rows: an entry that goes leaves the
-// id of its file there in the same commit, and one that comes takes the id back.
-constexpr char kSchema[] =
-    "CREATE TABLE IF NOT EXISTS entries ("
-    " position INTEGER PRIMARY KEY AUTOINCREMENT,"
-    " kind TEXT NOT NULL,"
-    " id TEXT NOT NULL,"
-    " record BLOB NOT NULL,"
-    " attempts INTEGER NOT NULL DEFAULT 0,"
-    " UNIQUE (kind, id));"
-    "ALTER TABLE entries ADD COLUMN created_ms INTEGER NOT NULL DEFAULT 0;"
-    "ALTER TABLE entries ADD COLUMN expires_ms INTEGER NOT NULL DEFAULT 0;"
-    "ALTER TABLE entries ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0;"
-    "CREATE INDEX entries_in_order ON entries (kind, position);"
-    "CREATE INDEX entries_that_expire ON entries (expires_ms) WHERE expires_ms > 0;"
-    "CREATE TABLE IF NOT EXISTS properties (name TEXT PRIMARY KEY, value TEXT NOT NULL);"
-    "CREATE TABLE IF NOT EXISTS removals (id TEXT PRIMARY KEY) WITHOUT ROWID;"
-    "CREATE TRIGGER IF NOT EXISTS entry_removed AFTER DELETE ON entries WHEN OLD.kind <> 'job'"
-    " BEGIN INSERT OR IGNORE INTO removals VALUES (OLD.id); END;"
-    "CREATE TRIGGER IF NOT EXISTS entry_added AFTER INSERT ON entries"
-    " BEGIN DELETE FROM removals WHERE id = NEW.id; END;";
 
 // The rows of a statement of Catalog::Select.
 absl::StatusOr<std::vector<CatalogEntry>> ReadEntries(Statement* statement) {
@@ -49,7 +24,9 @@ absl::StatusOr<std::vector<CatalogEntry>> ReadEntries(Statement* statement) {
                        .created_unix_ms = statement->Int64(3),
                        .expires_unix_ms = statement->Int64(4),
                        .pinned = statement->Int(5) != 0,
-                       .position = statement->Int64(6)});
+                       .position = statement->Int64(6),
+                       .project = statement->Bytes(7),
+                       .file_bytes = static_cast<uint64_t>(statement->Int64(8))});
   }
 }
 
@@ -94,8 +71,8 @@ absl::StatusOr<std::unique_ptr<Catalog>> Catalog::Open(const std::string& path,
   PLEAT_RETURN_IF_ERROR(catalog->writer_->Execute("PRAGMA journal_mode=WAL"));
   PLEAT_RETURN_IF_ERROR(catalog->writer_->Execute("PRAGMA synchronous=FULL"));
   PLEAT_ASSIGN_OR_RETURN(const int version, catalog->CheckFile(path));
-  if (version < kSchemaVersion) {
-    PLEAT_RETURN_IF_ERROR(catalog->Upgrade());
+  if (version < kCatalogVersion) {
+    PLEAT_RETURN_IF_ERROR(catalog->Upgrade(version));
   }
   PLEAT_ASSIGN_OR_RETURN(catalog->reader_, Database::Open(path, Database::Access::kReadWrite, vfs));
   PLEAT_RETURN_IF_ERROR(catalog->reader_->Execute("PRAGMA query_only=ON"));
@@ -111,6 +88,7 @@ absl::StatusOr<std::unique_ptr<Catalog>> Catalog::OpenReadOnly(const std::string
   }
   catalog->has_properties_ = version >= 2;
   catalog->has_lives_ = version >= 3;
+  catalog->has_projects_ = version >= 4;
   PLEAT_ASSIGN_OR_RETURN(catalog->reader_, Database::Open(path, Database::Access::kReadOnly));
   return catalog;
 }
@@ -129,17 +107,23 @@ absl::StatusOr<int> Catalog::CheckFile(const std::string& path) {
   Statement query(writer_.get(), "PRAGMA user_version");
   PLEAT_ASSIGN_OR_RETURN(const bool row, query.Step("read"));
   const int version = row ? query.Int(0) : 0;
-  if (version <= kSchemaVersion) return version;
+  if (version <= kCatalogVersion) return version;
   return absl::FailedPreconditionError(absl::StrCat("the catalog '", path, "' has version ",
                                                     version, ", this program reads up to ",
-                                                    kSchemaVersion, "; use a newer pleatd"));
+                                                    kCatalogVersion, "; use a newer pleatd"));
 }
 
-absl::Status Catalog::Upgrade() {
-  absl::Status status = writer_->Execute(
-      absl::StrCat("BEGIN;", kSchema, "PRAGMA user_version=", kSchemaVersion, "; COMMIT"));
+absl::Status Catalog::Upgrade(int version) {
+  absl::Status status = writer_->Execute(SchemaUpgrade(version));
   if (!status.ok()) writer_->Execute("ROLLBACK").IgnoreError();
   return status;
+}
+
+absl::StatusOr<std::string> Catalog::Secret() {
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(reader_.get(), "SELECT value FROM properties WHERE name='secret'");
+  PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
+  return found ? statement.Bytes(0) : std::string();
 }
 
 absl::StatusOr<std::string> Catalog::StoreId() {
@@ -160,9 +144,10 @@ absl::Status Catalog::SetStoreId(const std::string& id) {
 absl::Status Catalog::Put(EntryKind kind, const CatalogEntry& entry) {
   std::lock_guard lock(writer_->mutex());
   Statement statement(writer_.get(),
-                      "INSERT INTO entries (kind, id, record, attempts, created_ms, expires_ms)"
-                      " VALUES (?1, ?2, ?3, ?4, ?5, ?6)"
-                      " ON CONFLICT (kind, id) DO UPDATE SET record=?3, attempts=?4, expires_ms="
+                      "INSERT INTO entries (kind, id, record, attempts, created_ms, expires_ms,"
+                      " project, file_bytes) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"
+                      " ON CONFLICT (project, kind, id) DO UPDATE SET record=?3, attempts=?4,"
+                      " file_bytes=?8, expires_ms="
                       "CASE WHEN expires_ms=0 OR ?6=0 THEN 0"
                       " WHEN expires_ms<?6 THEN ?6 ELSE expires_ms END");
   statement.Bind(1, EntryKindName(kind));
@@ -171,18 +156,35 @@ absl::Status Catalog::Put(EntryKind kind, const CatalogEntry& entry) {
   statement.Bind(4, entry.attempts);
   statement.Bind(5, entry.created_unix_ms);
   statement.Bind(6, entry.expires_unix_ms);
+  statement.Bind(7, entry.project);
+  statement.Bind(8, static_cast<int64_t>(entry.file_bytes));
   return statement.Step("write").status();
 }
 
 std::string Catalog::Select(const char* conditions) const {
   return absl::StrCat("SELECT id, record, attempts, ",
-                      has_lives_ ? "created_ms, expires_ms, pinned" : "0, 0, 0",
-                      ", position FROM entries ", conditions);
+                      has_lives_ ? "created_ms, expires_ms, pinned" : "0, 0, 0", ", position, ",
+                      has_projects_ ? "project, file_bytes" : "'default', 0", " FROM entries ",
+                      conditions);
 }
 
-absl::StatusOr<CatalogEntry> Catalog::Get(EntryKind kind, const std::string& id) {
+absl::StatusOr<CatalogEntry> Catalog::Get(const ProjectKind& kind, const std::string& id) {
   std::lock_guard lock(reader_->mutex());
-  Statement statement(reader_.get(), Select("WHERE kind=?1 AND id=?2").c_str());
+  const char* const which = has_projects_ ? "WHERE project=?3 AND kind=?1 AND id=?2"
+                                          : "WHERE ?3='default' AND kind=?1 AND id=?2";
+  Statement statement(reader_.get(), Select(which).c_str());
+  statement.Bind(1, EntryKindName(kind.kind));
+  statement.Bind(2, id);
+  statement.Bind(3, kind.project);
+  PLEAT_ASSIGN_OR_RETURN(std::vector<CatalogEntry> found, ReadEntries(&statement));
+  if (found.empty()) return NotThere(kind.kind, id);
+  return std::move(found[0]);
+}
+
+absl::StatusOr<CatalogEntry> Catalog::GetInAnyProject(EntryKind kind, const std::string& id) {
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(reader_.get(),
+                      Select("WHERE id=?2 AND kind=?1 ORDER BY position LIMIT 1").c_str());
   statement.Bind(1, EntryKindName(kind));
   statement.Bind(2, id);
   PLEAT_ASSIGN_OR_RETURN(std::vector<CatalogEntry> found, ReadEntries(&statement));
@@ -197,18 +199,45 @@ absl::StatusOr<std::vector<CatalogEntry>> Catalog::List(EntryKind kind) {
   return ReadEntries(&statement);
 }
 
-absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListPage(EntryKind kind, int64_t after_position,
+absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListPage(const ProjectKind& kind,
+                                                            int64_t after_position,
                                                             int max_entries) {
   std::lock_guard lock(reader_->mutex());
-  Statement statement(reader_.get(),
-                      Select("WHERE kind=?1 AND position>?2 ORDER BY position LIMIT ?3").c_str());
-  statement.Bind(1, EntryKindName(kind));
+  const char* const which =
+      has_projects_ ? "WHERE project=?4 AND kind=?1 AND position>?2 ORDER BY position LIMIT ?3"
+                    : "WHERE ?4='default' AND kind=?1 AND position>?2 ORDER BY position LIMIT ?3";
+  Statement statement(reader_.get(), Select(which).c_str());
+  statement.Bind(1, EntryKindName(kind.kind));
   statement.Bind(2, after_position);
   statement.Bind(3, max_entries);
+  statement.Bind(4, kind.project);
   PLEAT_ASSIGN_OR_RETURN(std::vector<CatalogEntry> entries, ReadEntries(&statement));
   num_page_steps_.fetch_add(static_cast<uint64_t>(statement.num_steps()),
                             std::memory_order_relaxed);
   return entries;
+}
+
+absl::StatusOr<uint64_t> Catalog::ProjectBytes(const std::string& project) {
+  if (!has_projects_) return 0;
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(reader_.get(), "SELECT file_bytes FROM projects WHERE name=?1");
+  statement.Bind(1, project);
+  PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
+  return found ? static_cast<uint64_t>(statement.Int64(0)) : 0;
+}
+
+absl::Status Catalog::NoteFileSize(const std::string& id, uint64_t file_bytes) {
+  std::lock_guard lock(writer_->mutex());
+  Statement statement(writer_.get(),
+                      "UPDATE entries SET file_bytes=?2"
+                      " WHERE id=?1 AND file_bytes=0 AND kind <> 'job'");
+  statement.Bind(1, id);
+  statement.Bind(2, static_cast<int64_t>(file_bytes));
+  return statement.Step("change").status();
+}
+
+absl::StatusOr<std::vector<std::string>> Catalog::FilesWithoutSize() {
+  return Ids("SELECT DISTINCT id FROM entries WHERE file_bytes=0 AND kind <> 'job' ORDER BY id");
 }
 
 absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListExpired(EntryKind kind,
@@ -224,38 +253,46 @@ absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListExpired(EntryKind kind,
   return ReadEntries(&statement);
 }
 
-absl::Status Catalog::Change(const char* sql, EntryKind kind, const std::string& id,
+absl::Status Catalog::Change(const char* sql, const ProjectKind& kind, const std::string& id,
                              std::optional<int64_t> value) {
   std::lock_guard lock(writer_->mutex());
-  Statement statement(writer_.get(), sql);
-  statement.Bind(1, EntryKindName(kind));
+  Statement statement(writer_.get(),
+                      absl::StrCat(sql, " kind=?1 AND id=?2 AND project=?4").c_str());
+  statement.Bind(1, EntryKindName(kind.kind));
   statement.Bind(2, id);
-  if (value) statement.Bind(3, *value);
+  statement.Bind(3, value.value_or(0));
+  statement.Bind(4, kind.project);
   PLEAT_RETURN_IF_ERROR(statement.Step("change").status());
   if (sqlite3_changes(writer_->handle()) > 0) return absl::OkStatus();
-  return NotThere(kind, id);
+  return NotThere(kind.kind, id);
 }
 
-absl::Status Catalog::Delete(EntryKind kind, const std::string& id) {
-  return Change("DELETE FROM entries WHERE kind=?1 AND id=?2", kind, id);
+absl::Status Catalog::Delete(const ProjectKind& kind, const std::string& id) {
+  return Change("DELETE FROM entries WHERE", kind, id);
 }
 
-absl::Status Catalog::DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms) {
-  return Change(
-      "DELETE FROM entries WHERE kind=?1 AND id=?2"
-      " AND pinned=0 AND expires_ms>0 AND expires_ms<=?3",
-      kind, id, now_unix_ms);
+absl::Status Catalog::DeleteInAllProjects(const std::string& id) {
+  std::lock_guard lock(writer_->mutex());
+  Statement statement(writer_.get(), "DELETE FROM entries WHERE id=?1 AND kind <> 'job'");
+  statement.Bind(1, id);
+  return statement.Step("change").status();
 }
 
-absl::Status Catalog::SetPinned(EntryKind kind, const std::string& id, bool pinned) {
-  return Change("UPDATE entries SET pinned=?3 WHERE kind=?1 AND id=?2", kind, id, pinned ? 1 : 0);
+absl::Status Catalog::DeleteExpired(const ProjectKind& kind, const std::string& id,
+                                    int64_t now_unix_ms) {
+  return Change("DELETE FROM entries WHERE pinned=0 AND expires_ms>0 AND expires_ms<=?3 AND", kind,
+                id, now_unix_ms);
 }
 
-absl::Status Catalog::Prolong(EntryKind kind, const std::string& id, int64_t expires_unix_ms) {
+absl::Status Catalog::SetPinned(const ProjectKind& kind, const std::string& id, bool pinned) {
+  return Change("UPDATE entries SET pinned=?3 WHERE", kind, id, pinned ? 1 : 0);
+}
+
+absl::Status Catalog::Prolong(const ProjectKind& kind, const std::string& id,
+                              int64_t expires_unix_ms) {
   return Change(
       "UPDATE entries SET expires_ms="
-      "CASE WHEN expires_ms=0 OR ?3=0 THEN 0 WHEN expires_ms<?3 THEN ?3 ELSE expires_ms END"
-      " WHERE kind=?1 AND id=?2",
+      "CASE WHEN expires_ms=0 OR ?3=0 THEN 0 WHEN expires_ms<?3 THEN ?3 ELSE expires_ms END WHERE",
       kind, id, expires_unix_ms);
 }
 

@@ -5,9 +5,16 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
+namespace {
+
+// Somebody has to delete something first.
+constexpr absl::Duration kRetryAfter = absl::Minutes(5);
+
+}  // namespace
 
 SpaceReservation& SpaceReservation::operator=(SpaceReservation&& other) noexcept {
   if (this == &other) return *this;
@@ -46,10 +53,12 @@ absl::StatusOr<SpaceReservation> DiskSpace::Reserve(uint64_t bytes) {
       promised_bytes_ += bytes;
       return SpaceReservation(shared_from_this(), bytes);
     }
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "no room on the server's disk: ", free_bytes, " bytes free, of which ", promised_bytes_,
-        " are promised to other writers, and ", bytes, " needed beside a reserve of ",
-        reserve_bytes_, "; delete sequences or models"));
+    return RefuseForLimit(
+        {.limit = "--reserve-bytes", .retry_after = kRetryAfter},
+        absl::StrCat("no room on the server's disk: ", free_bytes, " bytes free, of which ",
+                     promised_bytes_, " are promised to other writers, and ", bytes,
+                     " needed beside a reserve of ", reserve_bytes_,
+                     "; delete sequences or models"));
   }
 }
 

@@ -12,6 +12,16 @@
 #include "store_identity.h"
 
 namespace pleat {
+namespace {
+
+std::string ProjectsFolder(const std::string& data_dir) { return data_dir + "/uploads/projects/"; }
+
+CatalogEntry WithSize(CatalogEntry entry, uint64_t file_bytes) {
+  entry.file_bytes = file_bytes;
+  return entry;
+}
+
+}  // namespace
 
 // Holds one id against other changes of the same id, as long as it lives.
 class Store::IdLock {
@@ -38,7 +48,8 @@ class Store::IdLock {
 Store::Store(const StoreOptions& options)
     : data_dir_(options.data_dir),
       on_problem_(options.on_problem),
-      quarantine_(options.data_dir + "/quarantine", options.before_sync) {}
+      quarantine_(options.data_dir + "/quarantine", options.before_sync),
+      before_sync_(options.before_sync) {}
 
 absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) {
   const std::string& data_dir = options.data_dir;
@@ -89,7 +100,10 @@ absl::Status Store::ProbeDisk() {
 
 absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes) {
   while (true) {
-    PLEAT_ASSIGN_OR_RETURN(StagedFile file, blobs_->Stage(bytes));
+    const bool is_known = catalog_->Get({kind, entry.project}, entry.id).ok();
+    PLEAT_ASSIGN_OR_RETURN(
+        StagedFile file,
+        blobs_->Stage(bytes, is_known ? BlobStore::IfThere::kKeep : BlobStore::IfThere::kReplace));
     if (file.id() != entry.id) {
       return absl::InvalidArgumentError(absl::StrCat("a file with the SHA-256 ", file.id(),
                                                      " cannot be stored as '", entry.id, "'"));
@@ -98,7 +112,7 @@ absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, std::string_v
     // Deleted between Stage and the lock: write it after all.
     if (file.already_stored() && !blobs_->Contains(entry.id)) continue;
     PLEAT_RETURN_IF_ERROR(blobs_->Publish(std::move(file)));
-    return catalog_->Put(kind, entry);
+    return catalog_->Put(kind, WithSize(entry, bytes.size()));
   }
 }
 
@@ -110,16 +124,47 @@ absl::Status Store::Add(EntryKind kind, const CatalogEntry& entry, Upload* uploa
   PLEAT_ASSIGN_OR_RETURN(StagedFile file, upload->Stage());
   const IdLock lock(this, entry.id);
   PLEAT_RETURN_IF_ERROR(blobs_->Publish(std::move(file)));
-  return catalog_->Put(kind, entry);
+  return catalog_->Put(kind, WithSize(entry, upload->size_bytes()));
 }
 
-absl::Status Store::Delete(EntryKind kind, const std::string& id) {
+absl::Status Store::AddStored(EntryKind kind, const CatalogEntry& entry) {
+  const IdLock lock(this, entry.id);
+  PLEAT_ASSIGN_OR_RETURN(const uint64_t size, blobs_->Size(entry.id));
+  return catalog_->Put(kind, WithSize(entry, size));
+}
+
+absl::StatusOr<UploadArea*> Store::uploads(const std::string& project) {
+  if (project == kDefaultProject) return uploads_.get();
+  std::lock_guard lock(projects_mutex_);
+  std::unique_ptr<UploadArea>& area = project_uploads_[project];
+  if (area == nullptr) {
+    PLEAT_RETURN_IF_ERROR(CheckProjectName(project));
+    PLEAT_ASSIGN_OR_RETURN(area,
+                           UploadArea::Open(ProjectsFolder(data_dir_) + project, before_sync_));
+  }
+  return area.get();
+}
+
+std::vector<std::string> Store::UploadProjects() const {
+  std::vector<std::string> projects = {kDefaultProject};
+  std::error_code error;
+  const std::filesystem::directory_iterator folder(ProjectsFolder(data_dir_), error);
+  if (error) return projects;
+  for (const auto& entry : folder) {
+    const std::string name = entry.path().filename();
+    if (CheckProjectName(name).ok()) projects.push_back(name);
+  }
+  return projects;
+}
+
+absl::Status Store::Delete(const ProjectKind& kind, const std::string& id) {
   const IdLock lock(this, id);
   PLEAT_RETURN_IF_ERROR(catalog_->Delete(kind, id));
   return RemoveUnnamed(id);
 }
 
-absl::Status Store::DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms) {
+absl::Status Store::DeleteExpired(const ProjectKind& kind, const std::string& id,
+                                  int64_t now_unix_ms) {
   const IdLock lock(this, id);
   PLEAT_RETURN_IF_ERROR(catalog_->DeleteExpired(kind, id, now_unix_ms));
   return RemoveUnnamed(id);
@@ -164,6 +209,7 @@ absl::Status Store::Reconcile(const std::string& data_dir) {
     if (!there.contains(id)) missing_files_.push_back(id);
   }
   PLEAT_RETURN_IF_ERROR(SettleIdentity(data_dir, named.size(), files.size()));
+  PLEAT_RETURN_IF_ERROR(NoteFileSizes());
   for (const std::string& id : missing_files_) {
     Report(absl::StrCat("the file of '", id, "' is gone; upload it again, restore or delete it"));
   }
@@ -188,6 +234,17 @@ absl::Status Store::Reconcile(const std::string& data_dir) {
                         moved.ok() ? " moved to the quarantine" : " left where they are",
                         "; 'pleat store check' lists them",
                         moved.ok() ? "" : absl::StrCat(" (", std::string(moved.message()), ")")));
+  }
+  return absl::OkStatus();
+}
+
+// Rows of older versions do not know how large their files are. A file that is gone counts nothing.
+absl::Status Store::NoteFileSizes() {
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<std::string> ids, catalog_->FilesWithoutSize());
+  for (const std::string& id : ids) {
+    const absl::StatusOr<uint64_t> size = blobs_->Size(id);
+    // A full disk is no reason not to start.
+    if (size.ok() && *size > 0) catalog_->NoteFileSize(id, *size).IgnoreError();
   }
   return absl::OkStatus();
 }

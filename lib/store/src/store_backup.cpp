@@ -121,8 +121,7 @@ class StoreCopier {
   absl::Status LeaveOut(const std::string& id, const absl::Status& why, Catalog* snapshot) {
     PLEAT_ASSIGN_OR_RETURN(const bool is_named, source_->NamesFile(id));
     if (!is_named) {
-      for (const EntryKind kind : kFileKinds) snapshot->Delete(kind, id).IgnoreError();
-      return absl::OkStatus();
+      return snapshot->DeleteInAllProjects(id);
     }
     copy_.problems.push_back(FileProblem(id, why));
     return absl::OkStatus();

@@ -1,8 +1,10 @@
 #include "pleat/store/store_repair.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <unordered_set>
 #include <utility>
@@ -79,7 +81,11 @@ class StoreRepairer {
     for (const EntryKind kind : kFileKinds) {
       PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries, catalog_->List(kind));
       for (const CatalogEntry& entry : entries) {
-        if (CheckRecord(kind, entry.record).ok()) good_rows_.insert(entry.id);
+        if (CheckRecord(kind, entry.record).ok()) {
+          good_rows_.insert(entry.id);
+        } else {
+          projects_of_bad_rows_[entry.id].insert(entry.project);
+        }
       }
     }
     return absl::OkStatus();
@@ -97,7 +103,7 @@ class StoreRepairer {
         continue;
       }
       PLEAT_RETURN_IF_ERROR(bytes.status());
-      if (good_rows_.contains(id)) continue;
+      if (good_rows_.contains(id) && !projects_of_bad_rows_.contains(id)) continue;
       const absl::StatusOr<FileDescription> description = describe_(id, *bytes);
       if (description.ok()) {
         PLEAT_RETURN_IF_ERROR(MakeRow(id, *description));
@@ -108,8 +114,19 @@ class StoreRepairer {
     return progress.Report(1);
   }
 
+  // A row that cannot be read still says whose the file is. Nothing but a lost row knew it, and
+  // then the file becomes the default project's.
   absl::Status MakeRow(const std::string& id, const FileDescription& description) {
-    PLEAT_RETURN_IF_ERROR(catalog_->Put(description.kind, {id, description.record}));
+    CatalogEntry entry{.id = id, .record = description.record};
+    entry.file_bytes = blobs_->Size(id).value_or(0);
+    const auto known = projects_of_bad_rows_.find(id);
+    const std::set<std::string> projects = known == projects_of_bad_rows_.end()
+                                               ? std::set<std::string>{kDefaultProject}
+                                               : known->second;
+    for (const std::string& project : projects) {
+      entry.project = project;
+      PLEAT_RETURN_IF_ERROR(catalog_->Put(description.kind, entry));
+    }
     repair_.rows_made.push_back(id);
     return absl::OkStatus();
   }
@@ -153,6 +170,7 @@ class StoreRepairer {
   std::unique_ptr<Catalog> catalog_;
   std::unique_ptr<BlobStore> blobs_;
   std::unordered_set<std::string> good_rows_;  // ids of entries whose record can be read
+  std::map<std::string, std::set<std::string>> projects_of_bad_rows_;  // by id, for the others
   StoreRepair repair_;
 };
 

@@ -126,6 +126,17 @@ std::vector<std::string> UploadArea::RemoveUntouchedSince(absl::Time time) {
   return old;
 }
 
+uint64_t UploadArea::TotalBytes() const {
+  uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
+    struct stat file = {};
+    if (!IsUpload(it->path()) || stat(it->path().c_str(), &file) != 0) continue;
+    bytes += static_cast<uint64_t>(file.st_size);
+  }
+  return bytes;
+}
+
 uint64_t UploadArea::ReceivedBytes(const std::string& id) const {
   if (!IsContentId(id)) return 0;
   std::error_code error;

@@ -1,6 +1,7 @@
 #include "pleat/wire/stream_messages.h"
 
 #include "absl/strings/str_cat.h"
+#include "packed_coefficients.h"
 #include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
 #include "pleat/wire/skeleton_messages.h"
@@ -98,8 +99,12 @@ v1::FrameParameters ToProto(const FrameParameters& parameters) {
       message.add_rotations(static_cast<float>(value));
     }
   }
-  message.mutable_coefficients()->Add(parameters.coefficients.begin(),
-                                      parameters.coefficients.end());
+  if (parameters.coefficients.size() > kMaxPlainCoefficients) {
+    message.set_packed_coefficients(PackCoefficients(parameters.coefficients));
+  } else {
+    message.mutable_coefficients()->Add(parameters.coefficients.begin(),
+                                        parameters.coefficients.end());
+  }
   return message;
 }
 
@@ -122,6 +127,14 @@ absl::StatusOr<FrameParameters> FromProto(const v1::FrameParameters& message) {
     parameters.pose.rotations.emplace_back(message.rotations(4 * j), message.rotations(4 * j + 1),
                                            message.rotations(4 * j + 2),
                                            message.rotations(4 * j + 3));
+  }
+  if (!message.packed_coefficients().empty()) {
+    if (message.coefficients_size() > 0) {
+      return absl::InvalidArgumentError("parameters have plain and packed coefficients");
+    }
+    PLEAT_ASSIGN_OR_RETURN(parameters.coefficients,
+                           UnpackCoefficients(message.packed_coefficients(), kMaxWireCoefficients));
+    return parameters;
   }
   parameters.coefficients =
       Eigen::Map<const Eigen::VectorXf>(message.coefficients().data(), message.coefficients_size());

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "named_ids.h"
+#include "pleat/observe/request_scope.h"
 #include "pleat/reactors/admission.h"
 #include "trace_context.h"
 
@@ -36,6 +37,7 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
   ~ListeningInterceptor() override {
     entry_.reset();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+    const RequestScope scope(facts_.request_id);
     if (listener_ != nullptr) listener_->on_end(facts_, status_, elapsed.count());
   }
 
@@ -58,11 +60,16 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
     const CallOrigin origin = OriginOf(*call_);
     facts_.peer = call_->peer();
     facts_.token_id = origin.token_id;
+    const auto chosen = call_->client_metadata().find("x-request-id");
+    facts_.request_id =
+        RequestIdOr(chosen == call_->client_metadata().end()
+                        ? std::string()
+                        : std::string(chosen->second.data(), chosen->second.size()));
     const auto trace = call_->client_metadata().find("traceparent");
     if (trace != call_->client_metadata().end()) {
       facts_.trace_id = TraceIdOf({trace->second.data(), trace->second.size()});
     }
-    entry_.emplace(running_, origin, facts_.is_stream, call_);
+    entry_.emplace(running_, origin, facts_.request_id, facts_.is_stream, call_);
   }
 
   // The first message says what the call is about; later ones are data or poses.

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -36,8 +37,10 @@ namespace {
 constexpr int kKeepaliveMs = 60'000;         // between two questions to an idle connection
 constexpr int kKeepaliveTimeoutMs = 20'000;  // until it must have answered
 constexpr int kHandshakeMs = 10'000;         // of TLS and HTTP/2 together
-constexpr int kMaxIdleMs = 10 * 60'000;      // a connection without calls is closed after this
-constexpr size_t kMessageMemoryBytes = size_t{1} << 30;
+// What gRPC may use for connections, calls and messages that are not parsed yet: a part of all
+// memory, within these bounds. gRPC itself sees to it (grpc::ResourceQuota).
+constexpr uint64_t kMessageShare = 8;
+constexpr uint64_t kMinMessageBytes = uint64_t{32} << 20, kMaxMessageBytes = uint64_t{1} << 30;
 // How long a live session that drains may take to get rid of the frame that is being written.
 constexpr auto kSlowReaderTime = std::chrono::seconds(1);
 constexpr auto kCloseTime = std::chrono::milliseconds(100);
@@ -74,6 +77,17 @@ void RefuseCompression(grpc::ServerBuilder* builder) {
   }
 }
 
+int Milliseconds(double seconds) { return static_cast<int>(std::min(seconds, 2e6) * 1000); }
+
+void LimitAge(const ConnectionLimits& limits, grpc::ServerBuilder* builder) {
+  builder->AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS,
+                              Milliseconds(limits.max_idle_seconds));
+  if (limits.max_age_seconds <= 0) return;
+  builder->AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, Milliseconds(limits.max_age_seconds));
+  builder->AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
+                              Milliseconds(limits.max_age_grace_seconds));
+}
+
 void LogForGrpc(gpr_log_func_args* args) {
   const auto level = args->severity == GPR_LOG_SEVERITY_ERROR  ? spdlog::level::warn
                      : args->severity == GPR_LOG_SEVERITY_INFO ? spdlog::level::debug
@@ -85,22 +99,29 @@ class GrpcServerImpl final : public GrpcServer {
  public:
   GrpcServerImpl(CharacterService* service, const GrpcServerOptions& options)
       : certificate_(options.tls.certificate),
-        request_memory_(options.request_bytes, "--request-bytes"),
+        request_memory_(options.request_bytes, "--request-bytes", options.memory),
+        stream_memory_(UINT64_MAX, "--memory-bytes", options.memory),
         storage_executor_(options.num_storage_threads),
         transfer_executor_(options.num_transfer_threads) {
     if (options.pose_executor == nullptr) own_pose_executor_.emplace(0);
-    context_.sequences = &service->sequences();
-    context_.jobs = &service->jobs();
-    context_.models = &service->models();
-    context_.poses = &service->poses();
-    context_.compressed_sequences = &service->compressed_sequences();
+    SetServices(service, &context_);
     context_.pose_executor = own_pose_executor_ ? &*own_pose_executor_ : options.pose_executor;
     context_.storage_executor = &storage_executor_;
     context_.transfer_executor = &transfer_executor_;
-    context_.request_memory = &request_memory_;
-    context_.max_open_streams = options.max_open_streams;
-    context_.max_streams_per_client = options.max_streams_per_client;
-    context_.tokens = options.tokens;
+    context_.calls->request_memory = &request_memory_;
+    context_.calls->stream_memory = &stream_memory_;
+    context_.calls->max_open_streams = options.max_open_streams;
+    context_.calls->max_streams_per_client = options.max_streams_per_client;
+    context_.calls->tokens = options.tokens;
+    if (options.call_listener != nullptr) {
+      context_.calls->on_frame_step = options.call_listener->on_frame_step;
+    }
+    if (options.of_project) {
+      context_.calls->of_project = [this,
+                                    of_project = options.of_project](const std::string& project) {
+        return ContextOf(project, of_project);
+      };
+    }
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
     services_.push_back(MakeModelService(&context_));
@@ -121,17 +142,16 @@ class GrpcServerImpl final : public GrpcServer {
     port_ = listener_->port();
     acceptor_ = builder.experimental().AddExternalConnectionAcceptor(
         grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials);
-    grpc::ResourceQuota quota("pleatd");
-    builder.SetResourceQuota(quota.Resize(kMessageMemoryBytes));
+    PLEAT_RETURN_IF_ERROR(LimitMessages(options.memory, &builder));
     builder.SetMaxReceiveMessageSize(options.max_receive_bytes);
     RefuseCompression(&builder);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
+    LimitAge(options.connections, &builder);
     builder.experimental().SetInterceptorCreators(
-        MakeCallListening(options.call_listener, &context_.running_calls));
+        MakeCallListening(options.call_listener, &context_.calls->running_calls));
     for (const auto& service : services_) builder.RegisterService(service.get());
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) {
@@ -146,11 +166,15 @@ class GrpcServerImpl final : public GrpcServer {
         },
         [](const std::string& what) { spdlog::warn("{}", what); });
     health_.emplace(server_->GetHealthCheckService(), options.probe);
-    if (options.tokens != nullptr) revocation_.emplace(options.tokens, &context_.running_calls);
+    if (options.tokens != nullptr)
+      revocation_.emplace(options.tokens, &context_.calls->running_calls);
     return absl::OkStatus();
   }
 
   int port() const override { return port_; }
+  MemoryUse memory_use() const override {
+    return {request_memory_.used_bytes(), stream_memory_.used_bytes(), message_memory_.bytes()};
+  }
   int num_connections() const override { return listener_->num_open(); }
   std::optional<int64_t> certificate_expiry() const override {
     if (certificate_.empty()) return std::nullopt;
@@ -167,20 +191,51 @@ class GrpcServerImpl final : public GrpcServer {
     if (server_ == nullptr) return;
     revocation_.reset();
     health_.reset();
-    context_.draining = true;
+    context_.calls->draining = true;
     if (auto* health = server_->GetHealthCheckService()) health->Shutdown();
-    context_.live_sessions.DrainAll();
+    context_.calls->live_sessions.DrainAll();
     WaitForCalls(drain_seconds);
     listener_->Stop();
     // gRPC's own draining would also wait for idle clients to notice, which takes them seconds.
     server_->Shutdown(std::chrono::system_clock::now() + kCloseTime);
     server_->Wait();
     // A task whose call has ended may still own its reactor, which refers to the context.
-    context_.open_calls.WaitUntilNone();
+    context_.calls->open_calls.WaitUntilNone();
     server_.reset();
   }
 
  private:
+  static void SetServices(CharacterService* service, HandlerContext* context) {
+    context->sequences = &service->sequences();
+    context->jobs = &service->jobs();
+    context->models = &service->models();
+    context->poses = &service->poses();
+    context->compressed_sequences = &service->compressed_sequences();
+  }
+
+  // Projects come from good tokens alone, so there are no more than operators have made.
+  HandlerContext* ContextOf(const std::string& project, const ServicesOfProject& of_project) {
+    std::lock_guard lock(contexts_mutex_);
+    std::unique_ptr<HandlerContext>& context = contexts_[project];
+    if (context == nullptr) {
+      context = std::make_unique<HandlerContext>(context_);  // with the same calls and threads
+      SetServices(of_project(project), context.get());
+    }
+    return context.get();
+  }
+
+  // The share of gRPC is taken for as long as the server lives.
+  absl::Status LimitMessages(MemoryBudget* memory, grpc::ServerBuilder* builder) {
+    uint64_t bytes = kMaxMessageBytes;
+    if (memory != nullptr) {
+      bytes = std::clamp(memory->capacity_bytes() / kMessageShare, kMinMessageBytes, bytes);
+      PLEAT_ASSIGN_OR_RETURN(message_memory_, memory->Reserve(bytes, "gRPC"));
+    }
+    grpc::ResourceQuota quota("pleatd");
+    builder->SetResourceQuota(quota.Resize(bytes));
+    return absl::OkStatus();
+  }
+
   // Waits until all calls have ended or their time is over. Live sessions have less time: they have
   // been told to end, and the client of one that still goes on after kSlowReaderTime does not read.
   void WaitForCalls(double drain_seconds) {
@@ -188,17 +243,21 @@ class GrpcServerImpl final : public GrpcServer {
     const auto deadline =
         start + std::chrono::microseconds(static_cast<int64_t>(drain_seconds * 1e6));
     const auto patience = start + kSlowReaderTime;
-    if (context_.open_calls.WaitUntilNone(std::min(deadline, patience)) || deadline <= patience) {
+    if (context_.calls->open_calls.WaitUntilNone(std::min(deadline, patience)) ||
+        deadline <= patience) {
       return;
     }
-    context_.live_sessions.AbandonAll();
-    context_.open_calls.WaitUntilNone(deadline);
+    context_.calls->live_sessions.AbandonAll();
+    context_.calls->open_calls.WaitUntilNone(deadline);
   }
 
-  const std::string certificate_;  // the path of its file
-  MemoryBudget request_memory_;    // outlives the calls
+  const std::string certificate_;                // the path of its file
+  MemoryBudget request_memory_, stream_memory_;  // outlive the calls
+  Reservation message_memory_;
   // Reactors post to the executors until the server is gone, so the server goes first.
   HandlerContext context_;
+  std::mutex contexts_mutex_;
+  std::map<std::string, std::unique_ptr<HandlerContext>> contexts_;  // guarded by contexts_mutex_
   std::optional<Executor> own_pose_executor_;
   Executor storage_executor_, transfer_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;

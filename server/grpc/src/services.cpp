@@ -15,8 +15,8 @@
   grpc::ServerUnaryReactor* rpc(grpc::CallbackServerContext* call,                         \
                                 const v1::rpc##Request* request, v1::rpc##Response* reply) \
       override {                                                                           \
-    return RunUnary(context_, call, context_->executor, #rpc,                              \
-                    [=, this] { return pleat::rpc(*context_, *request, reply); });         \
+    return RunUnary({context_, call, context_->executor, #rpc, request, reply},            \
+                    [=](HandlerContext& of) { return pleat::rpc(of, *request, reply); });  \
   }
 
 // The same for a handler that is told who asks.
@@ -24,9 +24,9 @@
   grpc::ServerUnaryReactor* rpc(grpc::CallbackServerContext* call,                         \
                                 const v1::rpc##Request* request, v1::rpc##Response* reply) \
       override {                                                                           \
-    return RunUnary(context_, call, context_->executor, #rpc,                              \
-                    [=, this, client = OriginOf(*call).client] {                           \
-                      return pleat::rpc(*context_, client, *request, reply);               \
+    return RunUnary({context_, call, context_->executor, #rpc, request, reply},            \
+                    [=, client = OriginOf(*call).client](HandlerContext& of) {             \
+                      return pleat::rpc(of, client, *request, reply);                      \
                     });                                                                    \
   }
 
@@ -35,7 +35,7 @@
   grpc::ServerWriteReactor<v1::rpc##Response>* rpc(grpc::CallbackServerContext* call,          \
                                                    const v1::rpc##Request* request) override { \
     return StartAdmitted<grpc::ServerWriteReactor<v1::rpc##Response>>(                         \
-        context_, *call, #rpc, [&] { return pleat::rpc(context_, *request); });                \
+        context_, *call, #rpc, [&](HandlerContext* of) { return pleat::rpc(of, *request); });  \
   }
 
 namespace pleat {
@@ -54,7 +54,7 @@ class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
       grpc::CallbackServerContext* call, v1::UploadSequenceResponse* response) override {
     return StartAdmitted<grpc::ServerReadReactor<v1::UploadSequenceRequest>>(
         context_, *call, "UploadSequence",
-        [&] { return pleat::UploadSequence(context_, response); });
+        [&](HandlerContext* of) { return pleat::UploadSequence(of, response); });
   }
 
  private:
@@ -100,7 +100,7 @@ class CompressedSequenceServiceImpl final : public v1::CompressedSequenceService
       grpc::CallbackServerContext* call, v1::UploadCompressedSequenceResponse* response) override {
     return StartAdmitted<grpc::ServerReadReactor<v1::UploadSequenceRequest>>(
         context_, *call, "UploadCompressedSequence",
-        [&] { return pleat::UploadCompressedSequence(context_, response); });
+        [&](HandlerContext* of) { return pleat::UploadCompressedSequence(of, response); });
   }
   PLEAT_SERVER_STREAM(DownloadCompressedSequence)
   PLEAT_SERVER_STREAM(DecodeFrames)
@@ -118,7 +118,8 @@ class PoseServiceImpl final : public v1::PoseService::CallbackService {
   grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>* LiveSession(
       grpc::CallbackServerContext* call) override {
     return StartAdmitted<grpc::ServerBidiReactor<v1::LiveSessionRequest, v1::LiveSessionResponse>>(
-        context_, *call, "LiveSession", [&] { return pleat::LiveSession(context_, call); });
+        context_, *call, "LiveSession",
+        [&](HandlerContext* of) { return pleat::LiveSession(of, call); });
   }
 
  private:

@@ -17,6 +17,7 @@ constexpr uint64_t kBytesPerPose = sizeof(Pose) + kNumHumanJoints * sizeof(Eigen
 
 struct Clip {
   PoseService* poses;
+  const ServerCalls* calls;
   v1::EvaluateClipRequest request;
   absl::StatusOr<Reservation> memory;  // not OK: why there is none for the request
   std::unique_ptr<ClipSession> session = nullptr;
@@ -38,6 +39,7 @@ struct Clip {
     if (session->done()) return false;
     const int number = session->next_frame();
     PLEAT_ASSIGN_OR_RETURN(EncodedFrame frame, session->Next());
+    TellSteps(frame, *calls);
     *response->mutable_frame() = ToProto(static_cast<uint64_t>(number), std::move(frame));
     return true;
   }
@@ -51,15 +53,16 @@ grpc::ServerWriteReactor<v1::EvaluateClipResponse>* EvaluateClip(
   v1::EvaluateClipRequest taken;
   taken.Swap(const_cast<v1::EvaluateClipRequest*>(&request));
   absl::StatusOr<Reservation> memory = Reservation();
-  if (context->request_memory != nullptr) {
-    memory = context->request_memory->Reserve(taken.SpaceUsedLong(), "this clip");
+  if (context->calls->request_memory != nullptr) {
+    memory = context->calls->request_memory->Reserve(taken.SpaceUsedLong(), "this clip");
     if (!memory.ok()) taken = v1::EvaluateClipRequest();
   }
-  const auto clip =
-      std::make_shared<Clip>(Clip{context->poses, std::move(taken), std::move(memory)});
+  const auto clip = std::make_shared<Clip>(
+      Clip{context->poses, context->calls.get(), std::move(taken), std::move(memory)});
   return StartReactor<PullStream<v1::EvaluateClipResponse>>(
       context, context->pose_executor, "EvaluateClip",
-      [clip](v1::EvaluateClipResponse* response) { return clip->Next(response); });
+      [clip](v1::EvaluateClipResponse* response) { return clip->Next(response); },
+      TurnKind::kBulk);  // live sessions share the threads
 }
 
 }  // namespace pleat

@@ -19,6 +19,7 @@ absl::Status EvaluatePose(HandlerContext& context, const v1::EvaluatePoseRequest
   std::vector<const Pose*> pointers;
   for (const Pose& pose : poses) pointers.push_back(&pose);
   PLEAT_ASSIGN_OR_RETURN(EncodedFrame frame, session->Show(pointers));
+  TellSteps(frame, *context.calls);
   *response->mutable_frame() = ToProto(0, std::move(frame));
   return absl::OkStatus();
 }

@@ -1,10 +1,12 @@
 #include <grpcpp/server_context.h>
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/handlers/stream_handlers.h"
 #include "pleat/reactors/call_reactor.h"
@@ -16,6 +18,13 @@
 
 namespace pleat {
 namespace {
+
+// What a message may take once it is parsed. Eight poses of 18 joints take 20 kB.
+constexpr uint64_t kMaxLiveMessageBytes = uint64_t{256} << 10;
+
+double SecondsSince(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 // One live session: poses come in, frames go out, at the pace of the slower side.
 //
@@ -50,11 +59,14 @@ class LiveReactor final
       private LiveListener {
  public:
   LiveReactor(HandlerContext* context, grpc::CallbackServerContext* call)
-      : CallReactor(context), slot_(context), context_(context), call_(call) {}
+      : CallReactor(context),
+        slot_(context, kStreamBytes + kMaxLiveMessageBytes),
+        context_(context),
+        call_(call) {}
 
   // A server that begins to drain meanwhile either finds the entry or has set `draining` before.
   void Start() {
-    entry_.emplace(&context_->live_sessions, this);
+    entry_.emplace(&context_->calls->live_sessions, this);
     Advance(std::unique_lock(mutex_));
   }
 
@@ -62,7 +74,12 @@ class LiveReactor final
     std::unique_lock lock(mutex_);
     reading_ = false;
     if (finished_) return;  // a message that came too late; nobody waits for it
-    if (ok) {
+    if (ok && request_.SpaceUsedLong() > kMaxLiveMessageBytes) {
+      v1::LiveSessionRequest().Swap(&request_);  // Clear would keep the memory
+      Keep(absl::InvalidArgumentError(
+          absl::StrCat("a message of a live session takes more than ", kMaxLiveMessageBytes,
+                       " bytes of memory; no pose with its history does")));
+    } else if (ok) {
       Keep(CallGuarded([this] { return Accept(); }));
     } else {
       input_ended_ = true;
@@ -72,6 +89,7 @@ class LiveReactor final
   void OnWriteDone(bool ok) override {
     std::unique_lock lock(mutex_);
     writing_ = false;
+    if (ok) context_->calls->TellFrameStep("send", SecondsSince(write_began_));
     if (!ok) cancelled_ = true;
     Advance(std::move(lock));
   }
@@ -128,13 +146,14 @@ class LiveReactor final
   // Starts what can be started, or ends the session. `lock` holds mutex_.
   void Advance(std::unique_lock<std::mutex> lock) {
     if (finished_) return;
-    if (context_->draining) Keep(absl::UnavailableError("the server is shutting down"));
+    if (context_->calls->draining) Keep(absl::UnavailableError("the server is shutting down"));
     if (Ended()) {
       if (working_ || writing_) return;  // they come back here
       finished_ = true;
       if (cancelled_) {
         Keep(absl::CancelledError("the client is gone"));
       } else {
+        const RequestScope scope(request_id());
         LogFailure("LiveSession", status_);
       }
       const grpc::Status status = ToGrpcStatus(status_);
@@ -173,6 +192,7 @@ class LiveReactor final
     Keep(std::move(status));
     if (!cancelled_ && status_.ok()) {
       writing_ = true;
+      write_began_ = std::chrono::steady_clock::now();
       StartWrite(&response_);
     }
     Advance(std::move(lock));
@@ -200,6 +220,7 @@ class LiveReactor final
     response_.Clear();
     *response_.mutable_report() = ReportOf(reply);
     if (reply.frame.ok()) {
+      TellSteps(*reply.frame, *context_->calls);
       *response_.mutable_frame() = ToProto(reply.number, *std::move(reply.frame));
     } else {
       *response_.mutable_rejection() = RejectionOf(reply.number, reply.frame.status());
@@ -217,6 +238,7 @@ class LiveReactor final
   std::unique_ptr<PoseStream> stream_;  // from kOpen to finished_
   absl::Status status_;                 // why the session ends
   bool reading_ = false, writing_ = false, working_ = false;
+  std::chrono::steady_clock::time_point write_began_;
   bool input_ended_ = false, cancelled_ = false, finished_ = false;
   std::optional<LiveRegistry::Entry> entry_;  // the last member, so that it goes first
 };

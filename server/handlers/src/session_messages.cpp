@@ -33,6 +33,11 @@ v1::Frame ToProto(uint64_t number, EncodedFrame frame) {
   return message;
 }
 
+void TellSteps(const EncodedFrame& frame, const ServerCalls& calls) {
+  calls.TellFrameStep("query", 1e-6 * frame.evaluate_us);
+  calls.TellFrameStep("encode", 1e-6 * frame.encode_us);
+}
+
 absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start) {
   LiveRules rules;
   rules.latest_wins = start.latest_wins();

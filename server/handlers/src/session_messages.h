@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "pleat/reactors/handler_context.h"
 #include "pleat/service/pose_service.h"
 #include "pleat/v1/pose_service.pb.h"
 
@@ -18,6 +19,8 @@ absl::StatusOr<SessionRequest> FromProto(const v1::Character& character,
                                          const v1::StreamOptions& options);
 
 v1::Frame ToProto(uint64_t number, EncodedFrame frame);
+// Tells those who measure how long the frame took to evaluate and to encode.
+void TellSteps(const EncodedFrame& frame, const ServerCalls& calls);
 
 // kInvalidArgument when the credits are out of range.
 absl::StatusOr<LiveRules> RulesOf(const v1::LiveSessionRequest::Start& start);

@@ -106,7 +106,7 @@ class WatchReactor final : public CallReactor<grpc::ServerWriteReactor<v1::Watch
   bool IsOver(absl::Status* status) const {
     if (cancelled_) {
       *status = absl::CancelledError("the client gave up");
-    } else if (!sent_final_ && (context_->draining || !subscription_->status().ok())) {
+    } else if (!sent_final_ && (context_->calls->draining || !subscription_->status().ok())) {
       *status = absl::UnavailableError("the server is shutting down; watch the job again later");
     }
     return sent_final_ || !status->ok();

@@ -25,6 +25,10 @@ const prometheus::Histogram::BucketBoundaries kSeconds = {50e-6, 100e-6, 200e-6,
                                                           5e-3,  10e-3,  20e-3,  50e-3,  .1,   .2,
                                                           .5,    1,      2,      5,      10,   60};
 
+// Seconds: stages of jobs, from reading a small clip to learning from a long one.
+const prometheus::Histogram::BucketBoundaries kStageSeconds = {.01, .05, .2, .5,  1,   2,   5,
+                                                               10,  30,  60, 300, 900, 3600};
+
 std::string MethodLabel(const std::string& method) {
   return absl::StartsWith(method, "/pleat.") || absl::StartsWith(method, "/grpc.") ? method
                                                                                    : "other";
@@ -93,6 +97,16 @@ class ServerMetrics::Impl {
           .Name("pleat_rpc_seconds")
           .Help("How long calls took, streams from their begin to their end")
           .Register(*registry);
+  prometheus::Family<prometheus::Histogram>& frame_seconds =
+      prometheus::BuildHistogram()
+          .Name("pleat_frame_seconds")
+          .Help("How long frames took to evaluate, to encode and to hand over to the network")
+          .Register(*registry);
+  prometheus::Family<prometheus::Histogram>& stage_seconds =
+      prometheus::BuildHistogram()
+          .Name("pleat_job_stage_seconds")
+          .Help("How long jobs were in each of their stages")
+          .Register(*registry);
   std::unique_ptr<prometheus::Exposer> exposer;  // ends first: it reads the others
 };
 
@@ -109,6 +123,14 @@ void ServerMetrics::CallEnded(const std::string& method, const std::string& stat
   impl_->open_calls.Add({{"method", label}}).Decrement();
   impl_->calls.Add({{"method", label}, {"status", status}}).Increment();
   impl_->seconds.Add({{"method", label}}, kSeconds).Observe(seconds);
+}
+
+void ServerMetrics::FrameStep(const std::string& step, double seconds) {
+  impl_->frame_seconds.Add({{"step", step}}, kSeconds).Observe(seconds);
+}
+
+void ServerMetrics::JobStage(const std::string& stage, double seconds) {
+  impl_->stage_seconds.Add({{"stage", stage}}, kStageSeconds).Observe(seconds);
 }
 
 void ServerMetrics::AddGauge(const std::string& name, const std::string& help, const Labels& labels,

@@ -27,6 +27,7 @@ std::string Line(const AuditEntry& entry, int64_t unix_ms) {
   if (!entry.token_name.empty()) line["name"] = entry.token_name;
   if (!entry.ids.empty()) line["ids"] = entry.ids;
   if (!entry.trace_id.empty()) line["trace"] = entry.trace_id;
+  if (!entry.request_id.empty()) line["request"] = entry.request_id;
   line["status"] = entry.status;
   line["seconds"] = entry.seconds;
   // Ids come from outside: bytes that are no UTF-8 are replaced.

@@ -11,6 +11,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/utf8.h"
+#include "pleat/observe/request_scope.h"
 
 namespace pleat {
 namespace {
@@ -22,9 +23,28 @@ class TextMessage final : public spdlog::custom_flag_formatter {
               spdlog::memory_buf_t& out) override {
     const std::string text = EscapeControls({message.payload.data(), message.payload.size()});
     out.append(text.data(), text.data() + text.size());
+    const std::string& request = CurrentRequestId();
+    if (request.empty()) return;
+    const std::string mark = absl::StrCat(" [request ", request, "]");
+    out.append(mark.data(), mark.data() + mark.size());
   }
   std::unique_ptr<custom_flag_formatter> clone() const override {
     return std::make_unique<TextMessage>();
+  }
+};
+
+// A member of a JSON object, with the comma before it, when the thread works for a request. Ids
+// have no character that JSON escapes (RequestIdOr).
+class JsonRequest final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg&, const std::tm&, spdlog::memory_buf_t& out) override {
+    const std::string& request = CurrentRequestId();
+    if (request.empty()) return;
+    const std::string member = absl::StrCat(",\"request\":\"", request, "\"");
+    out.append(member.data(), member.data() + member.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<JsonRequest>();
   }
 };
 
@@ -70,8 +90,8 @@ absl::Status ConfigureLogging(const LoggingOptions& options) {
       std::make_shared<spdlog::logger>("pleat", std::make_shared<spdlog::sinks::stderr_sink_mt>());
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   if (options.json) {
-    formatter->add_flag<JsonMessage>('*').set_pattern(
-        R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l","thread":%t,"message":"%*"})");
+    formatter->add_flag<JsonMessage>('*').add_flag<JsonRequest>('&').set_pattern(
+        R"({"time":"%Y-%m-%dT%H:%M:%S.%e%z","level":"%l","thread":%t,"message":"%*"%&})");
   } else {
     formatter->add_flag<TextMessage>('*').set_pattern("%Y-%m-%d %H:%M:%S.%e %L %*");
   }

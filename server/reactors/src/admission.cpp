@@ -2,10 +2,13 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
 namespace {
+
+constexpr absl::Duration kRetryAfter = absl::Seconds(2);
 
 constexpr RpcRule kRules[] = {
     {"QueryUpload", Scope::kTrain, false},
@@ -59,30 +62,33 @@ std::string ShownToken(const grpc::ServerContextBase& call) {
   return std::string(value);
 }
 
-absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase& call,
-                   const char* rpc) {
-  if (context.tokens == nullptr || !context.tokens->required()) return absl::OkStatus();
+absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
+                                      const char* rpc) {
+  ServerCalls& calls = *context->calls;
+  if (calls.tokens == nullptr || !calls.tokens->required()) return context;
   const RpcRule* rule = FindRpcRule(rpc);
   if (rule == nullptr) return absl::InternalError(absl::StrCat("nobody says who may call ", rpc));
-  PLEAT_ASSIGN_OR_RETURN(const Token token, context.tokens->Authenticate(ShownToken(call)));
-  if (token.scopes.Has(rule->scope)) return absl::OkStatus();
-  return absl::PermissionDeniedError(absl::StrCat("the token '", token.name, "' allows ",
-                                                  ScopesText(token.scopes), "; ", rpc, " needs ",
-                                                  ScopeName(rule->scope)));
+  PLEAT_ASSIGN_OR_RETURN(const Token token, calls.tokens->Authenticate(ShownToken(call)));
+  if (!token.scopes.Has(rule->scope)) {
+    return absl::PermissionDeniedError(absl::StrCat("the token '", token.name, "' allows ",
+                                                    ScopesText(token.scopes), "; ", rpc, " needs ",
+                                                    ScopeName(rule->scope)));
+  }
+  return calls.of_project ? calls.of_project(token.project) : context;
 }
 
-absl::Status AdmitStream(HandlerContext* context, const grpc::ServerContextBase& call,
-                         const char* rpc) {
-  PLEAT_RETURN_IF_ERROR(Admit(*context, call, rpc));
-  const int limit = context->max_streams_per_client;
+absl::StatusOr<HandlerContext*> AdmitStream(HandlerContext* context,
+                                            const grpc::ServerContextBase& call, const char* rpc) {
+  PLEAT_ASSIGN_OR_RETURN(HandlerContext * admitted, Admit(context, call, rpc));
+  const int limit = context->calls->max_streams_per_client;
   // This stream is among those that are counted.
-  if (limit == 0 || context->running_calls.NumStreams(OriginOf(call).client) <= limit) {
-    return absl::OkStatus();
+  if (limit == 0 || context->calls->running_calls.NumStreams(OriginOf(call).client) <= limit) {
+    return admitted;
   }
-  return absl::ResourceExhaustedError(
+  return RefuseForLimit(
+      {.subject = kClientLimit, .limit = "--max-streams-per-client", .retry_after = kRetryAfter},
       absl::StrCat("this client has ", limit,
-                   " streams (--max-streams-per-client); close one of "
-                   "them or try again later"));
+                   " streams (--max-streams-per-client); close one of them or try again later"));
 }
 
 }  // namespace pleat

@@ -6,11 +6,11 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <new>
 #include <string>
 #include <utility>
 
+#include "pleat/base/status.h"
 #include "pleat/reactors/admission.h"
 #include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
@@ -18,41 +18,74 @@
 namespace pleat {
 namespace {
 
+// Messages below this are part of kUnaryCallBytes, and measuring a larger one takes little beside
+// reading it. On the wire an empty message inside of another takes two bytes and fifty in memory,
+// so only the parsed size counts.
+constexpr size_t kSmallMessageBytes = 512;
+
+uint64_t MemoryOf(const google::protobuf::Message* message) {
+  if (message == nullptr || message->ByteSizeLong() < kSmallMessageBytes) return 0;
+  return message->SpaceUsedLong();
+}
+
 class UnaryReactor final : public CallReactor<grpc::ServerUnaryReactor> {
  public:
-  UnaryReactor(HandlerContext* context, Executor* executor, uint64_t flow, const char* rpc,
-               std::function<absl::Status()> handler)
-      : CallReactor(context),
-        context_(context),
-        executor_(executor),
+  // context: that of the project; not OK: why the call is refused.
+  UnaryReactor(const UnaryCall& call, absl::StatusOr<HandlerContext*> context, uint64_t flow,
+               UnaryHandler handler)
+      : CallReactor(call.context),
+        calls_(call.context->calls.get()),
+        call_(call),
+        context_(std::move(context)),
         flow_(flow),
-        rpc_(rpc),
         handler_(std::move(handler)) {}
+
   void Start() {
+    absl::Status status = context_.status();
+    if (status.ok()) status = Charge(kUnaryCallBytes + MemoryOf(call_.request));
+    if (!status.ok()) return End(status);
     Post(
-        executor_, [this] { Run(); }, flow_);
+        call_.executor, [this] { Run(); }, flow_);
   }
   void OnCancel() override { cancelled_ = true; }
 
  private:
   void Run() {
     absl::Status status;
-    if (context_->draining) {
+    if (calls_->draining) {
       status = absl::UnavailableError("the server is shutting down");
     } else if (cancelled_) {
       status = absl::CancelledError("the client gave up");
     } else {
-      status = CallGuarded(handler_);
+      status = CallGuarded([this] { return handler_(**context_); });
     }
-    LogFailure(rpc_, status);
+    // A client that does not read leaves its answers here. Small ones are paid for already: so no
+    // call that has changed something is refused afterwards.
+    const uint64_t answer = status.ok() ? MemoryOf(call_.response) : 0;
+    if (answer > kUnaryCallBytes) {
+      status = Charge(kUnaryCallBytes + MemoryOf(call_.request) + 2 * answer);
+    }
+    End(status);
+  }
+
+  absl::Status Charge(uint64_t bytes) {
+    if (calls_->request_memory == nullptr || bytes == memory_.bytes()) return absl::OkStatus();
+    memory_ = Reservation();
+    PLEAT_ASSIGN_OR_RETURN(memory_, calls_->request_memory->Reserve(bytes, call_.rpc));
+    return absl::OkStatus();
+  }
+
+  void End(const absl::Status& status) {
+    LogFailure(call_.rpc, status);
     Finish(ToGrpcStatus(status));
   }
 
-  HandlerContext* const context_;
-  Executor* const executor_;
+  ServerCalls* const calls_;
+  const UnaryCall call_;
+  const absl::StatusOr<HandlerContext*> context_;
   const uint64_t flow_;
-  const char* const rpc_;
-  const std::function<absl::Status()> handler_;
+  const UnaryHandler handler_;
+  Reservation memory_;
   std::atomic<bool> cancelled_ = false;
 };
 
@@ -75,17 +108,16 @@ void LogFailure(const char* rpc, const absl::Status& status) {
                     status.code() == absl::StatusCode::kUnknown ||
                     status.code() == absl::StatusCode::kDataLoss;
   spdlog::log(ours ? spdlog::level::err : spdlog::level::info, "{} failed: {}", rpc,
-              status.ToString());
+              status.ToString(absl::StatusToStringMode::kWithNoExtraData));
 }
 
-grpc::ServerUnaryReactor* RunUnary(HandlerContext* context, grpc::CallbackServerContext* call,
-                                   Executor* executor, const char* rpc,
-                                   std::function<absl::Status()> handler) {
-  const uint64_t flow = std::hash<std::string>()(call->peer()) | 1;  // one per connection, never 0
-  if (absl::Status status = Admit(*context, *call, rpc); !status.ok()) {
-    handler = [status = std::move(status)] { return status; };
-  }
-  return StartReactor<UnaryReactor>(context, executor, flow, rpc, std::move(handler));
+grpc::ServerUnaryReactor* RunUnary(const UnaryCall& call, UnaryHandler handler) {
+  const std::string request_id = call.context->calls->running_calls.RequestIdOf(*call.call);
+  const RequestScope scope(request_id);
+  const uint64_t flow =
+      std::hash<std::string>()(call.call->peer()) | 1;  // one per connection, never 0
+  return StartReactor<UnaryReactor>(call, Admit(call.context, *call.call, call.rpc), flow,
+                                    std::move(handler));
 }
 
 }  // namespace pleat

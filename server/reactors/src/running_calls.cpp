@@ -25,12 +25,14 @@ CallOrigin OriginOf(const grpc::ServerContextBase& call) {
   return {.client = absl::StrCat("token:", ToHex(ComputeSha256(shown))), .token_id = token->id};
 }
 
-RunningCalls::Entry::Entry(RunningCalls* calls, const CallOrigin& origin, bool is_stream,
-                           const grpc::ServerContextBase* context)
-    : calls_(calls), stream_client_(is_stream ? origin.client : "") {
+RunningCalls::Entry::Entry(RunningCalls* calls, const CallOrigin& origin, std::string request_id,
+                           bool is_stream, const grpc::ServerContextBase* context)
+    : calls_(calls), stream_client_(is_stream ? origin.client : ""), context_(context) {
   auto call = std::make_shared<Call>();
   call->context = context;
+  call->request_id = std::move(request_id);
   std::lock_guard lock(calls_->mutex_);
+  calls_->by_context_.emplace(context, call);
   place_ = calls_->calls_.emplace(origin.token_id, std::move(call));
   if (is_stream) ++calls_->streams_[stream_client_];
 }
@@ -41,6 +43,7 @@ RunningCalls::Entry::~Entry() {
     std::lock_guard lock(calls_->mutex_);
     call = place_->second;
     calls_->calls_.erase(place_);
+    calls_->by_context_.erase(context_);
     const auto streams = calls_->streams_.find(stream_client_);
     if (streams != calls_->streams_.end() && --streams->second == 0) {
       calls_->streams_.erase(streams);
@@ -48,6 +51,12 @@ RunningCalls::Entry::~Entry() {
   }
   std::lock_guard lock(call->mutex);
   call->context = nullptr;
+}
+
+std::string RunningCalls::RequestIdOf(const grpc::ServerContextBase& context) {
+  std::lock_guard lock(mutex_);
+  const auto call = by_context_.find(&context);
+  return call == by_context_.end() ? std::string() : call->second->request_id;
 }
 
 int RunningCalls::NumStreams(const std::string& client) {

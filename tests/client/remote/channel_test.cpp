@@ -8,6 +8,8 @@
 
 #include "absl/synchronization/notification.h"
 #include "client/remote/scripted_server.h"
+#include "pleat/base/limit_refusal.h"
+#include "pleat/wire/limit_messages.h"
 #include "pleat/wire/service_messages.h"
 #include "support/status_matchers.h"
 
@@ -69,6 +71,38 @@ TEST_F(ChannelTest, ALostCreationIsRepeatedWithTheSameIdAndNothingElseIs) {
   EXPECT_EQ(ids[0], ids[1]);
   EXPECT_THAT(client->jobs().CreateCompression({"s", {}}), unavailable);
   EXPECT_THAT(client->jobs().Cancel("j"), unavailable);
+}
+
+grpc::Status RefusedFor(std::optional<absl::Duration> wait) {
+  const absl::Status status =
+      RefuseForLimit({.limit = "--max-streams-per-client", .retry_after = wait}, "too many");
+  return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too many", LimitDetailsOf(status));
+}
+
+TEST_F(ChannelTest, ACallThatALimitRefusedIsMadeAgainWhenTheServerSaid) {
+  const auto client = server_.Open();
+  EXPECT_CALL(server_.jobs, CancelJob)
+      .WillOnce(Return(RefusedFor(absl::Milliseconds(1))))
+      .WillOnce(Return(RefusedFor(absl::Milliseconds(1))))
+      .WillOnce(Return(grpc::Status::OK));
+  EXPECT_THAT(client->jobs().Cancel("j"), IsOk());
+}
+
+TEST_F(ChannelTest, WaitingThatDoesNotHelpIsNotTried) {
+  const auto client = server_.Open({.max_attempts = 2, .max_retry_seconds = 1});
+  const auto refused = HasStatus(absl::StatusCode::kResourceExhausted, "too many");
+  EXPECT_CALL(server_.jobs, CancelJob)
+      .WillOnce(Return(RefusedFor({})))  // as often as it is asked
+      .WillOnce(Return(RefusedFor(absl::Seconds(2))));
+  for (int i = 0; i < 2; ++i) {
+    const absl::Status status = client->jobs().Cancel("j");
+    EXPECT_THAT(status, refused);
+    EXPECT_EQ(LimitRefusalOf(status)->limit, "--max-streams-per-client");
+  }
+  EXPECT_CALL(server_.jobs, CancelJob)
+      .Times(2)
+      .WillRepeatedly(Return(RefusedFor(absl::Milliseconds(1))));
+  EXPECT_THAT(client->jobs().Cancel("j"), refused);  // after the last attempt
 }
 
 TEST_F(ChannelTest, AServerThatDoesNotAnswerIsTooLate) {

@@ -67,6 +67,18 @@ TEST_F(TokenVerbTest, JsonHasIdAndToken) {
   EXPECT_EQ(list[0]["expires"], "");
 }
 
+TEST_F(TokenVerbTest, ATokenSeesItsProject) {
+  Create("x", "read");
+  EXPECT_EQ(Run({"create", data_, "--name", "y", "--scopes", "read", "--project", "robots"}).code,
+            ExitCode::kOk);
+  const json list = json::parse(Run({"list", data_, "--json"}).out);
+  EXPECT_EQ(list[0]["project"], "default");
+  EXPECT_EQ(list[1]["project"], "robots");
+  EXPECT_THAT(Run({"list", data_}).out, HasSubstr("robots"));
+  EXPECT_EQ(Run({"create", data_, "--name", "z", "--scopes", "read", "--project", "a/b"}).code,
+            ExitCode::kBadInput);
+}
+
 TEST_F(TokenVerbTest, MistakesAreNamed) {
   EXPECT_EQ(Run({"create", data_, "--name", "x"}).code, ExitCode::kUsage);
   EXPECT_EQ(Run({"create", data_, "--name", "x", "--scopes", "all"}).code, ExitCode::kBadInput);

@@ -20,13 +20,14 @@ using ::testing::HasSubstr;
 
 class AdmissionTest : public testing::Test {
  protected:
-  grpc::Status Delete(const std::string& authorization) {
+  grpc::Status Delete(const std::string& authorization) { return Delete(authorization, mock_); }
+  static grpc::Status Delete(const std::string& authorization, MockServer& server) {
     grpc::ClientContext context;
     if (!authorization.empty()) context.AddMetadata("authorization", authorization);
     v1::DeleteModelRequest request;
     v1::DeleteModelResponse response;
     request.set_id(kId);
-    return v1::ModelService::NewStub(mock_.channel)->DeleteModel(&context, request, &response);
+    return v1::ModelService::NewStub(server.channel)->DeleteModel(&context, request, &response);
   }
   // Jobs that never change: a watch of one gives its state once and stays open.
   static void ExpectEndlessJobs(MockJobService* jobs) {
@@ -43,6 +44,7 @@ class AdmissionTest : public testing::Test {
   }
 
   TestTokens tokens_;
+  MockService server_of_default_;
   MockServer mock_{{.tokens = tokens_.registry()}};
 };
 
@@ -66,6 +68,40 @@ TEST_F(AdmissionTest, AsSoonAsThereIsATokenEachCallNeedsOne) {
   EXPECT_THAT(Delete("Bearer " + reader.text),
               HasGrpcStatus(grpc::StatusCode::PERMISSION_DENIED,
                             HasSubstr("'Rea' allows read,pose,train; DeleteModel needs admin")));
+}
+
+// The token alone decides what a call sees, unary or stream.
+TEST_F(AdmissionTest, ACallGetsTheServicesOfItsProject) {
+  MockService robots;
+  std::vector<std::string> asked;
+  MockServer server({.tokens = tokens_.registry(), .of_project = [&](const std::string& project) {
+                       asked.push_back(project);
+                       return project == "robots" ? &robots : &server_of_default_;
+                     }});
+  const NewToken robot = tokens_.Add("R2", "read,admin", "robots");
+  const NewToken other = tokens_.Add("Rea", "read,admin");
+  EXPECT_CALL(robots.mock_models, Delete(kId)).Times(2).WillRepeatedly([](auto&&...) {
+    return absl::OkStatus();
+  });
+  EXPECT_CALL(server_of_default_.mock_models, Delete(kId))
+      .WillOnce(testing::Return(absl::NotFoundError("no model")));
+  EXPECT_CALL(robots.mock_jobs, Subscribe).WillOnce([](auto&&...) {
+    return absl::NotFoundError("no job of robots");
+  });
+  EXPECT_CALL(server_of_default_.mock_jobs, Subscribe).Times(0);
+  EXPECT_TRUE(Delete("Bearer " + robot.text, server).ok());
+  EXPECT_TRUE(Delete("Bearer " + robot.text, server).ok());
+  EXPECT_THAT(Delete("Bearer " + other.text, server),
+              HasGrpcStatus(grpc::StatusCode::NOT_FOUND, _));
+  EXPECT_THAT(asked, testing::ElementsAre("robots", kDefaultProject)) << "once for each";
+  grpc::ClientContext context;
+  context.AddMetadata("authorization", "Bearer " + robot.text);
+  v1::WatchJobRequest request;
+  request.set_id("job-1");
+  const auto watch = v1::JobService::NewStub(server.channel)->WatchJob(&context, request);
+  v1::WatchJobResponse update;
+  EXPECT_FALSE(watch->Read(&update));
+  EXPECT_THAT(watch->Finish(), HasGrpcStatus(grpc::StatusCode::NOT_FOUND, HasSubstr("robots")));
 }
 
 TEST_F(AdmissionTest, StreamsAreRefusedAsWell) {

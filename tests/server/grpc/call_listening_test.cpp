@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pleat/observe/request_scope.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/model_service.grpc.pb.h"
 #include "server/handlers/mock_server.h"
@@ -53,6 +54,27 @@ class CallListeningTest : public testing::Test {
   Heard heard_;
   MockServer mock_{{.call_listener = heard_.listener()}};
 };
+
+// What the handler logs and what the listener hears name the same request.
+TEST_F(CallListeningTest, ACallHasOneRequestIdFromBeginToEnd) {
+  std::vector<std::string> in_handler;
+  EXPECT_CALL(mock_.service.mock_models, Delete(kId)).Times(2).WillRepeatedly([&](auto&&...) {
+    in_handler.push_back(CurrentRequestId());
+    return absl::OkStatus();
+  });
+  v1::DeleteModelRequest request;
+  v1::DeleteModelResponse response;
+  request.set_id(kId);
+  const auto stub = v1::ModelService::NewStub(mock_.channel);
+  mock_.call.AddMetadata("x-request-id", "shot-7");
+  EXPECT_TRUE(stub->DeleteModel(&mock_.call, request, &response).ok());
+  EXPECT_EQ(heard_.WaitForEnd().facts.request_id, "shot-7");
+  grpc::ClientContext other;
+  EXPECT_TRUE(stub->DeleteModel(&other, request, &response).ok());
+  const std::string made = heard_.WaitForEnd().facts.request_id;
+  EXPECT_EQ(made.size(), 16u);
+  EXPECT_EQ(in_handler, (std::vector<std::string>{"shot-7", made}));
+}
 
 TEST_F(CallListeningTest, AnAuditedCallTellsWhatItIsAbout) {
   const NewToken made = MakeToken("Ada", ScopeSet::All(), 0, {});

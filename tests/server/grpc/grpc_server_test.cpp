@@ -161,5 +161,31 @@ TEST_F(GrpcServerTest, AClientThatIsGoneDoesNotHoldUpTheShutdown) {
   stopper.join();
 }
 
+// A watch that would stay open for ever ends soon after the age and the grace of its connection.
+TEST_F(GrpcServerTest, AnOldConnectionEndsWithItsCalls) {
+  MockService service;
+  EXPECT_CALL(service.mock_jobs, Subscribe).WillRepeatedly([](auto&&...) {
+    auto subscription = std::make_unique<testing::NiceMock<MockJobSubscription>>();
+    ON_CALL(*subscription, current).WillByDefault([] { return JobUpdate{{}, 1}; });
+    return subscription;
+  });
+  const auto server =
+      GrpcServer::Start(&service,
+                        {.connections = {.max_age_seconds = .2, .max_age_grace_seconds = .1}})
+          .value();
+  const auto channel = grpc::CreateChannel("127.0.0.1:" + std::to_string(server->port()),
+                                           grpc::InsecureChannelCredentials());
+  v1::WatchJobRequest request;
+  request.set_id("job-1");
+  for (int round = 0; round < 2; ++round) {  // a client simply connects again
+    grpc::ClientContext context;
+    const auto watch = v1::JobService::NewStub(channel)->WatchJob(&context, request);
+    v1::WatchJobResponse update;
+    EXPECT_TRUE(watch->Read(&update));
+    EXPECT_FALSE(watch->Read(&update));  // returns when the server has ended the connection
+    EXPECT_FALSE(watch->Finish().ok());
+  }
+}
+
 }  // namespace
 }  // namespace pleat

@@ -119,7 +119,7 @@ class LiveSessionRaces : public testing::Test {
     spdlog::set_level(spdlog::level::off);
     context_.poses = &poses_;
     context_.pose_executor = executor_.get();
-    context_.max_open_streams = 1;
+    context_.calls->max_open_streams = 1;
     ON_CALL(poses_, OpenStream).WillByDefault([this](auto&&, auto&&, auto&&, LiveListener* to) {
       return service_.Open(to);
     });
@@ -145,18 +145,18 @@ class LiveSessionRaces : public testing::Test {
     return request;
   }
   void Drain() {
-    context_.draining = true;
-    context_.live_sessions.DrainAll();
+    context_.calls->draining = true;
+    context_.calls->live_sessions.DrainAll();
   }
   void ExpectEnd(grpc::StatusCode code) {
     const grpc::Status status = call_->WaitForFinish();
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_FALSE(service_.is_open()) << "the model is let go before the status";
-    context_.live_sessions.DrainAll();  // what has ended may still be told to
-    context_.live_sessions.AbandonAll();
+    context_.calls->live_sessions.DrainAll();  // what has ended may still be told to
+    context_.calls->live_sessions.AbandonAll();
     call_->WaitForEnd();
-    context_.open_calls.WaitUntilNone();
-    context_.live_sessions.DrainAll();
+    context_.calls->open_calls.WaitUntilNone();
+    context_.calls->live_sessions.DrainAll();
   }
 
   ScriptedService service_;
@@ -312,7 +312,7 @@ TEST_F(LiveSessionRaces, AWrongMessageEndsItWhenTheServiceHasAnswered) {
 TEST_F(LiveSessionRaces, EverythingAtTheSameTimeEndsOnce) {
   Executor several(2);
   for (int round = 0; round < 40; ++round) {
-    context_.draining = false;
+    context_.calls->draining = false;
     service_.AnswerOn(&several);
     Start();
     call_->Send(StartMessage());

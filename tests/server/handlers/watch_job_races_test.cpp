@@ -76,7 +76,7 @@ class WatchJobRaces : public testing::Test {
     spdlog::set_level(spdlog::level::off);
     context_.jobs = &jobs_;
     context_.storage_executor = executor_.get();
-    context_.max_open_streams = 1;
+    context_.calls->max_open_streams = 1;
     ON_CALL(jobs_, Subscribe).WillByDefault([this](auto&&, std::function<void()> listener) {
       return job_.Subscribe(std::move(listener));
     });
@@ -94,7 +94,7 @@ class WatchJobRaces : public testing::Test {
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_FALSE(job_.is_watched()) << "the subscription goes before the status";
     call_->WaitForEnd();
-    context_.open_calls.WaitUntilNone();
+    context_.calls->open_calls.WaitUntilNone();
   }
 
   WatchedJob job_;
@@ -177,7 +177,7 @@ TEST_F(WatchJobRaces, AServerThatDrainsWhileItWritesStillSendsTheNewestState) {
   executor_.Release();
   Start();
   call_->WaitForWrite();
-  context_.draining = true;
+  context_.calls->draining = true;
   job_.Change(JobState::kRunning, .5);
   call_->EndWrite();
   EXPECT_EQ(call_->Receive().job().state(), v1::JOB_STATE_RUNNING);
@@ -198,7 +198,7 @@ TEST_F(WatchJobRaces, TheFinalStateEndsItWellWhateverElseHappens) {
   call_->Receive();
   job_.Change(JobState::kFailed, .5);
   call_->WaitForWrite();
-  context_.draining = true;
+  context_.calls->draining = true;
   job_.End(absl::UnavailableError("shutting down"));
   call_->EndWrite();
   ExpectEnd(grpc::StatusCode::OK);
@@ -217,9 +217,9 @@ TEST_F(WatchJobRaces, TasksThatAreStillQueuedFindTheCallEnded) {
   call_->Cancel();
   before->count_down();
   EXPECT_EQ(call_->WaitForEnd().error_code(), grpc::StatusCode::CANCELLED);
-  EXPECT_FALSE(context_.open_calls.WaitUntilNone({})) << "the tasks keep the reactor alive";
+  EXPECT_FALSE(context_.calls->open_calls.WaitUntilNone({})) << "the tasks keep the reactor alive";
   after->count_down();
-  context_.open_calls.WaitUntilNone();
+  context_.calls->open_calls.WaitUntilNone();
 }
 
 TEST_F(WatchJobRaces, ChangesAndWritesMayEndAtTheSameTime) {

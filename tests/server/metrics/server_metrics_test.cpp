@@ -47,6 +47,24 @@ TEST(ServerMetricsTest, NoClientMakesUpLabels) {
   EXPECT_THAT(metrics.Text(), HasSubstr(R"({method="other",status="UNIMPLEMENTED"} 100)"));
 }
 
+TEST(ServerMetricsTest, StepsOfFramesAreMeasuredFrom50Microseconds) {
+  ServerMetrics metrics;
+  metrics.FrameStep("query", 40e-6);
+  metrics.FrameStep("query", 60e-6);
+  metrics.FrameStep("send", 2);
+  const std::string text = metrics.Text();
+  EXPECT_THAT(text, HasSubstr(R"(pleat_frame_seconds_bucket{step="query",le="5e-05"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_frame_seconds_count{step="query"} 2)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_frame_seconds_count{step="send"} 1)"));
+}
+
+TEST(ServerMetricsTest, StagesOfJobsAreMeasured) {
+  ServerMetrics metrics;
+  metrics.JobStage("learn", 20);
+  EXPECT_THAT(metrics.Text(),
+              HasSubstr(R"(pleat_job_stage_seconds_bucket{stage="learn",le="30"} 1)"));
+}
+
 TEST(ServerMetricsTest, GaugesAreReadWhenSomebodyAsks) {
   ServerMetrics metrics;
   double value = 1;

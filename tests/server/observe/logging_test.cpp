@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "pleat/observe/request_scope.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -77,6 +78,21 @@ TEST_F(LoggingTest, WhatProtocolBuffersSayIsADebugLine) {
   const auto log = [] { GOOGLE_LOG(ERROR) << "bad field"; };
   EXPECT_EQ(Captured({.level = "info"}, log), "");
   EXPECT_THAT(Captured({.level = "debug"}, log), HasSubstr("protobuf: bad field"));
+}
+
+TEST_F(LoggingTest, ALineNamesTheRequestThatItIsAbout) {
+  const auto log = [] {
+    spdlog::info("before");
+    const std::string id = "r-1";
+    const RequestScope scope(id);
+    spdlog::info("inside");
+  };
+  const std::string text = Captured({}, log);
+  EXPECT_THAT(text, HasSubstr("before\n"));
+  EXPECT_THAT(text, HasSubstr("inside [request r-1]\n"));
+  const std::string json = Captured({.json = true}, log);
+  EXPECT_THAT(json, HasSubstr(R"("message":"before"})"));
+  EXPECT_THAT(json, HasSubstr(R"("message":"inside","request":"r-1"})"));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class TestReactor final : public CallReactor<grpc::ServerUnaryReactor> {
 
 class CallReactorTest : public testing::Test {
  protected:
-  bool exists() { return !context_.open_calls.WaitUntilNone({}); }
+  bool exists() { return !context_.calls->open_calls.WaitUntilNone({}); }
 
   HandlerContext context_;
   int num_runs_ = 0;

@@ -24,7 +24,7 @@ class DownloadStreamTest : public testing::Test {
   DownloadStreamTest() {
     spdlog::set_level(spdlog::level::off);
     context_.transfer_executor = executor_.get();
-    context_.max_open_streams = 1;
+    context_.calls->max_open_streams = 1;
     for (size_t i = 0; i < file_.size(); ++i) file_[i] = static_cast<char>(i * 7);
     executor_.Release();
   }
@@ -55,7 +55,7 @@ class DownloadStreamTest : public testing::Test {
   }
   void ExpectEnd(grpc::StatusCode code) {
     EXPECT_EQ(call_->WaitForEnd().error_code(), code);
-    context_.open_calls.WaitUntilNone();
+    context_.calls->open_calls.WaitUntilNone();
   }
 
   HandlerContext context_;
@@ -106,7 +106,7 @@ TEST_F(DownloadStreamTest, AClientThatIsGoneWhileTheDiskIsReadCostsOneRead) {
 TEST_F(DownloadStreamTest, AServerThatDrainsLetsItGoOnToItsEnd) {
   Start();
   call_->WaitForWrite();
-  context_.draining = true;
+  context_.calls->draining = true;
   for (int i = 0; i < 3; ++i) call_->Receive();
   ExpectEnd(grpc::StatusCode::OK);
 }

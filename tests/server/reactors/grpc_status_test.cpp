@@ -5,6 +5,8 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/limit_refusal.h"
+#include "pleat/wire/limit_messages.h"
 
 namespace pleat {
 namespace {
@@ -39,6 +41,17 @@ TEST(GrpcStatus, MessagesAreAlwaysUtf8) {
           .error_message();
   EXPECT_EQ(cut.substr(0, 1999), std::string(1999, 'x'));
   EXPECT_EQ(cut.find('\xc3'), std::string::npos);
+}
+
+TEST(GrpcStatus, RefusalsForALimitSayWhichAndWhenToComeAgain) {
+  const grpc::Status refused = ToGrpcStatus(RefuseForLimit(
+      {.subject = kClientLimit, .limit = "--x", .retry_after = absl::Seconds(2)}, "too many"));
+  const auto refusal = LimitRefusalOf(
+      WithLimitDetails(absl::ResourceExhaustedError("too many"), refused.error_details()));
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->limit, "--x");
+  EXPECT_EQ(refusal->retry_after, absl::Seconds(2));
+  EXPECT_EQ(ToGrpcStatus(absl::NotFoundError("x")).error_details(), "");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 
 TEST(StreamSlot, OneTooManyIsRefusedUntilAnotherHasEnded) {
   HandlerContext context;
-  context.max_open_streams = 2;
+  context.calls->max_open_streams = 2;
   std::vector<std::unique_ptr<StreamSlot>> slots;
   for (int i = 0; i < 2; ++i) {
     slots.push_back(std::make_unique<StreamSlot>(&context));
@@ -32,9 +32,9 @@ TEST(StreamSlot, OneTooManyIsRefusedUntilAnotherHasEnded) {
 
 TEST(StreamSlot, NothingBeginsWhileTheServerDrains) {
   HandlerContext context;
-  context.max_open_streams = 2;
+  context.calls->max_open_streams = 2;
   const StreamSlot slot(&context);
-  context.draining = true;
+  context.calls->draining = true;
   EXPECT_THAT(slot.status(), HasStatus(absl::StatusCode::kUnavailable, HasSubstr("shutting down")));
 }
 

@@ -21,7 +21,7 @@ class PullStreamTest : public testing::Test {
  protected:
   PullStreamTest() {
     spdlog::set_level(spdlog::level::off);
-    context_.max_open_streams = 1;
+    context_.calls->max_open_streams = 1;
   }
   // A stream of the numbers 1 to `last`.
   void Start(int last = 3) {
@@ -42,10 +42,10 @@ class PullStreamTest : public testing::Test {
     const grpc::Status status = call_->WaitForFinish();
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_TRUE(held_.expired()) << "what the stream holds goes before its status";
-    EXPECT_EQ(context_.num_open_streams, 1);
+    EXPECT_EQ(context_.calls->num_open_streams, 1);
     call_->WaitForEnd();
-    context_.open_calls.WaitUntilNone();
-    EXPECT_EQ(context_.num_open_streams, 0);
+    context_.calls->open_calls.WaitUntilNone();
+    EXPECT_EQ(context_.calls->num_open_streams, 0);
   }
 
   HandlerContext context_;
@@ -116,7 +116,7 @@ TEST_F(PullStreamTest, AServerThatDrainsLetsItGoOnToItsEnd) {
   executor_.Release();
   Start(2);
   call_->WaitForWrite();
-  context_.draining = true;
+  context_.calls->draining = true;
   call_->EndWrite();
   EXPECT_EQ(call_->Receive().id(), "2");
   ExpectEnd(grpc::StatusCode::OK);
@@ -124,7 +124,7 @@ TEST_F(PullStreamTest, AServerThatDrainsLetsItGoOnToItsEnd) {
 
 TEST_F(PullStreamTest, AServerThatDrainsRefusesTheOneThatWaits) {
   Start();
-  context_.draining = true;
+  context_.calls->draining = true;
   executor_.Release();
   ExpectEnd(grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(num_made_, 0);

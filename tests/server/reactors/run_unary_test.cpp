@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "pleat/v1/model_service.pb.h"
 #include "server/reactors/fake_call.h"
 #include "support/checkpoint.h"
 #include "support/held_executor.h"
@@ -21,8 +22,12 @@ using ::testing::HasSubstr;
 class RunUnaryTest : public testing::Test {
  protected:
   RunUnaryTest() { spdlog::set_level(spdlog::level::off); }  // failures are what is tested
+  UnaryCall Call() {
+    return {
+        .context = &context_, .call = &server_context_, .executor = executor_.get(), .rpc = "Test"};
+  }
   void Start(std::function<absl::Status()> handler) {
-    call_.emplace(RunUnary(&context_, &server_context_, executor_.get(), "Test", handler));
+    call_.emplace(RunUnary(Call(), [handler](HandlerContext&) { return handler(); }));
   }
   // A call that is in its handler until the test lets it go on.
   void StartHeld() {
@@ -37,7 +42,7 @@ class RunUnaryTest : public testing::Test {
     const grpc::Status status = call_->WaitForEnd();
     EXPECT_EQ(status.error_code(), code) << status.error_message();
     EXPECT_THAT(status.error_message(), HasSubstr(word));
-    context_.open_calls.WaitUntilNone();
+    context_.calls->open_calls.WaitUntilNone();
   }
 
   Checkpoint in_handler_;
@@ -85,12 +90,12 @@ TEST_F(RunUnaryTest, ACallThatIsCancelledWhileItRunsEndsByItself) {
 
 TEST_F(RunUnaryTest, AServerThatDrainsLetsTheRunningCallEndAndRefusesTheOneThatWaits) {
   StartHeld();
-  FakeUnaryCall waiting(RunUnary(&context_, &server_context_, executor_.get(), "Test", [this] {
+  FakeUnaryCall waiting(RunUnary(Call(), [this](HandlerContext&) {
     was_run_ = true;
     return absl::OkStatus();
   }));
-  context_.draining = true;
-  EXPECT_FALSE(context_.open_calls.WaitUntilNone({}));
+  context_.calls->draining = true;
+  EXPECT_FALSE(context_.calls->open_calls.WaitUntilNone({}));
   in_handler_.Release();
   EXPECT_EQ(waiting.WaitForEnd().error_code(), grpc::StatusCode::UNAVAILABLE);
   ExpectEnd(grpc::StatusCode::OK, "");
@@ -98,11 +103,44 @@ TEST_F(RunUnaryTest, AServerThatDrainsLetsTheRunningCallEndAndRefusesTheOneThatW
 }
 
 TEST_F(RunUnaryTest, TheEndMayComeBeforeGrpcHasTheReactor) {
-  grpc::ServerUnaryReactor* const reactor = RunUnary(&context_, &server_context_, executor_.get(),
-                                                     "Test", [] { return absl::OkStatus(); });
+  grpc::ServerUnaryReactor* const reactor =
+      RunUnary(Call(), [](HandlerContext&) { return absl::OkStatus(); });
   executor_.RunAll();
   call_.emplace(reactor);
   ExpectEnd(grpc::StatusCode::OK, "");
+}
+
+TEST_F(RunUnaryTest, ACallWithoutMemoryIsRefusedBeforeItWaits) {
+  MemoryBudget memory(kUnaryCallBytes + 4000, "--request-bytes");
+  context_.calls->request_memory = &memory;
+  v1::DeleteModelRequest small, large;
+  large.set_id(std::string(4000, 'x'));
+  UnaryCall call = Call();
+  call.request = &large;
+  call_.emplace(RunUnary(call, [this](HandlerContext&) {
+    was_run_ = true;
+    return absl::OkStatus();
+  }));
+  ExpectEnd(grpc::StatusCode::RESOURCE_EXHAUSTED, "--request-bytes");  // although nothing runs yet
+  EXPECT_FALSE(was_run_);
+  call.request = &small;
+  FakeUnaryCall waiting(RunUnary(call, [](HandlerContext&) { return absl::OkStatus(); }));
+  EXPECT_EQ(memory.used_bytes(), kUnaryCallBytes);
+  executor_.Release();
+  EXPECT_TRUE(waiting.WaitForEnd().ok());
+  context_.calls->open_calls.WaitUntilNone();
+  EXPECT_EQ(memory.used_bytes(), 0u);
+}
+
+TEST_F(RunUnaryTest, TheHandlerGetsTheContextOfItsProject) {
+  executor_.Release();
+  const HandlerContext* seen = nullptr;
+  call_.emplace(RunUnary(Call(), [&](HandlerContext& context) {
+    seen = &context;
+    return absl::OkStatus();
+  }));
+  ExpectEnd(grpc::StatusCode::OK, "");
+  EXPECT_EQ(seen, &context_);  // without tokens there is one project
 }
 
 }  // namespace

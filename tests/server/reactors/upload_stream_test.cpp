@@ -48,7 +48,7 @@ class UploadStreamTest : public testing::Test {
   UploadStreamTest() {
     spdlog::set_level(spdlog::level::off);
     context_.transfer_executor = executor_.get();
-    context_.max_open_streams = 1;
+    context_.calls->max_open_streams = 1;
     executor_.Release();
   }
   void Start() {
@@ -80,8 +80,8 @@ class UploadStreamTest : public testing::Test {
     EXPECT_THAT(status.error_message(), HasSubstr(word));
     EXPECT_FALSE(is_held_) << "the right to write goes before the status";
     call_->WaitForEnd();
-    context_.open_calls.WaitUntilNone();
-    EXPECT_EQ(context_.num_open_streams, 0);
+    context_.calls->open_calls.WaitUntilNone();
+    EXPECT_EQ(context_.calls->num_open_streams, 0);
   }
 
   HandlerContext context_;
@@ -139,8 +139,8 @@ TEST_F(UploadStreamTest, AServerThatDrainsWhileItReadsLetsItGoOnToItsEnd) {
   Start();
   call_->Send(Header());
   call_->WaitForRead();
-  context_.draining = true;
-  EXPECT_FALSE(context_.open_calls.WaitUntilNone({}));
+  context_.calls->draining = true;
+  EXPECT_FALSE(context_.calls->open_calls.WaitUntilNone({}));
   call_->Send(Data("abcdef"));
   call_->EndReads();
   ExpectEnd(grpc::StatusCode::OK, "");
@@ -150,7 +150,7 @@ TEST_F(UploadStreamTest, AServerThatDrainsWhileItReadsLetsItGoOnToItsEnd) {
 TEST_F(UploadStreamTest, AServerThatDrainsRefusesTheOneThatHasNotBegun) {
   Start();
   call_->WaitForRead();
-  context_.draining = true;
+  context_.calls->draining = true;
   call_->Send(Header());
   ExpectEnd(grpc::StatusCode::UNAVAILABLE, "shutting down");
   EXPECT_EQ(num_begun_, 0);

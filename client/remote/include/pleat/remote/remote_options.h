@@ -10,7 +10,10 @@ namespace pleat {
 struct RemoteOptions {
   double connect_seconds = 5;    // the time after which Connect gives up
   double deadline_seconds = 60;  // the longest time of a call that is no stream
-  int max_attempts = 5;          // attempts in a row for an upload, download or watch
+  // Attempts in a row for an upload, a download or a watch, and for a call that a limit refused.
+  int max_attempts = 5;
+  // When a limit refuses a call, the server says how long to wait; a longer time is an error.
+  double max_retry_seconds = 60;
   // How the frames of EvaluateClip and EvaluatePose are encoded. With 16 bits, positions on a
   // person are off by at most about .02 mm. Live sessions choose their own encoding.
   FrameEncoderOptions stream{.position_bits = 16};

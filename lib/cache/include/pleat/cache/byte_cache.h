@@ -26,7 +26,9 @@ struct ByteCacheStats {
 
 // Least recently used entries go first; an entry is pinned while anybody outside holds its handle,
 // and a pinned entry is never dropped (dropping it would free nothing, and the next reader would
-// load it a second time). The sum of all charges never exceeds the capacity. Thread-safe.
+// load it a second time). The sum of all charges never exceeds the capacity. A charge lives as long
+// as the value, so that a value which was erased while somebody uses it is still counted.
+// Thread-safe.
 template <typename Value>
 class ByteCache {
  public:
@@ -37,7 +39,10 @@ class ByteCache {
   };
   using Loader = std::function<absl::StatusOr<Loaded>(const std::string& key)>;
 
-  explicit ByteCache(uint64_t capacity_bytes) : account_(capacity_bytes) {}
+  // memory: what the cache shares with others, which may ask for room by Reclaim; it must outlive
+  // every handle. Null: the cache has its capacity for itself.
+  explicit ByteCache(uint64_t capacity_bytes, MemoryBudget* memory = nullptr)
+      : account_(std::make_shared<ChargeAccount>(capacity_bytes, memory)) {}
 
   // The value of `key`; `load` is called without the lock, by one caller, while all others who ask
   // for the same key wait for its result. An error is handed to all who waited and not kept.
@@ -76,10 +81,22 @@ class ByteCache {
     if (auto it = loading_.find(key); it != loading_.end()) it->second->erased = true;
   }
 
+  // Drops entries that nobody uses, the least recently used first, until `bytes` are free or none
+  // is left.
+  void Reclaim(uint64_t bytes) {
+    std::lock_guard lock(mutex_);
+    uint64_t freed = 0;
+    DropUnpinned([&](const Entry& entry) {
+      if (freed >= bytes) return false;
+      freed += entry.charge_bytes;
+      return true;
+    });
+  }
+
   ByteCacheStats stats() const {
     std::lock_guard lock(mutex_);
-    ByteCacheStats stats{.used_bytes = account_.used_bytes(),
-                         .capacity_bytes = account_.capacity_bytes(),
+    ByteCacheStats stats{.used_bytes = account_->used_bytes(),
+                         .capacity_bytes = account_->capacity_bytes(),
                          .num_entries = static_cast<int>(entries_.size()),
                          .hits = hits_,
                          .misses = misses_,
@@ -98,6 +115,13 @@ class ByteCache {
     bool pinned() const { return value.use_count() > 1; }
   };
   using Entries = std::map<std::string, Entry>;
+  // A loaded value with its charge: a handle points to the value and owns both. The account is
+  // shared, because a handle may outlive the cache.
+  struct Charged {
+    Handle value;
+    std::shared_ptr<ChargeAccount> account;
+    Reservation charge;  // goes first
+  };
   // One load under way; those who wait share it.
   struct Flight {
     bool landed = false, erased = false;
@@ -118,30 +142,40 @@ class ByteCache {
   absl::StatusOr<Handle> Land(const std::string& key, const Flight& flight,
                               absl::StatusOr<Loaded> loaded) {
     if (!loaded.ok()) return loaded.status();
-    if (flight.erased) return loaded->value;
-    const uint64_t charge = loaded->charge_bytes;
-    for (auto place = recency_.end(); !account_.Fits(charge) && place != recency_.begin();) {
+    const uint64_t bytes = loaded->charge_bytes;
+    DropUnpinned([&](const Entry&) { return !account_->Fits(bytes); });
+    absl::StatusOr<Reservation> charge = account_->Charge(bytes, key);
+    if (!charge.ok()) return charge.status();
+    auto charged =
+        std::make_shared<Charged>(std::move(loaded->value), account_, *std::move(charge));
+    Handle handle(charged, charged->value.get());
+    if (flight.erased) return handle;
+    recency_.push_front(key);
+    entries_.emplace(key, Entry{handle, bytes, recency_.begin()});
+    return handle;
+  }
+
+  // Drops entries that nobody uses, the least recently used first, as long as `wanted` says so.
+  template <typename Wanted>
+  void DropUnpinned(Wanted wanted) {
+    for (auto place = recency_.end(); place != recency_.begin();) {
       auto it = entries_.find(*--place);
       if (it->second.pinned()) continue;
+      if (!wanted(it->second)) return;
       ++place;  // Drop removes the element before it
       Drop(it);
       ++evictions_;
     }
-    if (absl::Status status = account_.Charge(charge, key); !status.ok()) return status;
-    recency_.push_front(key);
-    entries_.emplace(key, Entry{loaded->value, charge, recency_.begin()});
-    return loaded->value;
   }
 
   void Drop(typename Entries::iterator it) {
-    account_.Release(it->second.charge_bytes);
     recency_.erase(it->second.place);
     entries_.erase(it);
   }
 
   mutable std::mutex mutex_;
   std::condition_variable landed_;
-  ChargeAccount account_;
+  const std::shared_ptr<ChargeAccount> account_;
   Entries entries_;
   std::list<std::string> recency_;  // most recently used first
   std::map<std::string, std::shared_ptr<Flight>> loading_;

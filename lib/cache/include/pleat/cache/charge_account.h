@@ -4,26 +4,28 @@
 #include <cstdint>
 #include <string>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "pleat/base/memory_budget.h"
 
 namespace pleat {
 
-// Not thread-safe: its owner locks.
+// Thread-safe.
 class ChargeAccount {
  public:
-  explicit ChargeAccount(uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {}
+  // memory: what the cache shares with others; may be null.
+  explicit ChargeAccount(uint64_t capacity_bytes, MemoryBudget* memory = nullptr)
+      : budget_(capacity_bytes, "--cache-bytes", memory) {}
 
-  bool Fits(uint64_t bytes) const { return bytes <= capacity_bytes_ - used_bytes_; }
-  // kResourceExhausted, naming `key` and the numbers, when it does not fit.
-  absl::Status Charge(uint64_t bytes, const std::string& key);
-  void Release(uint64_t bytes) { used_bytes_ -= bytes; }
+  bool Fits(uint64_t bytes) const { return budget_.Fits(bytes); }
+  // kResourceExhausted, naming `key` and the numbers, when it does not fit. It asks nobody for
+  // memory: the cache itself is one of those who would be asked.
+  absl::StatusOr<Reservation> Charge(uint64_t bytes, const std::string& key);
 
-  uint64_t used_bytes() const { return used_bytes_; }
-  uint64_t capacity_bytes() const { return capacity_bytes_; }
+  uint64_t used_bytes() const { return budget_.used_bytes(); }
+  uint64_t capacity_bytes() const { return budget_.capacity_bytes(); }
 
  private:
-  uint64_t capacity_bytes_;
-  uint64_t used_bytes_ = 0;  // <= capacity_bytes_
+  MemoryBudget budget_;
 };
 
 }  // namespace pleat

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/character/skin_features.h"
 #include "pleat/character/train_options.h"
 #include "pleat/geometry/rbf_upsampling.h"
 #include "pleat/learner/detail_model.h"
@@ -72,7 +73,10 @@ class CharacterModel {
     Eigen::VectorXd feature_reference;      // PoseFeatures::reference()
     std::vector<int> control_vertices;      // C ascending vertex indices; all V at full resolution
     std::optional<RbfUpsampler> upsampler;  // V x C; absent at full resolution
-    // Turns a feature row (D_S) into the details of the control vertices (3C).
+    // What the regional learner knows beside the features of the pose.
+    std::optional<SkinFeatures> skin_features;
+    // Turns a feature row (of the pose, then of the skin) into the details of the control vertices
+    // (3C).
     std::shared_ptr<const DetailModel> detail_model;
     TrainingRecord record;
   };
@@ -92,30 +96,31 @@ class CharacterModel {
   const TrainingRecord& record() const { return parts_.record; }
   const DetailModel& detail_model() const { return *parts_.detail_model; }
   const PoseFeatures& features() const { return features_; }
+  const std::optional<SkinFeatures>& skin_features() const { return parts_.skin_features; }
   FrameRate frame_rate() const { return parts_.frame_rate; }
   int num_vertices() const { return parts_.topology.num_vertices(); }
 
   // The detail basis for all vertices (3V rows: x, y, z of vertex 0, then of vertex 1, and so on).
   // Below full resolution, the upsampling from the control vertices is folded into it once, so that
   // a query expands coefficients to all vertices in one step.
-  const DetailBasis& full_basis() const {
+  const PartedBasis& full_basis() const {
     return parts_.upsampler ? upsampled_basis_ : parts_.detail_model->basis();
   }
 
-  // The rig as a query reads it.
+  // The rig as a query reads it, with the vertices in the order of full_basis().
   const FrameSkinning& skinning() const { return skinning_; }
 
   // The resident size in bytes, which the cache is charged.
   size_t memory_bytes() const;
 
  private:
-  CharacterModel(Parts parts, PoseFeatures features, DetailBasis upsampled_basis);
+  CharacterModel(Parts parts, PoseFeatures features, PartedBasis upsampled_basis);
   CharacterModel(const CharacterModel&) = default;
 
   Parts parts_;
   PoseFeatures features_;
   FrameSkinning skinning_;
-  DetailBasis upsampled_basis_;  // empty at full resolution
+  PartedBasis upsampled_basis_;  // empty at full resolution
 };
 
 }  // namespace pleat

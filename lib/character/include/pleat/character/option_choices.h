@@ -16,8 +16,17 @@
 namespace pleat {
 
 // A learner as it is asked for. The enum `Learner` of a trained model is another one: it does not
-// know "auto", and both forms of the shared GPLVM are one value there.
-enum class LearnerChoice { kAuto, kRegional, kGp, kSgplvm, kBackConstrained, kRidge };
+// know "auto", and both forms of the regional learner, and of the shared GPLVM, are one value
+// there.
+enum class LearnerChoice {
+  kAuto,
+  kRegional,
+  kRegionalFast,
+  kGp,
+  kSgplvm,
+  kBackConstrained,
+  kRidge
+};
 
 // Which part of the rig is refined on the training frames.
 enum class RigRefinement { kNone, kJoints, kFull };

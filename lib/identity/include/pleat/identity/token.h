@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "absl/status/statusor.h"
+#include "pleat/base/project.h"
 #include "pleat/identity/scope.h"
 
 namespace pleat {
@@ -19,6 +20,7 @@ struct Token {
   std::string name;         // whose it is, for lists and logs; 1 to 64 bytes of UTF-8
   std::string secret_hash;  // hex SHA-256 of the 64 digits
   ScopeSet scopes;
+  std::string project = kDefaultProject;  // what it sees (pleat/base/project.h)
   int64_t created = 0;
   std::optional<int64_t> expires;  // the first second at which it is no longer good; none: never
   std::optional<int64_t> revoked;  // when that happened
@@ -34,9 +36,10 @@ struct NewToken {
   Token token;
   std::string text;  // shown to its owner now and never again
 };
-// Makes a token with a random secret. `name` must pass CheckTokenName.
+// Makes a token with a random secret. `name` must pass CheckTokenName, and `project`
+// CheckProjectName.
 NewToken MakeToken(std::string_view name, ScopeSet scopes, int64_t now,
-                   std::optional<int64_t> expires);
+                   std::optional<int64_t> expires, std::string_view project = kDefaultProject);
 
 struct TokenText {
   std::string id, secret;

@@ -31,18 +31,21 @@ using RunJob = std::function<absl::StatusOr<JobOutcome>(const JobInfo&, const Pr
 // Writes the job down, durably; called at every change of state.
 using SaveJob = std::function<absl::Status(const JobInfo& info, int attempts)>;
 // Removes what SaveJob wrote, durably.
-using EraseJob = std::function<absl::Status(const std::string& id)>;
-inline absl::Status EraseNothing(const std::string&) { return absl::OkStatus(); }
+using EraseJob = std::function<absl::Status(const JobInfo& info)>;
+inline absl::Status EraseNothing(const JobInfo&) { return absl::OkStatus(); }
 
 struct JobManagerOptions {
   int num_workers = 1;              // jobs that run at the same time
   int max_queued = 1000;            // jobs that wait; more are refused
   int max_queued_per_client = 250;  // the same for one client; jobs without a client share this too
+  int max_queued_per_project = 0;   // the same for all clients of a project; 0: no limit
   int max_attempts = 3;             // a job that took the server down this often fails
   double save_retry_seconds = 1;    // between two tries to save how a job ended
   // The threads of jobs run in the processor time that nothing else wants, so that live sessions in
   // the same process keep their pace.
   bool in_idle_time = false;
+  // Hears how long a job was in a stage, when it leaves it, from any thread. May be empty.
+  std::function<void(const std::string& stage, double seconds)> on_stage{};
   MonotonicClock clock = SteadySeconds;
   WallClock wall_clock = SystemTime;  // for the times that jobs keep
 };
@@ -75,9 +78,10 @@ class JobManager {
   void Restore(std::vector<StoredJob> jobs);
   void Start();
 
-  // Gives the job an id and queues it. A draft with the request_id of an earlier job makes none:
-  // the earlier one is returned, or kAlreadyExists when it works on something else.
-  // kResourceExhausted when too many wait, kUnavailable after Shutdown, or the error of saving it.
+  // Gives the job an id and queues it. A draft with the request_id of an earlier job of the same
+  // project makes none: the earlier one is returned, or kAlreadyExists when it works on something
+  // else. kResourceExhausted when too many wait, kUnavailable after Shutdown, or the error of
+  // saving it.
   absl::StatusOr<JobInfo> Create(JobInfo draft);
   absl::StatusOr<JobInfo> Get(const std::string& id) const;  // or kNotFound
   std::vector<JobInfo> List() const;                         // oldest first
@@ -127,6 +131,8 @@ class JobManager {
   std::condition_variable stopped_;  // shutting_down_
   // Returns the job of `draft.request_id`, null when there is none. Call with mutex_ held.
   absl::StatusOr<std::shared_ptr<JobStateMachine>> FindRequest(const JobInfo& draft) const;
+  // Why the queue has no place for the job. Call with mutex_ held.
+  absl::Status CheckQueue(const JobInfo& draft) const;
   // Makes the job known, and lets it wait if it is queued. Call with mutex_ held.
   void Register(std::shared_ptr<JobStateMachine> job);
 
@@ -135,7 +141,7 @@ class JobManager {
     uint64_t number = 0;  // in the order of creation
   };
   std::map<std::string, Registered> jobs_;             // by id; guarded by mutex_
-  std::map<std::string, std::string> ids_by_request_;  // guarded by mutex_
+  std::map<std::string, std::string> ids_by_request_;  // by RequestKey; guarded by mutex_
   std::map<uint64_t, std::string> order_;              // ids by number; guarded by mutex_
   uint64_t next_number_ = 0;                           // guarded by mutex_
   JobQueue queue_;                                     // guarded by mutex_

@@ -27,6 +27,7 @@ class JobQueue {
   bool empty() const { return waiting_.empty(); }
   size_t size() const { return waiting_.size(); }
   int NumOf(const std::string& client) const;
+  int NumOfProject(const std::string& project) const;
   std::vector<Job> jobs() const;  // in the order in which they came
 
   // The queue must not be empty.

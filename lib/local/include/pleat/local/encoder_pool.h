@@ -9,6 +9,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "pleat/base/memory_budget.h"
 #include "pleat/character/character_model.h"
 #include "pleat/stream/frame_encoder.h"
 
@@ -19,13 +20,16 @@ namespace pleat {
 // keep its model in memory. Thread-safe. The pool must outlive what it lends.
 class EncoderPool {
  public:
-  explicit EncoderPool(uint64_t capacity_bytes) : capacity_bytes_(capacity_bytes) {}
+  // capacity_bytes: of the encoders that nobody uses. memory: of these and of the sessions that use
+  // the others, shared with whoever else needs memory; null: not counted. It must outlive the pool.
+  explicit EncoderPool(uint64_t capacity_bytes, MemoryBudget* memory = nullptr)
+      : capacity_bytes_(capacity_bytes), memory_(memory) {}
 
   // An encoder that is lent until the lease is destroyed. Its first frame is a key frame. A lease
   // serves one thread.
   class Lease {
    public:
-    Lease(EncoderPool* pool, std::string key, FrameEncoder encoder);
+    Lease(EncoderPool* pool, std::string key, FrameEncoder encoder, Reservation memory);
     ~Lease();
     Lease(const Lease&) = delete;
     Lease& operator=(const Lease&) = delete;
@@ -36,12 +40,14 @@ class EncoderPool {
    private:
     EncoderPool* pool_;  // null: the encoder goes back to no pool
     std::string key_;
+    Reservation memory_;  // of the encoder and of the session that uses it; goes after it
     FrameEncoder encoder_;
   };
 
   // Lends an encoder for `model`, whose content id is `model_id`. With kControlMesh, the frames
   // that it encodes hold the control vertices alone. Returns null for kParameters, which need no
-  // encoder, and otherwise the errors of FrameEncoder::Create.
+  // encoder, and otherwise the errors of FrameEncoder::Create. kResourceExhausted when there is no
+  // memory for the encoder and the session around it.
   absl::StatusOr<std::unique_ptr<Lease>> Take(const std::string& model_id,
                                               const CharacterModel& model,
                                               const FrameEncoderOptions& options);
@@ -50,17 +56,23 @@ class EncoderPool {
   static absl::StatusOr<std::unique_ptr<Lease>> Make(const CharacterModel& model,
                                                      const FrameEncoderOptions& options);
 
+  // Drops encoders that nobody uses until `bytes` are free or none is left.
+  void Reclaim(uint64_t bytes);
+
   uint64_t num_made() const;  // encoders that Take could not find ready
   uint64_t used_bytes() const;
 
  private:
   struct Entry {
     std::string key;
+    Reservation memory;  // goes after the encoder
     FrameEncoder encoder;
   };
-  void GiveBack(std::string key, FrameEncoder encoder);
+  void GiveBack(std::string key, FrameEncoder encoder, Reservation memory);
+  void DropOldest();  // call with mutex_ held
 
   const uint64_t capacity_bytes_;
+  MemoryBudget* const memory_;
   mutable std::mutex mutex_;
   std::list<Entry> entries_;  // the one given back last is first; guarded by mutex_
   uint64_t used_bytes_ = 0;   // guarded by mutex_

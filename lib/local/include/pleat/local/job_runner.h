@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "pleat/base/memory_budget.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/train_character.h"
 #include "pleat/formats/rig_file.h"
@@ -26,12 +27,20 @@ class JobRunner {
  public:
   // train: how a job without a rig of its own is trained; tests put their own function here.
   // num_threads: the threads of one job, 0 = one per core.
-  JobRunner(StoredFiles* files, LocalSequences* sequences, TrainFunction train, int num_threads)
-      : files_(files), sequences_(sequences), train_(std::move(train)), num_threads_(num_threads) {}
+  // memory: of all jobs together; a job waits until there is enough for it. Null: not counted.
+  JobRunner(StoredFiles* files, LocalSequences* sequences, TrainFunction train, int num_threads,
+            MemoryBudget* memory = nullptr)
+      : files_(files),
+        sequences_(sequences),
+        train_(std::move(train)),
+        num_threads_(num_threads),
+        memory_(memory) {}
 
   // Does the work of the job and stores its result. Returns the errors of reading, training or
   // compressing, and kCancelled when `progress` was cancelled.
   absl::StatusOr<JobOutcome> Run(const JobInfo& job, const Progress& progress) const;
+  // kResourceExhausted when a job on these sequences needs more memory than all jobs may ever have.
+  absl::Status CheckMemory(const JobOptions& options, const std::vector<SequenceInfo>& clips) const;
   // Reads a user's rig (JSON) under the limits of the service.
   absl::StatusOr<RigFile> DecodeUserRig(const std::string& text) const;
 
@@ -39,6 +48,8 @@ class JobRunner {
   absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainModel(
       const std::vector<MeshSequence>& clips, const std::string& rig_id,
       const TrainOptions& options, const Progress& progress) const;
+  // Waits for the memory of the job.
+  absl::StatusOr<Reservation> TakeMemory(const JobInfo& job, const Progress& progress) const;
   absl::StatusOr<JobOutcome> Train(const JobInfo& job, const TrainOptions& options,
                                    const Progress& progress) const;
   absl::StatusOr<JobOutcome> Compress(const JobInfo& job, CompressOptions options,
@@ -48,6 +59,7 @@ class JobRunner {
   LocalSequences* const sequences_;
   const TrainFunction train_;
   const int num_threads_;
+  MemoryBudget* const memory_;
 };
 
 }  // namespace pleat

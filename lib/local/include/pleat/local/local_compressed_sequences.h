@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "pleat/base/memory_budget.h"
+#include "pleat/local/frame_quota.h"
 #include "pleat/local/stored_files.h"
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "pleat/service/compressed_sequence_service.h"
 
 namespace pleat {
 
-// Thread-safe. `files` must outlive it, and it must outlive the sessions that it opens.
+// Thread-safe. `files` must outlive it.
 class LocalCompressedSequences final : public CompressedSequenceService {
  public:
-  // decode_bytes: the memory that all decoders together may take.
-  LocalCompressedSequences(StoredFiles* files, uint64_t decode_bytes)
-      : files_(files),
-        decode_bytes_(decode_bytes),
-        decode_memory_(decode_bytes, "--decode-bytes") {}
+  // memory: of all decoders together; it must outlive the sessions. frames: what decoding is
+  // charged to; null: nothing.
+  LocalCompressedSequences(StoredFiles* files, MemoryBudget* memory, FrameQuota* frames = nullptr)
+      : files_(files), memory_(memory), frames_(frames) {}
 
   using CompressedSequenceService::BeginUpload;
   using CompressedSequenceService::Upload;
@@ -40,15 +40,15 @@ class LocalCompressedSequences final : public CompressedSequenceService {
                                                             FrameRange range) override;
 
   // The memory that is reserved for decoders now.
-  uint64_t decoder_bytes() const { return decode_memory_.used_bytes(); }
+  uint64_t decoder_bytes() const { return memory_->used_bytes(); }
 
  private:
   absl::StatusOr<SequenceDecoder> OpenDecoder(std::string bytes) const;
   absl::StatusOr<CompressedSequenceInfo> FinishUpload(pleat::Upload* upload, absl::Duration ttl);
 
   StoredFiles* const files_;
-  const uint64_t decode_bytes_;
-  MemoryBudget decode_memory_;
+  MemoryBudget* const memory_;
+  FrameQuota* const frames_;
 };
 
 }  // namespace pleat

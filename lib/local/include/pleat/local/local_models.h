@@ -12,10 +12,12 @@
 
 namespace pleat {
 
-// Thread-safe. `files` must outlive it.
+using ModelCache = ByteCache<CharacterModel>;
+
+// Thread-safe. `files` and `cache` must outlive it.
 class LocalModels final : public ModelService {
  public:
-  LocalModels(StoredFiles* files, uint64_t cache_bytes) : files_(files), cache_(cache_bytes) {}
+  LocalModels(StoredFiles* files, ModelCache* cache) : files_(files), cache_(cache) {}
 
   absl::StatusOr<ModelInfo> Get(const std::string& id) override;
   absl::StatusOr<Page<ModelInfo>> ListPage(const PageRequest& request) override;
@@ -29,12 +31,12 @@ class LocalModels final : public ModelService {
   // handle lives. kNotFound when there is none, kDataLoss when its file is damaged.
   absl::StatusOr<std::shared_ptr<const CharacterModel>> Acquire(const std::string& id);
   // Lets go of a model whose entry was deleted elsewhere; who uses it keeps it.
-  void Forget(const std::string& id) { cache_.Erase(id); }
-  ByteCacheStats cache_stats() const { return cache_.stats(); }
+  void Forget(const std::string& id) { cache_->Erase(id); }
+  ByteCacheStats cache_stats() const { return cache_->stats(); }
 
  private:
   StoredFiles* const files_;
-  ByteCache<CharacterModel> cache_;
+  ModelCache* const cache_;
 };
 
 }  // namespace pleat

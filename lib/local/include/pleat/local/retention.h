@@ -8,18 +8,21 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "pleat/base/project.h"
 #include "pleat/local/stored_files.h"
+#include "pleat/service/job_service.h"
 
 namespace pleat {
 
 // Entries go when their own time to live is over, whatever the rules.
 struct RetentionRules {
-  int64_t max_ended_jobs = 0;  // the newest that stay; 0: all
+  int64_t max_ended_jobs = 0;  // the newest that stay of each project; 0: all
   // How long a job stays after its end. Jobs of older versions do not know when they ended; age
   // does not remove them.
   absl::Duration max_job_age = absl::InfiniteDuration();
@@ -31,6 +34,7 @@ struct EndedJob {
   std::string id{};
   std::string name{};                 // of its result
   std::optional<absl::Time> ended{};  // none: not known, so it counts as older than all others
+  std::string project = kDefaultProject;
 };
 
 struct JobToRemove {
@@ -42,19 +46,23 @@ struct JobToRemove {
 std::vector<JobToRemove> ChooseJobsToRemove(std::vector<EndedJob> jobs, const RetentionRules& rules,
                                             absl::Time now);
 
-// What retention has to do with jobs.
+using SequenceOfProject = std::pair<std::string, std::string>;  // project and id
+// Adds the sequences that a job works on, unless it has ended.
+void AddSequencesInUse(const JobInfo& job, std::set<SequenceOfProject>* in_use);
+
+// What retention has to do with the jobs of all projects.
 struct JobsOfRetention {
   std::function<absl::StatusOr<std::vector<EndedJob>>()> ended;  // in the order of their creation
-  std::function<absl::Status(const std::string& id)> remove;
-  // The ids of the sequences that jobs which have not ended work on: these stay meanwhile.
-  std::function<absl::StatusOr<std::set<std::string>>()> sequences_in_use;
+  std::function<absl::Status(const EndedJob& job)> remove;
+  // The sequences that jobs which have not ended work on: these stay meanwhile.
+  std::function<absl::StatusOr<std::set<SequenceOfProject>>()> sequences_in_use;
 };
 
 // The jobs in the rows of a store whose jobs nobody runs at the moment. `files` must outlive it.
 JobsOfRetention JobsInRows(StoredFiles* files);
 
 struct RetentionTarget {
-  StoredFiles* files = nullptr;
+  StoredFiles* files = nullptr;  // of any project: retention is about all of the store behind them
   JobsOfRetention jobs{};
   std::function<void(const std::string& id)> on_model_removed{};  // may be empty
   // Receives one sentence about each thing that was removed, with its name. May be empty.

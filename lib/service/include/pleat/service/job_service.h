@@ -12,6 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "pleat/base/project.h"
 #include "pleat/character/train_character.h"
 #include "pleat/sequence_codec/compress_sequence.h"
 #include "pleat/service/entry_life.h"
@@ -60,6 +61,7 @@ struct JobInfo {
   std::string rig_id;                        // hex SHA-256 of TrainingRequest::rig, or empty
   std::string request_id;                    // of the call that made it; services do not show it
   std::string client;                        // the same holds for this
+  std::string project = kDefaultProject;     // and for this: who may see the job
   absl::Duration result_ttl = kKeepForEver;  // from the moment when the result is stored
   std::string stage;                // of the running computation: "rig", "fit", "encode", ...
   double fraction = 0;              // 0..1

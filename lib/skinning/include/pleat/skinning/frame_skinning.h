@@ -33,7 +33,9 @@ struct BoneMotions {
 class FrameSkinning {
  public:
   FrameSkinning() = default;
-  explicit FrameSkinning(const Rig& rig);
+  // lane_vertices: which vertex every lane of every block holds, each vertex once, -1 where a block
+  // is only filled up; empty when vertices follow each other in their order.
+  explicit FrameSkinning(const Rig& rig, std::vector<int> lane_vertices = {});
 
   int num_blocks() const { return static_cast<int>(blocks_.size()); }
   size_t memory_bytes() const;
@@ -42,8 +44,8 @@ class FrameSkinning {
   void SetMotions(const BoneTransforms& transforms, const std::vector<Eigen::Matrix3d>& axes,
                   BoneMotions* motions) const;
 
-  // Skins the vertices of the blocks first_block to first_block + num_blocks - 1 (block i: vertices
-  // 16 i to 16 i + 15, fewer in the last):
+  // Skins the vertices of the blocks first_block to first_block + num_blocks - 1 (block i: those of
+  // the lanes 16 i to 16 i + 15):
   //
   //   position_v = sum_b w_vb (linear_b rest_v + translation_b) + R(q_v) detail_v
   //
@@ -56,7 +58,7 @@ class FrameSkinning {
   void SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions, int first_block,
                       int num_blocks, const float* details, Eigen::Matrix3Xf* positions) const;
 
-  // The data of 16 vertices. In the last block the last vertex fills the lanes left over.
+  // The data of 16 vertices. The last one of a block fills the lanes left over.
   struct alignas(64) Block {
     float rest[3 * kSkinningLanes];  // x of all, y, z; meters
     float weights[kMaxInfluences * kSkinningLanes];
@@ -64,8 +66,12 @@ class FrameSkinning {
   };
 
  private:
+  // Copies the lanes of a block to their vertices.
+  void Scatter(int block, const float* lanes, Eigen::Matrix3Xf* positions) const;
+
   int num_vertices_ = 0;
-  std::vector<int> parents_;  // J
+  std::vector<int> lane_vertices_;  // empty: in their order
+  std::vector<int> parents_;        // J
   // A bone that moves a vertex together with its strongest bone; each pair is listed once.
   struct BonePair {
     int strongest, other;

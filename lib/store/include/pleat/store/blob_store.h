@@ -46,8 +46,10 @@ class BlobStore {
   static BlobStore OpenReadOnly(std::string folder);
 
   // Writes and syncs `bytes` under a temporary name, unless the content is stored already and is
-  // intact. This is the slow half of storing a file: call it without holding a lock.
-  absl::StatusOr<StagedFile> Stage(std::string_view bytes);
+  // intact and may be kept. This is the slow half of storing a file: call it without holding a
+  // lock.
+  enum class IfThere { kKeep, kReplace };
+  absl::StatusOr<StagedFile> Stage(std::string_view bytes, IfThere if_there = IfThere::kKeep);
   // Gives the file its name, durably. kAborted when it was already stored but has been deleted
   // since; stage it again.
   absl::Status Publish(StagedFile file);

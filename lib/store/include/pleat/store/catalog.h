@@ -6,10 +6,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/base/project.h"
 #include "pleat/store/sync_hook.h"
 
 namespace pleat {
@@ -39,13 +41,28 @@ struct CatalogEntry {
   int64_t expires_unix_ms = 0;  // when retention may remove it; 0: never
   bool pinned = false;          // retention never removes it; Put neither sets nor clears this
   int64_t position = 0;         // in the order of all entries, from 1; the catalog sets it
+  std::string project = kDefaultProject;  // who sees it
+  uint64_t file_bytes = 0;                // of its file; jobs have none
+};
+
+// What one project may see of a kind: an entry is found by project, kind and id, so the same
+// content in two projects is two entries over one file.
+struct ProjectKind {
+  EntryKind kind;
+  std::string project = kDefaultProject;
+  // Implicit: a kind alone is that of the default project.
+  ProjectKind(EntryKind of_kind) : kind(of_kind) {}  // NOLINT(google-explicit-constructor)
+  ProjectKind(EntryKind of_kind, std::string of_project)
+      : kind(of_kind), project(std::move(of_project)) {}
 };
 
 // Invariants:
 //  - The file is a SQLite database in write-ahead-log mode; its version is PRAGMA user_version. The
 //    rows of the table `entries` are what exists; `record` is opaque here, records.h says what it
 //    holds. `properties` holds the id of the store, `removals` the files that are to be removed.
-//  - An entry is (kind, id). Its position, the order in which entries were added, never changes.
+//  - An entry is (project, kind, id). Its position, the order in which entries were added, never
+//    changes.
+//  - `projects` holds the sum of the file sizes of each project, in the same commit as the entries.
 //  - A call that changes something returns after its commit has been synced (synchronous=FULL):
 //    what was reported survives a power cut. A crash before that loses the whole change, never a
 //    part.
@@ -74,25 +91,37 @@ class Catalog {
   // Adds the entry or replaces the one with the same id. That one keeps its place in the order, its
   // time of creation, and the longer of the two lives.
   absl::Status Put(EntryKind kind, const CatalogEntry& entry);
-  absl::StatusOr<CatalogEntry> Get(EntryKind kind, const std::string& id);  // or kNotFound
-  absl::StatusOr<std::vector<CatalogEntry>> List(EntryKind kind);           // oldest first
+  // kNotFound, in the same words, for an id that nobody has and for one of another project.
+  absl::StatusOr<CatalogEntry> Get(const ProjectKind& kind, const std::string& id);
+  // The oldest entry of this kind and id in any project; kNotFound.
+  absl::StatusOr<CatalogEntry> GetInAnyProject(EntryKind kind, const std::string& id);
+  absl::StatusOr<std::vector<CatalogEntry>> List(EntryKind kind);  // of all projects, oldest first
   // The `max_entries` oldest entries behind `after_position`, which 0 puts before all. The cost
   // depends on their number alone, and not on what else the catalog holds.
-  absl::StatusOr<std::vector<CatalogEntry>> ListPage(EntryKind kind, int64_t after_position,
-                                                     int max_entries);
+  absl::StatusOr<std::vector<CatalogEntry>> ListPage(const ProjectKind& kind,
+                                                     int64_t after_position, int max_entries);
+  // The file sizes of a project together, at constant cost.
+  absl::StatusOr<uint64_t> ProjectBytes(const std::string& project);
+  // Notes the size of a file whose entries do not know it: rows of older versions.
+  absl::Status NoteFileSize(const std::string& id, uint64_t file_bytes);
+  // The ids of files whose size is not noted.
+  absl::StatusOr<std::vector<std::string>> FilesWithoutSize();
   // The steps that SQLite's machine has taken for all pages so far.
   uint64_t num_page_steps() const { return num_page_steps_.load(std::memory_order_relaxed); }
   // kNotFound when there is none. In the same commit the file of the entry becomes a pending
   // removal.
-  absl::Status Delete(EntryKind kind, const std::string& id);
+  absl::Status Delete(const ProjectKind& kind, const std::string& id);
+  // Deletes every entry that names the file `id`; OK when there is none.
+  absl::Status DeleteInAllProjects(const std::string& id);
 
   // The three below are kNotFound when there is no such entry.
-  absl::Status SetPinned(EntryKind kind, const std::string& id, bool pinned);
+  absl::Status SetPinned(const ProjectKind& kind, const std::string& id, bool pinned);
   // The longer of the two lives counts. expires_unix_ms: 0 = never.
-  absl::Status Prolong(EntryKind kind, const std::string& id, int64_t expires_unix_ms);
+  absl::Status Prolong(const ProjectKind& kind, const std::string& id, int64_t expires_unix_ms);
   // Deletes the entry if it is not pinned and its life was over at `now_unix_ms`.
-  absl::Status DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms);
-  // The entries that DeleteExpired would delete, oldest first. The cost depends on their number.
+  absl::Status DeleteExpired(const ProjectKind& kind, const std::string& id, int64_t now_unix_ms);
+  // The entries of all projects that DeleteExpired would delete, oldest first. The cost depends on
+  // their number.
   absl::StatusOr<std::vector<CatalogEntry>> ListExpired(EntryKind kind, int64_t now_unix_ms);
 
   // The content ids that the rows name, sorted.
@@ -109,19 +138,23 @@ class Catalog {
   absl::StatusOr<std::string> StoreId();
   absl::Status SetStoreId(const std::string& id);
 
+  // A random text that only this catalog knows, made by its first use of this version.
+  absl::StatusOr<std::string> Secret();
+
   // Writes what the catalog holds at this moment to a new database at `path`.
   absl::Status CopyTo(const std::string& path);
 
  private:
   Catalog();
-  absl::Status Upgrade();  // brings the file to the version of this program
+  absl::Status Upgrade(int version);  // brings the file to the version of this program
   // Looks for damage and returns the version, 0 for an empty file.
   absl::StatusOr<int> CheckFile(const std::string& path);
   absl::StatusOr<std::vector<std::string>> Ids(const char* sql);
   // Selects the rows of entries that `conditions`, the rest of the statement, is about.
   std::string Select(const char* conditions) const;
-  // Runs a statement that changes the entry ?1, ?2; kNotFound when it changes none. `value`: ?3.
-  absl::Status Change(const char* sql, EntryKind kind, const std::string& id,
+  // Runs a statement that changes the entry with `?1 = kind AND ?2 = id AND ?4 = project`;
+  // kNotFound when it changes none. `value`: ?3.
+  absl::Status Change(const char* sql, const ProjectKind& kind, const std::string& id,
                       std::optional<int64_t> value = std::nullopt);
 
   std::unique_ptr<SyncHookVfs> vfs_;  // null without a hook; outlives the connections
@@ -130,6 +163,7 @@ class Catalog {
   // What the file has that older versions had not; false only when it was opened read-only.
   bool has_properties_ = true;
   bool has_lives_ = true;
+  bool has_projects_ = true;
   std::atomic<uint64_t> num_page_steps_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -72,15 +73,18 @@ class Store {
   Store& operator=(const Store&) = delete;
 
   // Stores a file together with its row, durably: `bytes`, whose SHA-256 is entry.id (else
-  // kInvalidArgument). An entry that is there already gets the new record.
+  // kInvalidArgument). An entry that is there already gets the new record. The file is written even
+  // if another project has it: how long that takes must not tell.
   absl::Status Add(EntryKind kind, const CatalogEntry& entry, std::string_view bytes);
   // The same with the content of a complete upload (Upload::ReadComplete), which moves.
   absl::Status Add(EntryKind kind, const CatalogEntry& entry, Upload* upload);
+  // Makes an entry of a file that is stored for another project; kNotFound when it is not.
+  absl::Status AddStored(EntryKind kind, const CatalogEntry& entry);
   // Removes row and file; kNotFound when there is no such row. The file stays while a row of
-  // another kind names it.
-  absl::Status Delete(EntryKind kind, const std::string& id);
+  // another kind or project names it.
+  absl::Status Delete(const ProjectKind& kind, const std::string& id);
   // The same, if the entry is not pinned and its life was over at `now_unix_ms`; else kNotFound.
-  absl::Status DeleteExpired(EntryKind kind, const std::string& id, int64_t now_unix_ms);
+  absl::Status DeleteExpired(const ProjectKind& kind, const std::string& id, int64_t now_unix_ms);
 
   // Read returns the content of a file, and Verify reads it and says whether it is intact.
   // kNotFound when it is not there, kDataLoss when it has changed: then it is in quarantine
@@ -97,7 +101,12 @@ class Store {
 
   BlobStore& blobs() { return *blobs_; }
   Catalog& catalog() { return *catalog_; }
-  UploadArea& uploads() { return *uploads_; }
+  // What arrives for a project, apart from what arrives for others: the same content may be on its
+  // way for two of them, and neither notices the other. The error of making its folder.
+  absl::StatusOr<UploadArea*> uploads(const std::string& project);
+  UploadArea& uploads() { return *uploads_; }  // of the default project
+  // The projects that something has arrived for.
+  std::vector<std::string> UploadProjects() const;
   const Quarantine& quarantine() const { return quarantine_; }
 
   // Ids of entries whose file was gone when the store was opened.
@@ -107,6 +116,7 @@ class Store {
   class IdLock;
   explicit Store(const StoreOptions& options);
   absl::Status Reconcile(const std::string& data_dir);
+  absl::Status NoteFileSizes();
   absl::Status SettleIdentity(const std::string& data_dir, size_t num_named, size_t num_files);
   // Call with the IdLock held, or before anybody else can use the store.
   absl::Status RemoveUnnamed(const std::string& id);
@@ -118,7 +128,11 @@ class Store {
   std::unique_ptr<FolderLock> lock_;
   std::unique_ptr<BlobStore> blobs_;
   std::unique_ptr<Catalog> catalog_;
+  const SyncHook before_sync_;
   std::unique_ptr<UploadArea> uploads_;
+  std::mutex projects_mutex_;
+  std::map<std::string, std::unique_ptr<UploadArea>>
+      project_uploads_;  // guarded by projects_mutex_
   std::vector<std::string> missing_files_;
 
   std::mutex ids_mutex_;            // never held during a sync

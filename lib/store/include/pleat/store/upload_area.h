@@ -80,6 +80,9 @@ class UploadArea {
   absl::StatusOr<std::unique_ptr<Upload>> Begin(const std::string& id, uint64_t size_bytes,
                                                 uint64_t offset_bytes, SpaceReservation room = {});
 
+  // All bytes that have arrived for uploads that have not ended.
+  uint64_t TotalBytes() const;
+
   // Forgets what has arrived of an upload. kNotFound when nothing has, kAborted while a writer
   // holds it.
   absl::Status Remove(const std::string& id);

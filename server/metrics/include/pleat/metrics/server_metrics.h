@@ -26,6 +26,13 @@ class ServerMetrics {
   void CallStarted(const std::string& method);
   void CallEnded(const std::string& method, const std::string& status, double seconds);
 
+  // A frame was evaluated ("query"), encoded ("encode"), or is on its way to the client ("send"),
+  // and that took so long. step: one of these three.
+  void FrameStep(const std::string& step, double seconds);
+  // A job has been in `stage` for so long. stage: a name that the program knows, never one from
+  // outside.
+  void JobStage(const std::string& stage, double seconds);
+
   // A gauge whose value `read` returns, from any thread. One name may come with several labels; the
   // help of the first counts.
   void AddGauge(const std::string& name, const std::string& help, const Labels& labels,

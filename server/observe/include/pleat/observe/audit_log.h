@@ -19,6 +19,7 @@ struct AuditEntry {
   std::string token_id{}, token_name{};
   std::vector<std::string> ids{};  // what the request names
   std::string trace_id{};          // W3C; empty: none
+  std::string request_id{};        // that the lines of the log about the call name
   std::string status{};            // "OK", "NOT_FOUND", ...
   double seconds = 0;              // from the begin of the call to its end
 };

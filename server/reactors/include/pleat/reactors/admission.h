@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "pleat/identity/scope.h"
 #include "pleat/reactors/call_reactor.h"
 #include "pleat/reactors/grpc_status.h"
@@ -31,14 +31,16 @@ const RpcRule* FindRpcRule(std::string_view rpc);
 // The text of the token that a call shows, without "Bearer "; empty when it shows none.
 std::string ShownToken(const grpc::ServerContextBase& call);
 
-// OK when the call may go on. kUnauthenticated without a good token where tokens are required, and
-// kPermissionDenied when the token does not have the scope of the RPC.
-absl::Status Admit(const HandlerContext& context, const grpc::ServerContextBase& call,
-                   const char* rpc);
+// Returns the context of the caller's project when the call may go on: that of its token, or the
+// default project where no tokens are required. kUnauthenticated without a good token where they
+// are, and kPermissionDenied when the token does not have the scope of the RPC. This is the only
+// place that decides what a call can see.
+absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
+                                      const char* rpc);
 
 // The same for a stream. kResourceExhausted when its client has too many others.
-absl::Status AdmitStream(HandlerContext* context, const grpc::ServerContextBase& call,
-                         const char* rpc);
+absl::StatusOr<HandlerContext*> AdmitStream(HandlerContext* context,
+                                            const grpc::ServerContextBase& call, const char* rpc);
 
 // A stream that ends before it begins.
 template <typename GrpcReactor>
@@ -56,13 +58,16 @@ class RefusedStream final : public CallReactor<GrpcReactor> {
   const absl::Status status_;
 };
 
-// Starts the stream with `start`, or one that says why it is refused.
+// Starts the stream with `start`, which gets the context of the caller's project, or one that says
+// why it is refused.
 template <typename GrpcReactor, typename Start>
 GrpcReactor* StartAdmitted(HandlerContext* context, const grpc::ServerContextBase& call,
                            const char* rpc, Start start) {
-  absl::Status status = AdmitStream(context, call, rpc);
-  if (status.ok()) return start();
-  return StartReactor<RefusedStream<GrpcReactor>>(context, rpc, std::move(status));
+  const std::string request_id = context->calls->running_calls.RequestIdOf(call);
+  const RequestScope scope(request_id);
+  absl::StatusOr<HandlerContext*> admitted = AdmitStream(context, call, rpc);
+  if (admitted.ok()) return start(*admitted);
+  return StartReactor<RefusedStream<GrpcReactor>>(context, rpc, std::move(admitted).status());
 }
 
 }  // namespace pleat

@@ -33,9 +33,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "pleat/base/executor.h"
+#include "pleat/observe/request_scope.h"
 #include "pleat/reactors/handler_context.h"
 
 namespace pleat {
@@ -49,15 +51,26 @@ class CallReactor : public GrpcReactor,
   void OnDone() final { self_.reset(); }
 
  protected:
-  explicit CallReactor(HandlerContext* context) : open_call_(&context->open_calls) {}
+  // A reactor is made inside the scope of its request and keeps the id for all that it does.
+  explicit CallReactor(HandlerContext* context)
+      : open_call_(&context->calls->open_calls), request_id_(CurrentRequestId()) {}
+
+  // For RequestScope, around what does not run by Post.
+  const std::string& request_id() const { return request_id_; }
 
   // Keeps the reactor alive. Call it where it still is: before Finish.
   std::shared_ptr<const void> Hold() { return this->shared_from_this(); }
 
   // Runs `task`, which must not throw, on `executor`; the reactor lives until it has run.
   template <typename Task>
-  void Post(Executor* executor, Task task, uint64_t flow = 0) {
-    executor->Post([hold = Hold(), task = std::move(task)]() mutable { task(); }, flow);
+  void Post(Executor* executor, Task task, uint64_t flow = 0,
+            TurnKind kind = TurnKind::kInteractive) {
+    executor->Post(
+        [this, hold = Hold(), task = std::move(task)]() mutable {
+          const RequestScope scope(request_id_);
+          task();
+        },
+        flow, kind);
   }
 
  private:
@@ -65,6 +78,7 @@ class CallReactor : public GrpcReactor,
   friend Reactor* StartReactor(Arguments&&... arguments);
 
   const OpenCalls::Entry open_call_;
+  const std::string request_id_;       // empty: the call has none
   std::shared_ptr<CallReactor> self_;  // gRPC's share
 };
 

@@ -8,7 +8,7 @@
 namespace pleat {
 
 // The codes are the same numbers. The message is cut to what fits into a trailer and is valid
-// UTF-8.
+// UTF-8. A refusal for a limit carries google.rpc.QuotaFailure and, when waiting helps, RetryInfo.
 grpc::Status ToGrpcStatus(const absl::Status& status);
 
 }  // namespace pleat

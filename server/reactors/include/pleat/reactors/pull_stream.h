@@ -13,8 +13,13 @@
 #include "pleat/reactors/grpc_status.h"
 #include "pleat/reactors/handler_context.h"
 #include "pleat/reactors/run_unary.h"
+#include "pleat/service/limits.h"
 
 namespace pleat {
+
+// The message that is being made and what of it is on its way: pieces of files. Frames are counted
+// by the sessions that make them.
+inline constexpr uint64_t kPullStreamBytes = 2 * kDownloadPieceBytes;
 
 // Sequential (call_reactor.h): until the call is finished, either a Produce task or a write is
 // under way. So nothing here needs a lock, memory is bounded by one message, and a slow client only
@@ -25,12 +30,15 @@ class PullStream final : public CallReactor<grpc::ServerWriteReactor<Response>> 
   // Fills the next message. True: there is one; false: the stream ends. Runs on `executor`.
   using Next = std::function<absl::StatusOr<bool>(Response*)>;
 
-  PullStream(HandlerContext* context, Executor* executor, const char* rpc, Next next)
+  // kind: of the turns in which the messages are made.
+  PullStream(HandlerContext* context, Executor* executor, const char* rpc, Next next,
+             TurnKind kind = TurnKind::kInteractive)
       : CallReactor<grpc::ServerWriteReactor<Response>>(context),
-        slot_(context),
+        slot_(context, kStreamBytes + kPullStreamBytes),
         executor_(executor),
         rpc_(rpc),
-        next_(std::move(next)) {}
+        next_(std::move(next)),
+        kind_(kind) {}
 
   void Start() { Schedule(); }
   void OnWriteDone(bool ok) override {
@@ -41,7 +49,8 @@ class PullStream final : public CallReactor<grpc::ServerWriteReactor<Response>> 
 
  private:
   void Schedule() {
-    this->Post(executor_, [this] { Produce(); });
+    this->Post(
+        executor_, [this] { Produce(); }, /*flow=*/0, kind_);
   }
 
   // Starts the next write or ends the call, as its last act.
@@ -75,6 +84,7 @@ class PullStream final : public CallReactor<grpc::ServerWriteReactor<Response>> 
   Executor* executor_;
   const char* rpc_;
   Next next_;
+  const TurnKind kind_;
   Response message_;
   bool started_ = false;
   std::atomic<bool> cancelled_ = false;

@@ -27,6 +27,7 @@ class RunningCalls {
   struct Call {
     std::recursive_mutex mutex;
     const grpc::ServerContextBase* context = nullptr;  // guarded by mutex; null after the end
+    std::string request_id{};                          // never changes
   };
   using Calls = std::multimap<std::string, std::shared_ptr<Call>>;  // by token id
 
@@ -34,7 +35,7 @@ class RunningCalls {
   // Keeps a call in the list as long as it lives, which must be no longer than the call.
   class Entry {
    public:
-    Entry(RunningCalls* calls, const CallOrigin& origin, bool is_stream,
+    Entry(RunningCalls* calls, const CallOrigin& origin, std::string request_id, bool is_stream,
           const grpc::ServerContextBase* context);
     ~Entry();
     Entry(const Entry&) = delete;
@@ -43,10 +44,14 @@ class RunningCalls {
    private:
     RunningCalls* const calls_;
     const std::string stream_client_;  // empty: no stream
+    const grpc::ServerContextBase* const context_;
     Calls::iterator place_;
   };
 
   int NumStreams(const std::string& client);
+
+  // The id of the request that a call makes (request_scope.h); empty for a call that is not here.
+  std::string RequestIdOf(const grpc::ServerContextBase& context);
 
   // Cancels the calls of all tokens for which `is_good` says no. It asks once for each token.
   void CancelUnless(const std::function<bool(const std::string& token_id)>& is_good);
@@ -55,6 +60,7 @@ class RunningCalls {
   std::mutex mutex_;                    // never held while a call is cancelled
   Calls calls_;                         // guarded by mutex_
   std::map<std::string, int> streams_;  // by client, none is 0; guarded by mutex_
+  std::map<const grpc::ServerContextBase*, std::shared_ptr<Call>> by_context_;  // guarded by mutex_
 };
 
 }  // namespace pleat

@@ -34,19 +34,28 @@ struct UploadTarget {
   std::function<void(const Info&, Response*)> reply;
 };
 
+// A piece that waits for its task, and one that gRPC reads meanwhile.
+inline constexpr uint64_t kUploadStreamBytes = 2 * kMaxUploadChunkBytes;
+
 // Sequential (call_reactor.h): until the call is finished, either a read or a task is under way.
 template <typename Info, typename Response>
 class UploadStream final : public CallReactor<grpc::ServerReadReactor<v1::UploadSequenceRequest>> {
  public:
   UploadStream(HandlerContext* context, Response* response, UploadTarget<Info, Response> target)
       : CallReactor(context),
-        slot_(context),
+        slot_(context, kStreamBytes + kUploadStreamBytes),
         context_(context),
         response_(response),
         target_(std::move(target)) {}
 
   void Start() { StartRead(&request_); }
   void OnReadDone(bool ok) override {
+    // Such a message is never looked at. Let go of it here, for the task may have to wait.
+    if (ok && request_.data().size() > kMaxUploadChunkBytes) {
+      v1::UploadSequenceRequest small;
+      small.set_data("");
+      request_.Swap(&small);
+    }
     Post(context_->transfer_executor, [this, ok] {
       bool finished = !ok;
       const absl::Status status =

@@ -1,0 +1,122 @@
+#include "pleat/character/skin_features.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "absl/strings/str_cat.h"
+#include "pleat/base/parallel.h"
+#include "pleat/base/status.h"
+
+namespace pleat {
+namespace {
+
+absl::Status CheckRegion(const SkinFeaturesParameters::Region& region, int num_edges) {
+  const std::vector<int>& edges = region.edges;
+  if (edges.empty() || edges.front() < 0 || edges.back() >= num_edges ||
+      std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) != edges.end()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("skin features: the edges of a region do not ascend below ", num_edges));
+  }
+  if (region.weights.rows() != 3 * static_cast<Eigen::Index>(edges.size()) ||
+      region.weights.cols() < 1 || region.offset.size() != region.weights.cols() ||
+      !region.offset.allFinite()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "skin features: weights are ", region.weights.rows(), " x ", region.weights.cols(),
+        " with ", region.offset.size(), " offsets for ", edges.size(), " edges"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<SkinFeatures> SkinFeatures::FromParameters(const Rig& rig,
+                                                          SkinFeaturesParameters parameters) {
+  const int num_edges = static_cast<int>(parameters.edges.edges.size());
+  PLEAT_ASSIGN_OR_RETURN(SkinEdges edges, SkinEdges::Create(rig, std::move(parameters.edges)));
+  SkinFeatures result(std::move(edges));
+  std::vector<CoefficientFoldBlock> blocks;
+  int num_gathered = 0;
+  for (const SkinFeaturesParameters::Region& region : parameters.regions) {
+    result.region_ends_.push_back(result.num_features_);
+    result.region_edges_.push_back(region.edges);
+    if (region.edges.empty() && region.weights.size() == 0) continue;
+    PLEAT_RETURN_IF_ERROR(CheckRegion(region, num_edges));
+    const auto count = static_cast<int>(region.weights.cols());
+    result.offset_.conservativeResize(result.num_features_ + count);
+    result.offset_.tail(count) = region.offset;
+    blocks.push_back({num_gathered, result.num_features_, region.weights});
+    num_gathered += 3 * static_cast<int>(region.edges.size());
+    result.num_features_ += count;
+    result.region_ends_.back() = result.num_features_;
+  }
+  PLEAT_ASSIGN_OR_RETURN(
+      result.projection_,
+      CoefficientFold::FromBlocks(std::move(blocks), num_gathered, result.num_features_));
+  return result;
+}
+
+SkinFeaturesParameters SkinFeatures::parameters() const {
+  SkinFeaturesParameters p{edges_.parameters(), {}};
+  std::vector<CoefficientFoldBlock> blocks = projection_.blocks();
+  auto block = blocks.begin();
+  for (const std::vector<int>& edges : region_edges_) {
+    p.regions.emplace_back();
+    if (edges.empty()) continue;
+    p.regions.back() = {edges, block->weights,
+                        offset_.segment(block->first_output, block->weights.cols())};
+    ++block;
+  }
+  return p;
+}
+
+SkinFeatures SkinFeatures::FirstRegions(const Rig& rig, int count) const {
+  SkinFeaturesParameters p = parameters();
+  p.regions.resize(static_cast<size_t>(count));
+  return FromParameters(rig, std::move(p)).value();
+}
+
+size_t SkinFeatures::memory_bytes() const {
+  size_t bytes = edges_.memory_bytes() + projection_.memory_bytes();
+  for (const std::vector<int>& edges : region_edges_) bytes += edges.size() * sizeof(int);
+  return bytes;
+}
+
+void SkinFeatures::Compute(const BoneTransforms& transforms, Workspace* workspace,
+                           Eigen::Ref<Eigen::VectorXd> features) const {
+  Workspace& w = *workspace;
+  w.values.resize(edges_.num_values());
+  w.gathered.resize(projection_.num_inputs());
+  w.features.resize(num_features_);
+  edges_.Compute(transforms, &w.edges, w.values);
+  Eigen::Index place = 0;
+  for (const std::vector<int>& edges : region_edges_) {
+    for (const int edge : edges) {
+      w.gathered.segment<3>(place) = w.values.segment<3>(3 * static_cast<Eigen::Index>(edge));
+      place += 3;
+    }
+  }
+  const CoefficientFold::Query query{
+      .inputs = w.gathered.data(), .outputs = w.features.data(), .workspace = &w.projection};
+  projection_.Apply({&query, 1});
+  features = (w.features - offset_).cast<double>();
+}
+
+Eigen::MatrixXd SkinFeatures::ComputeTrack(const Skeleton& skeleton, const PoseTrack& track,
+                                           int num_threads) const {
+  constexpr int kItemFrames = 32;
+  const int num_frames = track.num_frames();
+  Eigen::MatrixXd rows(num_frames, num_features_);
+  ParallelFor((num_frames + kItemFrames - 1) / kItemFrames, num_threads, [&](int item) {
+    Workspace workspace;
+    BoneTransforms transforms;
+    Eigen::VectorXd row(num_features_);
+    for (int t = item * kItemFrames; t < std::min(num_frames, (item + 1) * kItemFrames); ++t) {
+      ComputeBoneTransforms(skeleton, track.pose(t), {}, &transforms);
+      Compute(transforms, &workspace, row);
+      rows.row(t) = row.transpose();
+    }
+  });
+  return rows;
+}
+
+}  // namespace pleat
