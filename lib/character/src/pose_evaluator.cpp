@@ -1,14 +1,15 @@
 // A query goes through four steps, and a batch goes through each of them together:
 //
-//   Prepare      copies the poses, normalized, and computes the row of features: of the pose, and
-//                of the skin that it stretches.
-//   Predict      turns features into the coefficients of the detail basis and a confidence.
+//   Prepare      copies the poses, normalized, and computes the row of features of the pose, and
+//                how the edges of the skin lie.
+//   Predict      turns these into the features of the skin, and all features into the coefficients
+//                of the detail basis and a confidence.
 //   Place        computes the motions of the bones and the axes of the details, for one query.
 //   FillFrames   expands the coefficients to details and skins the vertices.
 //
-// Predict and FillFrames read the large parts of the model: training rows, and the basis with its
-// 3V rows. They read them once for all queries of a batch. No sum crosses from one query to
-// another, so a frame has the same bits whatever else is in its batch.
+// Predict and FillFrames read the large parts of the model: weights, training rows, and the basis
+// with its 3V rows. They read them once for all queries of a batch. No sum crosses from one query
+// to another, so a frame has the same bits whatever else is in its batch.
 //
 // FillFrames streams over the vertices in tiles of kTileBlocks blocks. For each tile it first
 // expands the details of all queries and then skins them, so the 3V details of a frame never exist
@@ -247,22 +248,27 @@ void PoseEvaluator::Prepare(const PoseQuery& query, Scratch* scratch) const {
   if (!s.has_details) return;
   model_->features().ComputeRow(s.history_pointers,
                                 s.features.head(model_->features().num_features()));
-  const std::optional<SkinFeatures>& skin = model_->skin_features();
-  if (!skin) return;
+  if (!model_->skin_features()) return;
   // Without the scales of the bones: the learner knows the body in its own proportions.
   ComputeBoneTransforms(model_->skeleton(), s.history[0], {}, &s.transforms);
-  skin->Compute(s.transforms, &s.skin_features, s.features.tail(skin->num_features()));
+  model_->skin_features()->Gather(s.transforms, &s.skin_features);
 }
 
 void PoseEvaluator::Predict(std::span<Scratch* const> scratches) const {
   std::array<DetailModel::Query, kMostTogether> queries;
+  std::array<SkinFeatures::Query, kMostTogether> skin_queries;
+  const std::optional<SkinFeatures>& skin = model_->skin_features();
+  const Eigen::Index num_pose_features = model_->features().num_features();
   size_t count = 0;
   for (; count < scratches.size() && scratches[count]->has_details; ++count) {
     Scratch& s = *scratches[count];
+    skin_queries[count] = {.workspace = &s.skin_features,
+                           .features = s.features.data() + num_pose_features};
     queries[count] = {.features = s.features.data(),
                       .workspace = &s.workspace,
                       .coefficients = s.coefficients.data()};
   }
+  if (skin) skin->Project({skin_queries.data(), count});
   model_->detail_model().PredictCoefficients(std::span(queries.data(), count));
   for (size_t q = 0; q < count; ++q) scratches[q]->confidence = queries[q].confidence;
 }

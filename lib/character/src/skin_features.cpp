@@ -1,6 +1,7 @@
 #include "pleat/character/skin_features.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 
 #include "absl/strings/str_cat.h"
@@ -83,10 +84,15 @@ size_t SkinFeatures::memory_bytes() const {
 
 void SkinFeatures::Compute(const BoneTransforms& transforms, Workspace* workspace,
                            Eigen::Ref<Eigen::VectorXd> features) const {
+  Gather(transforms, workspace);
+  const Query query{.workspace = workspace, .features = features.data()};
+  Project({&query, 1});
+}
+
+void SkinFeatures::Gather(const BoneTransforms& transforms, Workspace* workspace) const {
   Workspace& w = *workspace;
   w.values.resize(edges_.num_values());
   w.gathered.resize(projection_.num_inputs());
-  w.features.resize(num_features_);
   edges_.Compute(transforms, &w.edges, w.values);
   Eigen::Index place = 0;
   for (const std::vector<int>& edges : region_edges_) {
@@ -95,10 +101,25 @@ void SkinFeatures::Compute(const BoneTransforms& transforms, Workspace* workspac
       place += 3;
     }
   }
-  const CoefficientFold::Query query{
-      .inputs = w.gathered.data(), .outputs = w.features.data(), .workspace = &w.projection};
-  projection_.Apply({&query, 1});
-  features = (w.features - offset_).cast<double>();
+}
+
+void SkinFeatures::Project(std::span<const Query> queries) const {
+  constexpr size_t kMostTogether = 16;
+  std::array<CoefficientFold::Query, kMostTogether> products;
+  for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
+    const auto together = queries.subspan(begin, std::min(kMostTogether, queries.size() - begin));
+    for (size_t q = 0; q < together.size(); ++q) {
+      Workspace& w = *together[q].workspace;
+      w.features.resize(num_features_);
+      products[q] = {
+          .inputs = w.gathered.data(), .outputs = w.features.data(), .workspace = &w.projection};
+    }
+    projection_.Apply({products.data(), together.size()});
+    for (const Query& query : together) {
+      Eigen::Map<Eigen::VectorXd>(query.features, num_features_) =
+          (query.workspace->features - offset_).cast<double>();
+    }
+  }
 }
 
 Eigen::MatrixXd SkinFeatures::ComputeTrack(const Skeleton& skeleton, const PoseTrack& track,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,6 +57,15 @@ class SkinFeatures {
   // the rig's skeleton, without stretched bones.
   void Compute(const BoneTransforms& transforms, Workspace* workspace,
                Eigen::Ref<Eigen::VectorXd> features) const;
+
+  // Does the same in two steps, for several poses at once: what is computed for each pose, and the
+  // product with the weights, which are read once. features: D_E. The bits are those of Compute().
+  void Gather(const BoneTransforms& transforms, Workspace* workspace) const;
+  struct Query {
+    Workspace* workspace = nullptr;  // after Gather(); another for each query
+    double* features = nullptr;
+  };
+  void Project(std::span<const Query> queries) const;
 
   // The features of all frames, T x D_E.
   Eigen::MatrixXd ComputeTrack(const Skeleton& skeleton, const PoseTrack& track,
