@@ -203,6 +203,21 @@ TEST(PartedModelFileTest, EveryTruncationIsRefused) {
   ForEachTruncation(bytes, [](const std::string& cut) { EXPECT_FALSE(DecodeModel(cut).ok()); });
 }
 
+// Whatever an attacker writes behind a right checksum is refused, or is a model that answers.
+TEST(PartedModelFileTest, DamageIsRefusedOrHarmless) {
+  const std::string bytes = EncodeModel(*MakePartedModel());
+  const Eigen::VectorXd features = Eigen::VectorXd::LinSpaced(14, -1, 1);
+  ForEachCorruption(bytes, [&](const std::string& damaged) {
+    const auto read = DecodeModel(Reseal(damaged));
+    if (!read.ok()) return;
+    const DetailModel& detail = (*read)->detail_model();
+    DetailModel::Workspace workspace;
+    Eigen::VectorXf coefficients(detail.num_components());
+    detail.PredictCoefficients(features.head(detail.num_features()), &workspace, coefficients);
+    EXPECT_TRUE(coefficients.allFinite());
+  });
+}
+
 class GoldenModelTest : public ::testing::TestWithParam<std::tuple<Learner, int>> {};
 
 TEST_P(GoldenModelTest, StaysReadable) {

@@ -92,6 +92,17 @@ TEST(ServerMetricsTest, ManyThreadsCountTogether) {
   EXPECT_THAT(metrics.Text(), HasSubstr(R"(status="OK"} 1000)"));
 }
 
+TEST(ServerMetricsTest, StepsAndStagesAreSummed) {
+  ServerMetrics metrics;
+  metrics.FrameStep("query", 1e-3);
+  metrics.JobStage("rig", 1);
+  metrics.JobStage("rig", 2);
+  const std::string text = metrics.Text();
+  EXPECT_THAT(text, HasSubstr(R"(pleat_job_stage_seconds_count{stage="rig"} 2)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_job_stage_seconds_sum{stage="rig"} 3)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_frame_seconds_sum{step="query"} 0.001)"));
+}
+
 TEST(ServerMetricsTest, AnAddressThatIsWrongIsSaid) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Serve("nonsense"),
