@@ -190,13 +190,9 @@ void DetailModel::PredictCoefficients(std::span<Query> queries) const {
     for (size_t q = 0; q < part.size(); ++q) {
       Eigen::Map<Eigen::VectorXf> coefficients(part[q].coefficients, num_components());
       part[q].confidence = certainties[q].confidence;
-      // A fade of zero also removes what is not finite, and so does a prediction that never fades.
-      if (certainties[q].fade > 0 &&
-          (fade_confidence_ > 0 || workspaces[q]->coefficients.allFinite())) {
-        coefficients = (certainties[q].fade * workspaces[q]->coefficients).cast<float>();
-      } else {
-        coefficients.setZero();
-      }
+      coefficients = (certainties[q].fade * workspaces[q]->coefficients).cast<float>();
+      // What a hostile model makes of a pose, or a pose beyond all bounds, may not be finite.
+      if (!(certainties[q].fade > 0) || !coefficients.allFinite()) coefficients.setZero();
     }
   }
 }
