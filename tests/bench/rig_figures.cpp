@@ -73,7 +73,7 @@ TriangleMesh Split(const TriangleMesh& mesh) {
   return split;
 }
 
-// Of the process, in MB.
+// The memory of the process, in MB.
 int PeakMemory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

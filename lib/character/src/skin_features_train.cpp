@@ -11,23 +11,15 @@
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "pleat/geometry/surface_cells.h"
+#include "pleat/gp/scaling.h"
 #include "pleat/math/pca.h"
 
 namespace pleat {
 namespace {
 
-std::vector<int> SpreadFrames(int num_frames, int max_frames) {
-  const int count = std::min(num_frames, max_frames);
-  std::vector<int> frames;
-  for (int i = 0; i < count; ++i) {
-    frames.push_back(static_cast<int>(int64_t{i} * num_frames / count));
-  }
-  return frames;
-}
-
 // Values of the edges in some frames, frames x 3E.
 Eigen::MatrixXd ValuesOf(const SkinEdges& edges, const Skeleton& skeleton, const PoseTrack& track,
-                         const std::vector<int>& frames, int num_threads) {
+                         const std::vector<Eigen::Index>& frames, int num_threads) {
   Eigen::MatrixXd values(frames.size(), edges.num_values());
   constexpr int kItemFrames = 32;
   const int count = static_cast<int>(frames.size());
@@ -36,7 +28,7 @@ Eigen::MatrixXd ValuesOf(const SkinEdges& edges, const Skeleton& skeleton, const
     BoneTransforms transforms;
     Eigen::VectorXf row(edges.num_values());
     for (int i = item * kItemFrames; i < std::min(count, (item + 1) * kItemFrames); ++i) {
-      ComputeBoneTransforms(skeleton, track.pose(frames[i]), {}, &transforms);
+      ComputeBoneTransforms(skeleton, track.pose(static_cast<int>(frames[i])), {}, &transforms);
       edges.Compute(transforms, &workspace, row);
       values.row(i) = row.transpose().cast<double>();
     }
@@ -118,7 +110,7 @@ absl::StatusOr<SkinFeatures> TrainSkinFeatures(const Topology& topology, const R
   }
   PLEAT_ASSIGN_OR_RETURN(const SkinEdges edges, SkinEdges::Create(rig, parameters.edges));
   const Eigen::MatrixXd values =
-      ValuesOf(edges, rig.skeleton, track, SpreadFrames(track.num_frames(), options.max_frames),
+      ValuesOf(edges, rig.skeleton, track, SpreadRows(track.num_frames(), options.max_frames),
                options.num_threads);
   parameters.regions.resize(regions.size());
   ParallelFor(static_cast<int>(regions.size()), options.num_threads, [&](int r) {

@@ -25,6 +25,7 @@
 #include "pleat/base/status.h"
 #include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
+#include "pleat/gp/scaling.h"
 #include "pleat/skeleton/pose_history.h"
 
 namespace pleat {
@@ -149,10 +150,8 @@ absl::Status ComputeControlDetails(const RiggedFrames& rigged, const PoseTrack& 
     std::iota(vertices.begin(), vertices.end(), 0);
   }
   const int num_frames = sequence.num_frames(), num_basis = std::min(num_frames, kMaxBasisFrames);
-  std::vector<int> basis_frames;
-  for (int i = 0; i < num_basis; ++i) {
-    basis_frames.push_back(static_cast<int>(int64_t{i} * num_frames / num_basis));
-  }
+  const std::vector<Eigen::Index> spread = SpreadRows(num_frames, num_basis);
+  const std::vector<int> basis_frames(spread.begin(), spread.end());
   PLEAT_ASSIGN_OR_RETURN(
       Eigen::MatrixXd details,
       DetailsOfFrames(rigged, track, basis_frames, vertices, detail_options, progress));

@@ -85,17 +85,6 @@ SpreadClips SpreadOverClips(Eigen::Index num_rows, const std::vector<int>& clip_
   return spread;
 }
 
-// Coarsest steps of the basis (r). Rounding to a step s errs by s / sqrt(12) RMS in each of the D_M
-// details, times the component's score.
-Eigen::VectorXd LargestSteps(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& scores,
-                             const DetailModelOptions& options) {
-  const Eigen::VectorXd score_rms =
-      (scores.colwise().squaredNorm() / double(scores.rows())).cwiseSqrt();
-  const double detail_rms =
-      std::sqrt((basis * score_rms.asDiagonal()).squaredNorm() / static_cast<double>(basis.rows()));
-  return options.rounding * std::sqrt(12.0) * detail_rms * score_rms.cwiseInverse();
-}
-
 // The back-constraint X = K_b A as a regression stage: same kernel, same weights.
 absl::StatusOr<GpRegression> BackConstraintStage(const Eigen::Ref<const Eigen::MatrixXd>& features,
                                                  const SharedGplvm& model,
@@ -162,9 +151,13 @@ class DetailModelTrainer {
   // The basis of all learners but the regional one: the components of all details.
   absl::Status MakeBasis() {
     const Eigen::MatrixXd basis = Mapped(details_.basis);
-    PLEAT_ASSIGN_OR_RETURN(const DetailBasis rounded,
-                           DetailBasis::Quantize(Mapped(details_.mean).cast<float>(), basis,
-                                                 LargestSteps(basis, details_.scores, options_)));
+    const Eigen::VectorXd score_rms =
+        (details_.scores.colwise().squaredNorm() / double(details_.scores.rows())).cwiseSqrt();
+    PLEAT_ASSIGN_OR_RETURN(
+        const DetailBasis rounded,
+        DetailBasis::Quantize(
+            Mapped(details_.mean).cast<float>(), basis,
+            LargestSteps(score_rms, DetailRms(basis, score_rms), options_.rounding)));
     PLEAT_ASSIGN_OR_RETURN(model_.basis_, PartedBasis::FromParameters(
                                               PartedBasisParameters::Whole(rounded.parameters())));
     return absl::OkStatus();
@@ -208,7 +201,7 @@ class DetailModelTrainer {
         CoefficientFold::FromBlocks(std::move(training.fold), model_.regional_->num_outputs(),
                                     model_.basis_.num_coefficients()));
     scores_to_coefficients_ = std::move(training.scores_to_coefficients);
-    // Of the direct GP only the variance is asked for: one output is enough.
+    // Only the variance of the direct GP is asked for, so one output is enough.
     direct.alpha = direct.alpha.leftCols(1).eval();
     direct.output_mean = direct.output_mean.head(1).eval();
     PLEAT_ASSIGN_OR_RETURN(model_.stages_.front(), GpRegression::FromParameters(std::move(direct)));

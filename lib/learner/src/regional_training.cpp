@@ -94,13 +94,6 @@ std::vector<Eigen::Index> RowsOf(const std::vector<int>& vertices, Eigen::Index 
   return rows;
 }
 
-// The coarsest steps of a part's basis, as for the basis of other learners: rounding to a step s
-// errs by s / sqrt(12) RMS in each detail, times the component's score.
-Eigen::VectorXd PartSteps(const ScorePca::Components& part, double rounding, double detail_rms) {
-  const Eigen::VectorXd rms = part.rms.cwiseMax(1e-300);
-  return rounding * std::sqrt(12.0) * detail_rms * rms.cwiseInverse();
-}
-
 // One part while it is made: which rows it holds, and their basis U_p.
 struct PartBasis {
   std::vector<Eigen::Index> rows;
@@ -121,7 +114,7 @@ absl::StatusOr<PartBasis> AddPart(const std::vector<int>& vertices, const Eigen:
   PLEAT_ASSIGN_OR_RETURN(
       const DetailBasis rounded,
       DetailBasis::Quantize(mean(part.rows).cast<float>(), components,
-                            PartSteps(part.components, options.rounding, detail_rms)));
+                            LargestSteps(part.components.rms, detail_rms, options.rounding)));
   PartedBasisParameters::Part entry{vertices, {}, rounded.parameters()};
   for (int c = 0; c < components.cols() && !vertices.empty(); ++c) {
     entry.coefficients.push_back(part.first_coefficient + c);
@@ -162,13 +155,12 @@ void AddFold(const std::vector<PartBasis>& parts, int first_input, const RegionB
   }
 }
 
-// Root mean square of the details, all entries, where scores are uncorrelated.
-double DetailRms(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& scores) {
+// Root mean squares of the scores around their means.
+Eigen::VectorXd ScoreRms(const Eigen::MatrixXd& scores) {
   const Eigen::VectorXd variances =
       (scores.rowwise() - scores.colwise().mean()).colwise().squaredNorm().transpose() /
       double(scores.rows());
-  return std::sqrt((basis * variances.cwiseSqrt().asDiagonal()).squaredNorm() /
-                   double(basis.rows()));
+  return variances.cwiseSqrt();
 }
 
 }  // namespace
@@ -179,7 +171,8 @@ absl::StatusOr<RegionalTraining> TrainRegional(const Eigen::MatrixXd& features,
                                                const DetailModelOptions& options,
                                                const Progress& progress) {
   const ScorePca pca(details.scores);
-  const double own_rms = DetailRms(details.basis, details.scores);
+  const Eigen::VectorXd score_rms = ScoreRms(details.scores);
+  const double own_rms = DetailRms(details.basis, score_rms);
   std::vector<GpRegion> regions;
   std::vector<RegionBasis> bases;
   for (const DetailRegion& region : options.regions) {
@@ -201,7 +194,7 @@ absl::StatusOr<RegionalTraining> TrainRegional(const Eigen::MatrixXd& features,
   const Eigen::VectorXd mean =
       details.mean + details.basis * details.scores.colwise().mean().transpose();
   const Eigen::MatrixXd basis = Mapped(options, details.basis);
-  const double detail_rms = DetailRms(basis, details.scores);
+  const double detail_rms = DetailRms(basis, score_rms);
   std::vector<PartBasis> parts;
   const size_t num_part_regions =
       options.num_part_regions > 0 ? options.num_part_regions : options.regions.size();

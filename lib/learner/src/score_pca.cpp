@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 namespace pleat {
 
@@ -60,6 +61,14 @@ PrincipalComponents FirstComponents(const PrincipalComponents& components, int m
           .basis = components.basis.leftCols(count),
           .scores = components.scores.leftCols(count),
           .kept_energy = all > 0 ? kept / all : 1};
+}
+
+double DetailRms(const Eigen::MatrixXd& basis, const Eigen::VectorXd& score_rms) {
+  return std::sqrt((basis * score_rms.asDiagonal()).squaredNorm() / double(basis.rows()));
+}
+
+Eigen::VectorXd LargestSteps(const Eigen::VectorXd& score_rms, double detail_rms, double rounding) {
+  return rounding * std::sqrt(12.0) * detail_rms * score_rms.cwiseMax(1e-300).cwiseInverse();
 }
 
 }  // namespace pleat

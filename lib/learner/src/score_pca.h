@@ -32,4 +32,12 @@ class ScorePca {
 PrincipalComponents FirstComponents(const PrincipalComponents& components, int max_components,
                                     double min_energy);
 
+// Root mean square of the details that a basis and scores of these root mean squares (r) stand for,
+// over all entries, where scores are uncorrelated.
+double DetailRms(const Eigen::MatrixXd& basis, const Eigen::VectorXd& score_rms);
+
+// The coarsest steps (r) in which a basis may be rounded. Rounding to a step s errs by s / sqrt(12)
+// RMS in each detail, times the component's score: the share `rounding` of detail_rms is allowed.
+Eigen::VectorXd LargestSteps(const Eigen::VectorXd& score_rms, double detail_rms, double rounding);
+
 }  // namespace pleat

@@ -52,7 +52,7 @@ class CoefficientFold {
 
   int num_inputs_ = 0, num_outputs_ = 0;
   std::vector<Block> blocks_;
-  // Of all blocks, row by row, each row filled up with zeros to whole registers.
+  // The weights of all blocks, row by row; each row is filled up with zeros to whole registers.
   std::vector<float, LargePageAllocator<float>> weights_;
 };
 

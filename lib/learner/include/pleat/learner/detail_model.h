@@ -61,7 +61,7 @@ struct RegionalBasisOptions {
   int max_part_components = 128;
   double part_rest = .005;
   double fold_rest = .005;  // what of a region a part may leave out altogether, as the others
-  // Of the basis of all details, from which those of regions and parts are made.
+  // The basis of all details has so many; those of regions and parts are made from it.
   int max_components = 256;
 };
 
