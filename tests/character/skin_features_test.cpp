@@ -62,6 +62,17 @@ TEST_F(SkinFeaturesTest, ParametersGiveTheSameBitsForAnyNumberOfThreads) {
             expected.leftCols(first.num_features()));
 }
 
+TEST_F(SkinFeaturesTest, TheCenterOnlyMakesTheProductMoreExact) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SkinFeatures features, Train());
+  SkinFeaturesParameters p = features.parameters();
+  p.center.resize(0);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const SkinFeatures without,
+                             SkinFeatures::FromParameters(figure_.rig, p));
+  const Eigen::MatrixXd expected = features.ComputeTrack(figure_.rig.skeleton, track_, 1);
+  const Eigen::MatrixXd found = without.ComputeTrack(figure_.rig.skeleton, track_, 1);
+  EXPECT_LT((found - expected).norm(), 2e-3 * expected.norm());
+}
+
 TEST_F(SkinFeaturesTest, ARegionWithoutEdgesHasNoFeatures) {
   regions_[3].vertices.clear();
   regions_[3].weights.clear();
@@ -98,7 +109,9 @@ TEST_F(SkinFeaturesTest, RefusesHostileParameters) {
   refused([](auto& p) { p.regions[2].edges.pop_back(); }, "weights are");
   refused([](auto& p) { p.regions[2].offset.conservativeResize(1); }, "offsets");
   refused([](auto& p) { p.regions[2].offset[0] = std::nanf(""); }, "weights are");
-  refused([](auto& p) { p.regions[2].weights(0, 0) = std::nanf(""); }, "not finite");
+  refused([](auto& p) { p.regions[2].weights.scales[0] = std::nanf(""); }, "not finite");
+  refused([](auto& p) { p.center.conservativeResize(4); }, "the center has 4");
+  refused([](auto& p) { p.center[1] = std::nanf(""); }, "not finite");
   refused([](auto& p) { p.edges.lengths[0] = -1; }, "edge 0");
 }
 

@@ -136,13 +136,23 @@ TEST_P(ModelFileTest, FilesRoundTripAndErrorsNameThem) {
               HasStatus(absl::StatusCode::kNotFound, HasSubstr("b.pleat")));
 }
 
-// A model with all that version 4 added: parts, regions with outputs of their own, the fold between
-// them and features of the skin.
+// weights: outputs x inputs.
+CoefficientFoldBlock FoldBlock(int first_input, int first_output, const Eigen::MatrixXd& weights) {
+  return CoefficientFoldBlock::Round(first_input,
+                                     {{first_output, static_cast<int>(weights.rows())}}, weights,
+                                     Eigen::VectorXd::Zero(weights.cols()))
+      .value();
+}
+
+// A model with all that versions 4 and 5 added: parts, regions with outputs of their own, the fold
+// between them and features of the skin.
 std::shared_ptr<const CharacterModel> MakePartedModel() {
   CharacterModel::Parts parts = SmallModelBuilder(Learner::kRegional).Parts();
-  SkinFeaturesParameters skin{{{0, 3, 5}, {{0, 1}, {1, 2}}, {.5f, .25f}}, {}};
-  skin.regions = {{{0, 1}, Eigen::MatrixXf::Constant(6, 2, .125f), Eigen::Vector2f(.5f, -.25f)},
-                  {{}, {}, {}}};
+  SkinFeaturesParameters skin{{{0, 3, 5}, {{0, 1}, {1, 2}}, {.5f, .25f}}, {}, {}};
+  skin.regions = {{{0, 1},
+                   FoldBlock(0, 0, Eigen::MatrixXd::Constant(2, 6, .125)).weights,
+                   Eigen::Vector2f(.5f, -.25f)},
+                  {}};
   parts.skin_features = SkinFeatures::FromParameters(parts.rig, skin).value();
   DetailModelParameters detail = parts.detail_model->parameters();
   RegionalGpParameters& regional = *detail.regional;
@@ -167,8 +177,8 @@ std::shared_ptr<const CharacterModel> MakePartedModel() {
     basis.values = whole.values.middleRows(12 * i, 12).eval();
     detail.basis.parts.push_back({vertices[i], coefficients[i], basis});
   }
-  detail.fold = {{0, 0, Eigen::MatrixXf::Constant(2, 3, .5f)},
-                 {2, 1, Eigen::MatrixXf::Constant(2, 2, -.5f)}};
+  detail.fold = {FoldBlock(0, 0, Eigen::MatrixXd::Constant(3, 2, .5)),
+                 FoldBlock(2, 1, Eigen::MatrixXd::Constant(2, 2, -.5))};
   parts.detail_model =
       std::make_shared<const DetailModel>(DetailModel::FromParameters(detail).value());
   return CharacterModel::Create(std::move(parts)).value();
@@ -194,8 +204,29 @@ TEST(PartedModelFileTest, RoundTripsAndPredictsTheSameBits) {
 TEST(PartedModelFileTest, TheGoldenFileIsTheModel) {
   PLEAT_ASSERT_OK_AND_ASSIGN(
       const std::string golden,
-      ReadFile(InSourceFolder("tests/golden/model_v4_regional_parts.pleat")));
+      ReadFile(InSourceFolder("tests/golden/model_v5_regional_parts.pleat")));
   EXPECT_EQ(golden, EncodeModel(*MakePartedModel()));
+}
+
+// Version 4 has floats where later ones have planes.
+TEST(PartedModelFileTest, TheGoldenFileOfVersion4PredictsTheSame) {
+  PLEAT_ASSERT_OK_AND_ASSIGN(
+      const auto read, ReadModelFile(InSourceFolder("tests/golden/model_v4_regional_parts.pleat")));
+  const auto model = MakePartedModel();
+  const Eigen::VectorXd features = Eigen::VectorXd::LinSpaced(14, -1, 1);
+  DetailModel::Workspace a, b;
+  Eigen::VectorXf expected(3), found(3);
+  model->detail_model().PredictCoefficients(features, &a, expected);
+  read->detail_model().PredictCoefficients(features, &b, found);
+  EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
+  ASSERT_TRUE(read->skin_features().has_value());
+  BoneTransforms transforms;
+  ComputeBoneTransforms(model->skeleton(), Pose::Rest(model->skeleton()), {}, &transforms);
+  SkinFeatures::Workspace workspace;
+  Eigen::VectorXd of_model(2), of_file(2);
+  model->skin_features()->Compute(transforms, &workspace, of_model);
+  read->skin_features()->Compute(transforms, &workspace, of_file);
+  EXPECT_LT((of_file - of_model).norm(), 1e-6 * of_model.norm());
 }
 
 TEST(PartedModelFileTest, EveryTruncationIsRefused) {
@@ -238,7 +269,7 @@ TEST_P(GoldenModelTest, StaysReadable) {
 INSTANTIATE_TEST_SUITE_P(Versions, GoldenModelTest,
                          ::testing::Combine(::testing::Values(Learner::kGp, Learner::kSgplvm,
                                                               Learner::kRidge, Learner::kRegional),
-                                            ::testing::Values(1, 2, 3, 4)));
+                                            ::testing::Values(1, 2, 3, 4, 5)));
 
 }  // namespace
 }  // namespace pleat

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
+#include <vector>
 
+#include "model_versions.h"
 #include "support/hostile_bytes.h"
 #include "support/random_data.h"
 #include "support/status_matchers.h"
@@ -13,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr uint32_t kNow = kFirstWithParts;
+constexpr uint32_t kNow = kModelFileVersion;
 
 RegionalGpParameters Parameters() {
   RegionalGpParameters p;
@@ -87,25 +90,47 @@ TEST(RegionalSectionTest, TruncationsAreRefusedAndDamageIsReadOrRefused) {
   });
 }
 
+std::vector<CoefficientFoldBlock> Fold() {
+  const auto block = [](int first_input, std::vector<CoefficientFoldBlock::Target> targets,
+                        const Eigen::MatrixXd& weights) {
+    return CoefficientFoldBlock::Round(first_input, std::move(targets), weights,
+                                       Eigen::VectorXd::Constant(weights.cols(), .01))
+        .value();
+  };
+  return {block(0, {{2, 2}}, RandomMatrix(2, 3, 1)),
+          block(3, {{0, 1}, {1, 3}}, RandomMatrix(4, 1, 2)),
+          block(1, {{0, 4}}, Eigen::MatrixXd::Zero(4, 2))};
+}
+
 TEST(RegionalSectionTest, FoldsRoundTripAndHostileOnesAreRefused) {
-  const std::vector<CoefficientFoldBlock> fold = {{0, 2, RandomMatrix(3, 2, 1).cast<float>()},
-                                                  {3, 0, RandomMatrix(1, 4, 2).cast<float>()}};
+  const std::vector<CoefficientFoldBlock> fold = Fold();
   ByteWriter writer;
   WriteFold(fold, &writer);
   const std::string bytes = writer.Release();
   const auto read = [](const std::string& from) {
     ByteReader reader(from);
-    return ReadFold(&reader);
+    return ReadFold(&reader, kNow);
   };
   PLEAT_ASSERT_OK_AND_ASSIGN(const std::vector<CoefficientFoldBlock> back, read(bytes));
-  ASSERT_EQ(back.size(), 2u);
+  ASSERT_EQ(back.size(), 3u);
   EXPECT_EQ(back[1].first_input, 3);
-  EXPECT_EQ(back[0].weights, fold[0].weights);
+  EXPECT_EQ(back[1].targets[1].count, 3);
+  for (size_t i = 0; i < 3; ++i) EXPECT_EQ(back[i].Dense(), fold[i].Dense()) << i;
   ForEachTruncation(bytes, [&](const std::string& cut) { EXPECT_FALSE(read(cut).ok()); });
   ForEachCorruption(bytes, [&](const std::string& damaged) {
     auto blocks = read(damaged);
     if (blocks.ok()) (void)CoefficientFold::FromBlocks(*std::move(blocks), 4, 4);
   });
+}
+
+// A block without planes takes no bytes for its outputs, so their number has a limit of its own.
+TEST(RegionalSectionTest, AFoldOfMoreOutputsThanAModelHasIsRefused) {
+  ByteWriter writer;
+  for (const uint32_t number : {1u, 0u, 1u, 0u, 1u << 29, 2u, 0u}) writer.Write(number);
+  const std::string bytes = writer.Release();
+  ByteReader reader(bytes);
+  EXPECT_THAT(ReadFold(&reader, kNow),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("536870912 outputs")));
 }
 
 }  // namespace

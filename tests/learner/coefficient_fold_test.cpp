@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <cmath>
+#include <vector>
 
 #include "support/allocation_counter.h"
 #include "support/random_data.h"
@@ -15,24 +16,60 @@ using ::testing::HasSubstr;
 
 constexpr int kNumInputs = 50, kNumOutputs = 61;
 
-// Blocks of many sizes, of which some add to the same outputs.
-std::vector<CoefficientFoldBlock> Blocks() {
+using Target = CoefficientFoldBlock::Target;
+
+// Blocks of many sizes, of which some add to the same outputs and one has two targets.
+std::vector<CoefficientFoldBlock> Blocks(double largest_step = 0) {
+  struct Place {
+    int first_input, num_inputs;
+    std::vector<Target> targets;
+  };
+  const std::vector<Place> places = {{0, 20, {{0, 33}}},
+                                     {20, 30, {{0, 16}, {30, 31}, {2, 49}}},
+                                     {20, 30, {{5, 7}}},
+                                     {49, 1, {{60, 1}}}};
   std::vector<CoefficientFoldBlock> blocks;
-  const int places[][4] = {{0, 0, 20, 33}, {20, 0, 30, 16}, {20, 30, 7, 31}, {49, 60, 1, 1}};
-  for (const auto& [first_input, first_output, rows, cols] : places) {
-    blocks.push_back({first_input, first_output, RandomMatrix(rows, cols, rows).cast<float>()});
+  for (const Place& place : places) {
+    int num_outputs = 0;
+    for (const Target& target : place.targets) num_outputs += target.count;
+    blocks.push_back(
+        CoefficientFoldBlock::Round(place.first_input, place.targets,
+                                    RandomMatrix(num_outputs, place.num_inputs, num_outputs),
+                                    Eigen::VectorXd::Constant(place.num_inputs, largest_step))
+            .value());
   }
   return blocks;
+}
+
+// outputs x inputs.
+Eigen::MatrixXd DenseOf(const std::vector<CoefficientFoldBlock>& blocks) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(kNumOutputs, kNumInputs);
+  for (const CoefficientFoldBlock& block : blocks) {
+    const Eigen::MatrixXd weights = block.Dense();
+    Eigen::Index begin = 0;
+    for (const Target& target : block.targets) {
+      dense.block(target.first_output, block.first_input, target.count, weights.cols()) +=
+          weights.middleRows(begin, target.count);
+      begin += target.count;
+    }
+  }
+  return dense;
+}
+
+TEST(CoefficientFoldTest, RoundingKeepsTheStepsThatAreAskedFor) {
+  const Eigen::MatrixXd weights = RandomMatrix(9, 2, 4);
+  const Eigen::Vector2d steps(.1, 1e-4);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const CoefficientFoldBlock block,
+                             CoefficientFoldBlock::Round(0, {{0, 9}}, weights, steps));
+  const Eigen::VectorXd errors = (block.Dense() - weights).cwiseAbs().colwise().maxCoeff();
+  EXPECT_LE(errors[0], .05);
+  EXPECT_LE(errors[1], .5e-4);
+  EXPECT_EQ(block.weights.components, (std::vector<int>{0, 1, 1}));
 }
 
 TEST(CoefficientFoldTest, IsTheMatrixOfItsBlocks) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const CoefficientFold fold,
                              CoefficientFold::FromBlocks(Blocks(), kNumInputs, kNumOutputs));
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(kNumInputs, kNumOutputs);
-  for (const CoefficientFoldBlock& block : Blocks()) {
-    dense.block(block.first_input, block.first_output, block.weights.rows(),
-                block.weights.cols()) += block.weights.cast<double>();
-  }
   constexpr int kNumQueries = 7;
   const Eigen::MatrixXf inputs = RandomMatrix(kNumInputs, kNumQueries, 4).cast<float>();
   Eigen::MatrixXf outputs = Eigen::MatrixXf::Constant(kNumOutputs, kNumQueries, 99), one = outputs;
@@ -42,7 +79,8 @@ TEST(CoefficientFoldTest, IsTheMatrixOfItsBlocks) {
     queries.push_back({inputs.col(q).data(), outputs.col(q).data(), &workspaces[q]});
   }
   fold.Apply(queries);
-  EXPECT_LT((outputs.cast<double>() - dense.transpose() * inputs.cast<double>()).norm(), 1e-4);
+  const Eigen::MatrixXd expected = DenseOf(Blocks()) * inputs.cast<double>();
+  EXPECT_LT((outputs.cast<double>() - expected).norm(), 1e-3 * expected.norm());
   for (int q = 0; q < kNumQueries; ++q) {
     queries[q].outputs = one.col(q).data();
     fold.Apply({&queries[q], 1});
@@ -61,9 +99,10 @@ TEST(CoefficientFoldTest, BlocksRoundTrip) {
   ASSERT_EQ(found.size(), expected.size());
   for (size_t i = 0; i < found.size(); ++i) {
     EXPECT_EQ(found[i].first_input, expected[i].first_input);
-    EXPECT_EQ(found[i].first_output, expected[i].first_output);
-    EXPECT_EQ(found[i].weights, expected[i].weights);
+    EXPECT_EQ(found[i].weights.values, expected[i].weights.values);
+    EXPECT_EQ(found[i].weights.scales, expected[i].weights.scales);
   }
+  EXPECT_EQ(DenseOf(found), DenseOf(expected));
 }
 
 TEST(CoefficientFoldTest, RefusesBlocksOutOfRange) {
@@ -75,10 +114,12 @@ TEST(CoefficientFoldTest, RefusesBlocksOutOfRange) {
   };
   refused([](auto& block) { block.first_input = 21; });
   refused([](auto& block) { block.first_input = -1; });
-  refused([](auto& block) { block.first_output = 46; });
-  refused([](auto& block) { block.first_output = -1; });
-  refused([](auto& block) { block.weights.resize(0, 16); });
-  refused([](auto& block) { block.weights(2, 3) = std::numeric_limits<float>::quiet_NaN(); });
+  refused([](auto& block) { block.targets[1].first_output = 31; });
+  refused([](auto& block) { block.targets[1].first_output = -1; });
+  refused([](auto& block) { block.targets[1].count = 0; });
+  refused([](auto& block) { block.targets.pop_back(); });
+  refused([](auto& block) { block.weights.values(2, 3) = -128; });
+  refused([](auto& block) { block.weights.scales[3] = std::nanf(""); });
 }
 
 }  // namespace

@@ -18,14 +18,25 @@ absl::Status CheckRegion(const SkinFeaturesParameters::Region& region, int num_e
     return absl::InvalidArgumentError(
         absl::StrCat("skin features: the edges of a region do not ascend below ", num_edges));
   }
-  if (region.weights.rows() != 3 * static_cast<Eigen::Index>(edges.size()) ||
-      region.weights.cols() < 1 || region.offset.size() != region.weights.cols() ||
+  if (region.weights.num_components != 3 * static_cast<int64_t>(edges.size()) ||
+      region.weights.values.rows() < 1 || region.offset.size() != region.weights.values.rows() ||
       !region.offset.allFinite()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "skin features: weights are ", region.weights.rows(), " x ", region.weights.cols(),
-        " with ", region.offset.size(), " offsets for ", edges.size(), " edges"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("skin features: weights are ", region.weights.values.rows(), " x ",
+                     region.weights.num_components, " with ", region.offset.size(), " offsets for ",
+                     edges.size(), " edges"));
   }
   return absl::OkStatus();
+}
+
+// The values of the edges of a region, one after the other.
+Eigen::VectorXf Gathered(const Eigen::VectorXf& values, const std::vector<int>& edges) {
+  Eigen::VectorXf gathered(3 * static_cast<Eigen::Index>(edges.size()));
+  for (size_t e = 0; e < edges.size(); ++e) {
+    gathered.segment<3>(3 * static_cast<Eigen::Index>(e)) =
+        values.segment<3>(3 * static_cast<Eigen::Index>(edges[e]));
+  }
+  return gathered;
 }
 
 }  // namespace
@@ -34,37 +45,53 @@ absl::StatusOr<SkinFeatures> SkinFeatures::FromParameters(const Rig& rig,
                                                           SkinFeaturesParameters parameters) {
   const int num_edges = static_cast<int>(parameters.edges.edges.size());
   PLEAT_ASSIGN_OR_RETURN(SkinEdges edges, SkinEdges::Create(rig, std::move(parameters.edges)));
+  if (parameters.center.size() == 0) parameters.center.setZero(edges.num_values());
+  if (parameters.center.size() != edges.num_values() || !parameters.center.allFinite()) {
+    return absl::InvalidArgumentError(absl::StrCat("skin features: the center has ",
+                                                   parameters.center.size(), " values for ",
+                                                   num_edges, " edges, or they are not finite"));
+  }
   SkinFeatures result(std::move(edges));
+  result.center_ = std::move(parameters.center);
   std::vector<CoefficientFoldBlock> blocks;
   int num_gathered = 0;
-  for (const SkinFeaturesParameters::Region& region : parameters.regions) {
+  for (SkinFeaturesParameters::Region& region : parameters.regions) {
     result.region_ends_.push_back(result.num_features_);
     result.region_edges_.push_back(region.edges);
-    if (region.edges.empty() && region.weights.size() == 0) continue;
+    if (region.edges.empty() && region.weights.values.rows() == 0) continue;
     PLEAT_RETURN_IF_ERROR(CheckRegion(region, num_edges));
-    const auto count = static_cast<int>(region.weights.cols());
+    const auto count = static_cast<int>(region.offset.size());
     result.offset_.conservativeResize(result.num_features_ + count);
     result.offset_.tail(count) = region.offset;
-    blocks.push_back({num_gathered, result.num_features_, region.weights});
+    blocks.push_back({num_gathered, {{result.num_features_, count}}, std::move(region.weights)});
     num_gathered += 3 * static_cast<int>(region.edges.size());
     result.num_features_ += count;
     result.region_ends_.back() = result.num_features_;
   }
-  PLEAT_ASSIGN_OR_RETURN(
-      result.projection_,
-      CoefficientFold::FromBlocks(std::move(blocks), num_gathered, result.num_features_));
+  PLEAT_ASSIGN_OR_RETURN(result.projection_,
+                         CoefficientFold::FromBlocks(blocks, num_gathered, result.num_features_));
+  result.centered_offset_ = result.offset_;
+  auto block = blocks.begin();
+  for (const std::vector<int>& own : result.region_edges_) {
+    if (own.empty()) continue;
+    const auto [first, count] = block->targets[0];
+    const Eigen::VectorXd away = block->Dense() * Gathered(result.center_, own).cast<double>() -
+                                 result.offset_.segment(first, count).cast<double>();
+    result.centered_offset_.segment(first, count) = (-away).cast<float>();
+    ++block;
+  }
   return result;
 }
 
 SkinFeaturesParameters SkinFeatures::parameters() const {
-  SkinFeaturesParameters p{edges_.parameters(), {}};
+  SkinFeaturesParameters p{edges_.parameters(), center_, {}};
   std::vector<CoefficientFoldBlock> blocks = projection_.blocks();
   auto block = blocks.begin();
   for (const std::vector<int>& edges : region_edges_) {
     p.regions.emplace_back();
     if (edges.empty()) continue;
-    p.regions.back() = {edges, block->weights,
-                        offset_.segment(block->first_output, block->weights.cols())};
+    const auto [first, count] = block->targets[0];
+    p.regions.back() = {edges, std::move(block->weights), offset_.segment(first, count)};
     ++block;
   }
   return p;
@@ -94,6 +121,7 @@ void SkinFeatures::Gather(const BoneTransforms& transforms, Workspace* workspace
   w.values.resize(edges_.num_values());
   w.gathered.resize(projection_.num_inputs());
   edges_.Compute(transforms, &w.edges, w.values);
+  w.values -= center_;
   Eigen::Index place = 0;
   for (const std::vector<int>& edges : region_edges_) {
     for (const int edge : edges) {
@@ -117,7 +145,7 @@ void SkinFeatures::Project(std::span<const Query> queries) const {
     projection_.Apply({products.data(), together.size()});
     for (const Query& query : together) {
       Eigen::Map<Eigen::VectorXd>(query.features, num_features_) =
-          (query.workspace->features - offset_).cast<double>();
+          (query.workspace->features - centered_offset_).cast<double>();
     }
   }
 }

@@ -2,11 +2,13 @@
 // each point. The values of all edges in the frames of the training are a matrix of T x 3E numbers;
 // for each region, those of the edges that lie in it, weighted by how much they do, give principal
 // components. Weights, mean and the last scaling are folded into one matrix and one offset, so that
-// a query is one product.
+// a query is one product. The matrix is rounded to 8 bits before the learner sees what it gives.
 #include "skin_features_train.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
@@ -61,35 +63,40 @@ RegionEdges EdgesOf(const SkinEdgesParameters& p, const BodyRegion& region,
   return result;
 }
 
-// The components of one region. values: frames x 3E.
-SkinFeaturesParameters::Region TrainRegion(const Eigen::MatrixXd& values, const RegionEdges& region,
-                                           int max_components, double whitening) {
+// The components of one region. values: frames x 3E, centered; center: 3E.
+absl::StatusOr<SkinFeaturesParameters::Region> TrainRegion(const Eigen::MatrixXd& values,
+                                                           const Eigen::VectorXf& center,
+                                                           const RegionEdges& region,
+                                                           int max_components, double whitening) {
   const auto num_edges = static_cast<Eigen::Index>(region.edges.size());
-  Eigen::VectorXd weights(3 * num_edges);
+  Eigen::VectorXd weights(3 * num_edges), own_center(3 * num_edges);
   Eigen::MatrixXd data(values.rows(), 3 * num_edges);
   for (Eigen::Index e = 0; e < num_edges; ++e) {
+    const Eigen::Index first = 3 * static_cast<Eigen::Index>(region.edges[e]);
     weights.segment<3>(3 * e).setConstant(region.weights[e]);
-    data.middleCols<3>(3 * e) =
-        region.weights[e] * values.middleCols<3>(3 * static_cast<Eigen::Index>(region.edges[e]));
+    own_center.segment<3>(3 * e) = center.segment<3>(first).cast<double>();
+    data.middleCols<3>(3 * e) = region.weights[e] * values.middleCols<3>(first);
   }
   const PrincipalComponents pca = ComputePca(data, {.max_components = max_components});
-  SkinFeaturesParameters::Region result{region.edges, {}, {}};
-  if (pca.basis.cols() == 0) {  // the skin never moves here: one component that stays zero
-    result.weights = Eigen::MatrixXf::Zero(3 * num_edges, 1);
-    result.offset = Eigen::VectorXf::Zero(1);
-    return result;
+  // Where the skin never moves, one component stays zero.
+  Eigen::MatrixXd projection = Eigen::MatrixXd::Zero(1, 3 * num_edges);
+  if (pca.basis.cols() > 0) {
+    const Eigen::VectorXd deviations =
+        (pca.scores.colwise().squaredNorm() / double(pca.scores.rows())).cwiseSqrt().transpose();
+    const Eigen::VectorXd factors = deviations.array().pow(-whitening);
+    // One unit for the region: rows of mean squared norm 1.
+    const double unit = deviations.cwiseProduct(factors).norm();
+    projection = (factors / unit).asDiagonal() * pca.basis.transpose() * weights.asDiagonal();
   }
-  const Eigen::VectorXd deviations =
-      (pca.scores.colwise().squaredNorm() / double(pca.scores.rows())).cwiseSqrt().transpose();
-  const Eigen::VectorXd factors = deviations.array().pow(-whitening);
-  // One unit for the region: rows of mean squared norm 1.
-  const double unit = deviations.cwiseProduct(factors).norm();
-  const Eigen::MatrixXd projection =
-      weights.asDiagonal() * pca.basis * (factors / unit).asDiagonal();
-  result.weights = projection.cast<float>();
-  result.offset =
-      (pca.mean.transpose() * pca.basis * (factors / unit).asDiagonal()).transpose().cast<float>();
-  return result;
+  // One plane will do for each column: the learner is trained with the features as they come out.
+  const Eigen::VectorXd any_step =
+      Eigen::VectorXd::Constant(3 * num_edges, std::numeric_limits<double>::infinity());
+  PLEAT_ASSIGN_OR_RETURN(CoefficientFoldBlock block,
+                         CoefficientFoldBlock::Round(0, {{0, static_cast<int>(projection.rows())}},
+                                                     projection, any_step));
+  const Eigen::VectorXd offset = block.Dense() * own_center;
+  return SkinFeaturesParameters::Region{region.edges, std::move(block.weights),
+                                        offset.cast<float>()};
 }
 
 }  // namespace
@@ -109,16 +116,22 @@ absl::StatusOr<SkinFeatures> TrainSkinFeatures(const Topology& topology, const R
     parameters.edges.lengths.push_back(static_cast<float>(length));
   }
   PLEAT_ASSIGN_OR_RETURN(const SkinEdges edges, SkinEdges::Create(rig, parameters.edges));
-  const Eigen::MatrixXd values =
+  Eigen::MatrixXd values =
       ValuesOf(edges, rig.skeleton, track, SpreadRows(track.num_frames(), options.max_frames),
                options.num_threads);
+  parameters.center = values.colwise().mean().transpose().cast<float>();
+  values.rowwise() -= parameters.center.cast<double>().transpose();
   parameters.regions.resize(regions.size());
+  std::vector<absl::Status> statuses(regions.size());
   ParallelFor(static_cast<int>(regions.size()), options.num_threads, [&](int r) {
     const RegionEdges own = EdgesOf(parameters.edges, regions[r], options.smallest_weight);
     if (own.edges.empty()) return;
-    parameters.regions[r] =
-        TrainRegion(values, own, regions[r].max_skin_features, options.whitening);
+    auto region = TrainRegion(values, parameters.center, own, regions[r].max_skin_features,
+                              options.whitening);
+    statuses[r] = region.status();
+    if (region.ok()) parameters.regions[r] = *std::move(region);
   });
+  for (const absl::Status& status : statuses) PLEAT_RETURN_IF_ERROR(status);
   return SkinFeatures::FromParameters(rig, std::move(parameters));
 }
 

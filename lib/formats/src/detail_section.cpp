@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "planes_section.h"
 #include "pleat/base/status.h"
 #include "pleat/math/array_io.h"
 #include "regional_section.h"
@@ -107,39 +108,17 @@ void WriteBasis(const DetailBasisParameters& basis, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(basis.num_components));
   writer->Write(static_cast<uint32_t>(basis.components.size()));
   WriteMatrix(basis.mean, writer);
-  for (size_t p = 0; p < basis.components.size(); ++p) {
-    writer->Write(static_cast<uint32_t>(basis.components[p]));
-    writer->Write(basis.scales[p]);
-  }
-  WriteMatrix(basis.values, writer);
+  WritePlanes(basis, writer);
 }
 
 absl::StatusOr<DetailBasisParameters> ReadBasis(ByteReader* reader) {
-  constexpr uint32_t kMaxComponents = 1 << 24;
   DetailBasisParameters basis;
   std::array<uint32_t, 3> counts;
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of the basis"));
   const auto [num_details, num_components, num_planes] = counts;
-  if (num_components > kMaxComponents) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(num_components, " components, the limit is ", kMaxComponents));
-  }
-  basis.num_components = static_cast<int>(num_components);
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, 1, "mean detail", &basis.mean));
   PLEAT_RETURN_IF_ERROR(
-      reader->Require(num_planes, sizeof(uint32_t) + sizeof(float), "planes of the basis"));
-  for (uint32_t p = 0; p < num_planes; ++p) {
-    PLEAT_ASSIGN_OR_RETURN(const uint32_t component,
-                           reader->Read<uint32_t>("component of a plane"));
-    if (component >= num_components) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("plane ", p, " belongs to component ", component, " of ", num_components));
-    }
-    basis.components.push_back(static_cast<int>(component));
-    PLEAT_ASSIGN_OR_RETURN(const float scale, reader->Read<float>("scale of a plane"));
-    basis.scales.push_back(scale);
-  }
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_details, num_planes, "planes", &basis.values));
+      ReadPlanes(reader, num_details, num_components, num_planes, "planes of the basis", &basis));
   return basis;
 }
 
@@ -182,9 +161,6 @@ absl::StatusOr<PartedBasisParameters> ReadParts(ByteReader* reader) {
   PartedBasisParameters basis;
   std::array<uint32_t, 2> counts;
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "parts of the basis"));
-  // Whoever has a coefficient has its column of the fold, or of alpha, in the file as well; the
-  // limit stops counts that only want memory.
-  constexpr uint32_t kMaxCoefficients = 1 << 16;
   if (counts[0] > kMaxCoefficients) {
     return absl::InvalidArgumentError(
         absl::StrCat(counts[0], " coefficients, the limit is ", kMaxCoefficients));
@@ -252,7 +228,7 @@ absl::StatusOr<DetailModelParameters> ReadDetail(ByteReader* reader, uint32_t ve
     PLEAT_ASSIGN_OR_RETURN(parameters.regional_share, reader->Read<double>("share of the regions"));
     PLEAT_ASSIGN_OR_RETURN(parameters.regional, ReadRegional(reader, version));
     if (version >= kFirstWithParts) {
-      PLEAT_ASSIGN_OR_RETURN(parameters.fold, ReadFold(reader));
+      PLEAT_ASSIGN_OR_RETURN(parameters.fold, ReadFold(reader, version));
     }
   }
   return parameters;

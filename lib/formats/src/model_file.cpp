@@ -14,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "detail_section.h"
 #include "model_sections.h"
+#include "model_versions.h"
 #include "pleat/base/bytes.h"
 #include "pleat/base/file.h"
 #include "pleat/base/sealed_file.h"
@@ -25,9 +26,8 @@
 namespace pleat {
 namespace {
 
-constexpr FileKind kKind = {"PLEATMDL", 4, 1, "model file"};
+constexpr FileKind kKind = {"PLEATMDL", kModelFileVersion, 1, "model file"};
 constexpr uint32_t kNumSections = 10;
-constexpr uint32_t kFirstWithSkinFeatures = 4;  // version of the file
 constexpr uint64_t kTableEntryBytes = 24;
 constexpr uint64_t kFirstSectionOffset = kFileKindBytes + 4 + kNumSections * kTableEntryBytes;
 
@@ -148,7 +148,7 @@ absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
     PLEAT_RETURN_IF_ERROR(
         ReadMatrix(reader, count, 1, "feature reference", &parts->feature_reference));
     if (version < kFirstWithSkinFeatures) return absl::OkStatus();
-    return Assign(ReadSkinFeatures(reader, parts->rig), &parts->skin_features);
+    return Assign(ReadSkinFeatures(reader, version, parts->rig), &parts->skin_features);
   }));
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 7, [&](ByteReader* reader) {
     return ReadControl(reader, parts->topology.num_vertices(), &parts->control_vertices,

@@ -27,7 +27,8 @@ void WriteSkin(const Rig& rig, ByteWriter* writer);
 absl::StatusOr<Rig> ReadSkin(ByteReader* reader, const Skeleton& skeleton, int num_vertices);
 
 void WriteSkinFeatures(const std::optional<SkinFeatures>& features, ByteWriter* writer);
-absl::StatusOr<std::optional<SkinFeatures>> ReadSkinFeatures(ByteReader* reader, const Rig& rig);
+absl::StatusOr<std::optional<SkinFeatures>> ReadSkinFeatures(ByteReader* reader, uint32_t version,
+                                                             const Rig& rig);
 
 void WriteControl(const CharacterModel::Parts& parts, ByteWriter* writer);
 absl::Status ReadControl(ByteReader* reader, int num_vertices, std::vector<int>* control_vertices,

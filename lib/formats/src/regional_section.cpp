@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "model_versions.h"
+#include "planes_section.h"
 #include "pleat/base/status.h"
 #include "pleat/math/array_io.h"
 
@@ -47,6 +49,49 @@ absl::StatusOr<RegionalGpParameters::Scale> ReadScale(ByteReader* reader, uint32
   PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_columns, "columns of a scale", &columns));
   scale.columns.assign(columns.begin(), columns.end());
   return scale;
+}
+
+absl::StatusOr<int> ReadPlace(ByteReader* reader) {
+  constexpr uint32_t kMax = 1 << 30;
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t place, reader->Read<uint32_t>("block of the fold"));
+  if (place <= kMax) return static_cast<int>(place);
+  return absl::InvalidArgumentError("a block of the fold begins or ends out of range");
+}
+
+absl::StatusOr<CoefficientFoldBlock> ReadFoldBlock(ByteReader* reader) {
+  CoefficientFoldBlock block;
+  PLEAT_ASSIGN_OR_RETURN(block.first_input, ReadPlace(reader));
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t num_targets, reader->Read<uint32_t>("block of the fold"));
+  PLEAT_RETURN_IF_ERROR(reader->Require(num_targets, 2 * sizeof(uint32_t), "targets of the fold"));
+  uint64_t num_outputs = 0;
+  for (uint32_t t = 0; t < num_targets; ++t) {
+    CoefficientFoldBlock::Target target;
+    PLEAT_ASSIGN_OR_RETURN(target.first_output, ReadPlace(reader));
+    PLEAT_ASSIGN_OR_RETURN(target.count, ReadPlace(reader));
+    num_outputs += static_cast<uint64_t>(target.count);
+    block.targets.push_back(target);
+  }
+  if (num_outputs > kMaxCoefficients) {
+    return absl::InvalidArgumentError(absl::StrCat("a block of the fold has ", num_outputs,
+                                                   " outputs, the limit is ", kMaxCoefficients));
+  }
+  PLEAT_ASSIGN_OR_RETURN(block.weights,
+                         ReadPlaneMatrix(reader, num_outputs, "weights of the fold"));
+  return block;
+}
+
+// Reads the block of one region and one part, inputs x outputs, and rounds it as finely as planes
+// allow.
+absl::StatusOr<CoefficientFoldBlock> ReadFoldBlockOfFloats(ByteReader* reader) {
+  PLEAT_ASSIGN_OR_RETURN(const int first_input, ReadPlace(reader));
+  PLEAT_ASSIGN_OR_RETURN(const int first_output, ReadPlace(reader));
+  std::array<uint32_t, 2> sizes;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(sizes), "block of the fold"));
+  Eigen::MatrixXf weights;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, sizes[0], sizes[1], "block of the fold", &weights));
+  return CoefficientFoldBlock::Round(
+      first_input, {{first_output, static_cast<int>(weights.cols())}},
+      weights.cast<double>().transpose(), Eigen::VectorXd::Zero(weights.rows()));
 }
 
 }  // namespace
@@ -133,29 +178,26 @@ absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader, uint32_t v
 void WriteFold(const std::vector<CoefficientFoldBlock>& fold, ByteWriter* writer) {
   writer->Write(static_cast<uint32_t>(fold.size()));
   for (const CoefficientFoldBlock& block : fold) {
-    const std::array<uint32_t, 4> numbers = {
-        static_cast<uint32_t>(block.first_input), static_cast<uint32_t>(block.first_output),
-        static_cast<uint32_t>(block.weights.rows()), static_cast<uint32_t>(block.weights.cols())};
-    writer->WriteArray(std::span<const uint32_t>(numbers));
-    WriteMatrix(block.weights, writer);
+    writer->Write(static_cast<uint32_t>(block.first_input));
+    writer->Write(static_cast<uint32_t>(block.targets.size()));
+    for (const CoefficientFoldBlock::Target& target : block.targets) {
+      writer->Write(static_cast<uint32_t>(target.first_output));
+      writer->Write(static_cast<uint32_t>(target.count));
+    }
+    WritePlaneMatrix(block.weights, writer);
   }
 }
 
-absl::StatusOr<std::vector<CoefficientFoldBlock>> ReadFold(ByteReader* reader) {
+absl::StatusOr<std::vector<CoefficientFoldBlock>> ReadFold(ByteReader* reader, uint32_t version) {
   PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>("blocks of the fold"));
   PLEAT_RETURN_IF_ERROR(reader->Require(count, 4 * sizeof(uint32_t), "blocks of the fold"));
-  std::vector<CoefficientFoldBlock> fold(count);
-  for (CoefficientFoldBlock& block : fold) {
-    std::array<uint32_t, 4> numbers;
-    PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(numbers), "block of the fold"));
-    constexpr uint32_t kMax = 1 << 30;
-    if (numbers[0] > kMax || numbers[1] > kMax) {
-      return absl::InvalidArgumentError("a block of the fold begins out of range");
-    }
-    block.first_input = static_cast<int>(numbers[0]);
-    block.first_output = static_cast<int>(numbers[1]);
-    PLEAT_RETURN_IF_ERROR(
-        ReadMatrix(reader, numbers[2], numbers[3], "block of the fold", &block.weights));
+  std::vector<CoefficientFoldBlock> fold;
+  fold.reserve(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    PLEAT_ASSIGN_OR_RETURN(CoefficientFoldBlock block, version >= kFirstWithPlanes
+                                                           ? ReadFoldBlock(reader)
+                                                           : ReadFoldBlockOfFloats(reader));
+    fold.push_back(std::move(block));
   }
   return fold;
 }

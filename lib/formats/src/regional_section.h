@@ -12,20 +12,19 @@
 
 namespace pleat {
 
-// Files before version 3 have one scale for all inputs, which stands before the matrices.
-inline constexpr uint32_t kFirstWithInputScales = 3;
-// Files before version 4 have one basis for all regions and all vertices.
-inline constexpr uint32_t kFirstWithParts = 4;
-
-// Reads that one scale; later versions have none.
+// Reads the one scale of all inputs that files before version 3 have; later ones have none.
 absl::Status ReadOldInputScale(ByteReader* reader, uint32_t version, double* scale);
 absl::Status ReadMeanAndScales(ByteReader* reader, uint32_t version, uint32_t num_inputs,
                                double old_scale, Eigen::VectorXd* mean, Eigen::VectorXd* scales);
+
+// Of a model. Whoever has a coefficient has its column of the fold, or of alpha, in the file as
+// well; the limit stops counts that only want memory.
+inline constexpr uint32_t kMaxCoefficients = 1 << 16;
 
 void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer);
 absl::StatusOr<RegionalGpParameters> ReadRegional(ByteReader* reader, uint32_t version);
 
 void WriteFold(const std::vector<CoefficientFoldBlock>& fold, ByteWriter* writer);
-absl::StatusOr<std::vector<CoefficientFoldBlock>> ReadFold(ByteReader* reader);
+absl::StatusOr<std::vector<CoefficientFoldBlock>> ReadFold(ByteReader* reader, uint32_t version);
 
 }  // namespace pleat

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "model_sections.h"
+#include "model_versions.h"
+#include "planes_section.h"
 #include "pleat/base/status.h"
 #include "pleat/math/array_io.h"
 
@@ -40,9 +42,30 @@ absl::StatusOr<SkinFeaturesParameters::Region> ReadRegion(ByteReader* reader) {
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of a region"));
   const auto [num_edges, num_features] = counts;
   PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_edges, "edges of a region", &region.edges));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, uint64_t{3} * num_edges, num_features,
-                                   "weights of a region", &region.weights));
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_features, 1, "offset of a region", &region.offset));
+  if (num_edges == 0 && num_features == 0) return region;
+  PLEAT_ASSIGN_OR_RETURN(region.weights,
+                         ReadPlaneMatrix(reader, num_features, "weights of a region"));
+  return region;
+}
+
+// Reads a region whose weights are floats, edges x features, and rounds them as finely as planes
+// allow.
+absl::StatusOr<SkinFeaturesParameters::Region> ReadRegionOfFloats(ByteReader* reader) {
+  SkinFeaturesParameters::Region region;
+  std::array<uint32_t, 2> counts;
+  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of a region"));
+  const auto [num_edges, num_features] = counts;
+  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_edges, "edges of a region", &region.edges));
+  Eigen::MatrixXf weights;
+  PLEAT_RETURN_IF_ERROR(
+      ReadMatrix(reader, uint64_t{3} * num_edges, num_features, "weights of a region", &weights));
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_features, 1, "offset of a region", &region.offset));
+  if (weights.size() == 0) return region;
+  PLEAT_ASSIGN_OR_RETURN(CoefficientFoldBlock block,
+                         CoefficientFoldBlock::Round(0, {}, weights.cast<double>().transpose(),
+                                                     Eigen::VectorXd::Zero(weights.rows())));
+  region.weights = std::move(block.weights);
   return region;
 }
 
@@ -53,26 +76,34 @@ void WriteSkinFeatures(const std::optional<SkinFeatures>& features, ByteWriter* 
   if (!features) return;
   const SkinFeaturesParameters p = features->parameters();
   WriteEdges(p.edges, writer);
+  WriteMatrix(p.center, writer);
   writer->Write(static_cast<uint32_t>(p.regions.size()));
   for (const SkinFeaturesParameters::Region& region : p.regions) {
     writer->Write(static_cast<uint32_t>(region.edges.size()));
-    writer->Write(static_cast<uint32_t>(region.weights.cols()));
+    writer->Write(static_cast<uint32_t>(region.offset.size()));
     writer->WriteArray(std::span<const int32_t>(region.edges));
-    WriteMatrix(region.weights, writer);
     WriteMatrix(region.offset, writer);
+    if (!region.edges.empty()) WritePlaneMatrix(region.weights, writer);
   }
 }
 
-absl::StatusOr<std::optional<SkinFeatures>> ReadSkinFeatures(ByteReader* reader, const Rig& rig) {
+absl::StatusOr<std::optional<SkinFeatures>> ReadSkinFeatures(ByteReader* reader, uint32_t version,
+                                                             const Rig& rig) {
   PLEAT_ASSIGN_OR_RETURN(const uint32_t has_features, reader->Read<uint32_t>("skin feature flag"));
   if (has_features > 1) return absl::InvalidArgumentError("unknown skin feature flag");
   if (has_features == 0) return std::optional<SkinFeatures>();
   SkinFeaturesParameters p;
   PLEAT_ASSIGN_OR_RETURN(p.edges, ReadEdges(reader));
+  if (version >= kFirstWithPlanes) {
+    PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, uint64_t{3} * p.edges.edges.size(), 1,
+                                     "center of the skin edges", &p.center));
+  }
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_regions, reader->Read<uint32_t>("region count"));
   PLEAT_RETURN_IF_ERROR(reader->Require(num_regions, 2 * sizeof(uint32_t), "regions"));
   for (uint32_t r = 0; r < num_regions; ++r) {
-    PLEAT_ASSIGN_OR_RETURN(SkinFeaturesParameters::Region region, ReadRegion(reader));
+    PLEAT_ASSIGN_OR_RETURN(SkinFeaturesParameters::Region region, version >= kFirstWithPlanes
+                                                                      ? ReadRegion(reader)
+                                                                      : ReadRegionOfFloats(reader));
     p.regions.push_back(std::move(region));
   }
   PLEAT_ASSIGN_OR_RETURN(SkinFeatures features, SkinFeatures::FromParameters(rig, std::move(p)));

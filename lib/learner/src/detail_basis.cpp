@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/simd/expand_planes.h"
+#include "pleat/simd/round_weights.h"
 
 namespace pleat {
 namespace {
@@ -89,6 +90,10 @@ absl::StatusOr<DetailBasis> DetailBasis::FromParameters(const DetailBasisParamet
   basis.num_components_ = parameters.num_components;
   basis.components_ = parameters.components;
   basis.scales_ = parameters.scales;
+  basis.has_one_plane_each_ = basis.num_planes() == basis.num_components_;
+  for (int plane = 0; plane < basis.num_planes(); ++plane) {
+    if (basis.components_[plane] != plane) basis.has_one_plane_each_ = false;
+  }
   const size_t num_places = static_cast<size_t>(basis.num_blocks()) * kBlockDetails;
   basis.mean_.assign(num_places, 0);
   basis.values_.assign(num_places * 2 * basis.num_pairs(), 0);
@@ -155,25 +160,18 @@ Eigen::VectorXd DetailBasis::FinestSteps() const {
 void DetailBasis::SetCoefficients(const Eigen::Ref<const Eigen::VectorXf>& coefficients,
                                   Query* query) const {
   assert(coefficients.size() == num_components_);
-  constexpr double kLargestWeight = 32767, kLargestSum = 2147483647;
-  query->weights.assign(2 * num_pairs(), 0);
-  query->unit = 0;
-  double largest = 0, total = 0;
-  for (int plane = 0; plane < num_planes(); ++plane) {
-    const double product = std::abs(double(scales_[plane]) * coefficients[components_[plane]]);
-    largest = std::max(largest, product);
-    total += product;
+  query->weights.resize(2 * num_pairs());
+  if (num_planes() % 2 != 0) query->weights.back() = 0;
+  const float* of_planes = coefficients.data();
+  if (!has_one_plane_each_) {
+    query->coefficients.resize(num_planes());
+    for (int plane = 0; plane < num_planes(); ++plane) {
+      query->coefficients[plane] = coefficients[components_[plane]];
+    }
+    of_planes = query->coefficients.data();
   }
-  // As fine as weights of 16 bits and sums of 32 bits allow; every weight may round up by a half.
-  const double room = kLargestSum / kLargest - num_planes();
-  const double unit = std::max(largest / kLargestWeight, total / room);
-  if (!(unit > 0) || !std::isfinite(unit)) return;
-  query->unit = static_cast<float>(unit);
-  for (int plane = 0; plane < num_planes(); ++plane) {
-    const double product = double(scales_[plane]) * coefficients[components_[plane]];
-    query->weights[plane] = static_cast<int16_t>(
-        std::clamp(std::round(product / unit), -kLargestWeight, kLargestWeight));
-  }
+  query->unit = RoundWeightsVariants().front().kernel(scales_.data(), of_planes, num_planes(),
+                                                      query->weights.data());
 }
 
 void DetailBasis::ExpandBlocks(std::span<const Query* const> queries, int first_block,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pleat/base/large_page_allocator.h"
 #include "pleat/learner/regional_gp.h"
 #include "pleat/simd/dispatch.h"
 
@@ -18,47 +19,56 @@ namespace pleat {
 // Its columns are shared with other sets, so not the row is changed but the sums over it:
 //
 //   s x . x_n = s (x . x_n),   |s x - x_n|^2 = |x - x_n|^2 + (s^2 - 1) |x|^2 + 2 (1 - s) x . x_n
+//
+// All of it is in single precision, in which the rows are stored: the rows of a set have norms near
+// 1, so a squared distance is off by some 1e-7, and a kernel value by some 1e-6 of its amplitude.
 class RegionalFactors {
  public:
   RegionalFactors() = default;
   explicit RegionalFactors(const RegionalGpParameters& parameters);  // alphas are not needed
 
-  size_t memory_bytes() const { return inputs_.size() * sizeof(double); }
-  // Doubles that Compute() needs for its own use.
+  size_t memory_bytes() const { return inputs_.size() * sizeof(float); }
+  // Floats that Compute() needs for its own use.
   size_t scratch_size() const;
 
+  // The rows of the training, N x num_inputs; zeros in columns that no set has.
+  Eigen::MatrixXd Inputs(Eigen::Index num_inputs) const;
+
   // row: D, normalized. factors[r * N + n] = k_r(row, row n of the training).
-  void Compute(const double* row, double* scratch, float* factors) const;
+  void Compute(const float* row, float* scratch, float* factors) const;
 
   // Kernels this processor can run, the fastest first; all give the same bits.
-  using Function = void (*)(const RegionalFactors& factors_of, const double* row, double* scratch,
+  using Function = void (*)(const RegionalFactors& factors_of, const float* row, float* scratch,
                             float* factors);
   static const KernelVariants<Function>& Variants();
 
-  static constexpr ptrdiff_t kLanes = 8;  // rows of the training that are computed together
+  static constexpr ptrdiff_t kLanes = 16;  // rows of the training that are computed together
   struct Scale {
     ptrdiff_t set = 0;
-    double exponent = 0;  // -g / 2
-    double amplitude = 1, linear = 0;
+    float exponent = 0;  // -g / 2
+    float amplitude = 1, linear = 0;
   };
   struct Region {
-    double bias = 0;
+    float bias = 0;
     size_t end_scale = 0;  // of its scales in `scales_`
   };
 
  private:
   friend struct RegionalFactorsKernel;
 
+  void StoreRows(const Eigen::MatrixXd& inputs);
+  size_t chunk_size() const { return kLanes * (columns_.size() + atom_ends_.size()); }
+
   ptrdiff_t num_rows_ = 0;
-  // By eight rows, in these by columns in the order of the atoms, then the squared norm of the row
+  // By kLanes rows, in these by columns in the order of the atoms, then the squared norm of the row
   // in each atom; zeros after the last row.
-  std::vector<double> inputs_;
-  std::vector<int> columns_;        // of all atoms, one after the other
-  std::vector<size_t> atom_ends_;   // in columns_
-  std::vector<int> set_atoms_;      // of all sets, one after the other
-  std::vector<size_t> set_ends_;    // in set_atoms_
-  std::vector<double> set_bounds_;  // the longest row of each set
-  std::vector<Scale> scales_;       // of all regions, one after the other
+  std::vector<float, LargePageAllocator<float>> inputs_;
+  std::vector<int> columns_;       // of all atoms, one after the other
+  std::vector<size_t> atom_ends_;  // in columns_
+  std::vector<int> set_atoms_;     // of all sets, one after the other
+  std::vector<size_t> set_ends_;   // in set_atoms_
+  std::vector<float> set_bounds_;  // the longest row of each set
+  std::vector<Scale> scales_;      // of all regions, one after the other
   std::vector<Region> regions_;
 };
 

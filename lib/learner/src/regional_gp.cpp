@@ -18,8 +18,8 @@
 // Where regions share outputs, as in models before version 4 of the file, their sums add up in the
 // order of the regions.
 //
-// `parameters_` keeps what else a model file needs, with the alphas taken out; parameters() puts
-// them back. A RegionalGp is immutable, and copies share the kernels.
+// `parameters_` keeps what else a model file needs, with alphas and inputs taken out; parameters()
+// puts them back. A RegionalGp is immutable, and copies share the kernels.
 
 #include "pleat/learner/regional_gp.h"
 
@@ -97,8 +97,10 @@ absl::StatusOr<RegionalGp> RegionalGp::FromParameters(RegionalGpParameters param
 
 RegionalGp::RegionalGp(RegionalGpParameters parameters)
     : parameters_(std::move(parameters)),
+      num_rows_(parameters_.inputs.rows()),
       factors_(std::make_shared<const RegionalFactors>(parameters_)) {
-  const Eigen::Index n = parameters_.inputs.rows();
+  const Eigen::Index n = num_rows_;
+  parameters_.inputs.resize(0, 0);
   size_t size = 0;
   for (const RegionalGpParameters::Region& region : parameters_.regions) {
     num_region_outputs_.push_back(region.alpha.cols());
@@ -116,7 +118,8 @@ RegionalGp::RegionalGp(RegionalGpParameters parameters)
 
 RegionalGpParameters RegionalGp::parameters() const {
   RegionalGpParameters p = parameters_;
-  const Eigen::Index n = p.inputs.rows();
+  const Eigen::Index n = num_rows_;
+  p.inputs = factors_->Inputs(num_inputs());
   const float* alpha = alphas_.data();
   for (size_t i = 0; i < p.regions.size(); ++i) {
     const Eigen::Index stride = FilledUp(num_region_outputs_[i]);
@@ -128,8 +131,7 @@ RegionalGpParameters RegionalGp::parameters() const {
 }
 
 size_t RegionalGp::memory_bytes() const {
-  return static_cast<size_t>(parameters_.inputs.size()) * sizeof(double) +
-         factors_->memory_bytes() + alphas_.size() * sizeof(float);
+  return factors_->memory_bytes() + alphas_.size() * sizeof(float);
 }
 
 void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace,
@@ -142,7 +144,8 @@ void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace
 
 void RegionalGp::SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace) const {
   assert(row.size() == num_inputs());
-  workspace->row = (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales);
+  workspace->row =
+      (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales).cast<float>();
   workspace->scratch.resize(static_cast<Eigen::Index>(factors_->scratch_size()));
   workspace->factors.resize(num_factors());
   factors_->Compute(workspace->row.data(), workspace->scratch.data(), workspace->factors.data());
@@ -156,7 +159,7 @@ void RegionalGp::PredictRows(std::span<Workspace* const> workspaces,
     std::array<const float*, kMaxWeightedTogether> factors{};
     std::array<float*, kMaxWeightedTogether> sums{};
     for (size_t q = 0; q < count; ++q) workspaces[begin + q]->sum.setZero(num_outputs());
-    const Eigen::Index num_rows = parameters_.inputs.rows();
+    const Eigen::Index num_rows = num_rows_;
     const float* alpha = alphas_.data();
     for (size_t i = 0; i < parameters_.regions.size(); ++i) {
       const Eigen::Index first = parameters_.regions[i].first_output;

@@ -127,32 +127,60 @@ absl::StatusOr<PartBasis> AddPart(const std::vector<int>& vertices, const Eigen:
   return part;
 }
 
-// Adds the blocks that express the basis of a region in those of the parts. A region whose skinning
-// weights have long tails moves far parts by next to nothing, a root mean square of less than
-// `smallest_rms` per entry, and has no block for them. first_input: its first output of the
-// regional GP.
-void AddFold(const std::vector<PartBasis>& parts, int first_input, const RegionBasis& region,
-             double smallest_rms, std::vector<CoefficientFoldBlock>* fold) {
-  const std::vector<Eigen::Index>& rows = region.rows;
-  for (const PartBasis& part : parts) {
-    std::vector<Eigen::Index> in_region, in_part;  // places of the rows that both have
-    for (size_t r = 0, p = 0; r < rows.size() && p < part.rows.size();) {
-      if (rows[r] < part.rows[p]) {
-        ++r;
-      } else if (rows[r] > part.rows[p]) {
-        ++p;
-      } else {
-        in_region.push_back(static_cast<Eigen::Index>(r++));
-        in_part.push_back(static_cast<Eigen::Index>(p++));
-      }
+// The rows that two ascending lists share, as places in either.
+struct SharedRows {
+  std::vector<Eigen::Index> in_first, in_second;
+};
+
+SharedRows FindSharedRows(const std::vector<Eigen::Index>& first,
+                          const std::vector<Eigen::Index>& second) {
+  SharedRows shared;
+  for (size_t a = 0, b = 0; a < first.size() && b < second.size();) {
+    if (first[a] < second[b]) {
+      ++a;
+    } else if (first[a] > second[b]) {
+      ++b;
+    } else {
+      shared.in_first.push_back(static_cast<Eigen::Index>(a++));
+      shared.in_second.push_back(static_cast<Eigen::Index>(b++));
     }
-    if (in_region.empty()) continue;
-    const Eigen::MatrixXd moved = region.basis(in_region, Eigen::all);
+  }
+  return shared;
+}
+
+// Adds the block that expresses the basis of a region in those of the parts. A region whose
+// skinning weights have long tails moves far parts by next to nothing, a root mean square of less
+// than fold_rest of that of all details, and has no outputs there. first_input: its first output of
+// the regional GP.
+absl::Status AddFold(const std::vector<PartBasis>& parts, int first_input,
+                     const RegionBasis& region, double detail_rms,
+                     const DetailModelOptions& options, std::vector<CoefficientFoldBlock>* fold) {
+  const double smallest_rms = options.regional_basis.fold_rest * detail_rms;
+  std::vector<CoefficientFoldBlock::Target> targets;
+  Eigen::MatrixXd weights(0, region.basis.cols());
+  double most_per_row = 0;  // coefficients of a part for each of its rows
+  for (const PartBasis& part : parts) {
+    const SharedRows shared = FindSharedRows(region.rows, part.rows);
+    if (shared.in_first.empty()) continue;
+    const Eigen::MatrixXd moved = region.basis(shared.in_first, Eigen::all);
     const double square = (moved * region.rms.asDiagonal()).squaredNorm();
     if (square < smallest_rms * smallest_rms * double(part.rows.size())) continue;
-    const Eigen::MatrixXd product = moved.transpose() * part.components.basis(in_part, Eigen::all);
-    fold->push_back({first_input, part.first_coefficient, product.cast<float>()});
+    const Eigen::MatrixXd& basis = part.components.basis;
+    targets.push_back({part.first_coefficient, static_cast<int>(basis.cols())});
+    weights.conservativeResize(weights.rows() + basis.cols(), Eigen::NoChange);
+    weights.bottomRows(basis.cols()) = basis(shared.in_second, Eigen::all).transpose() * moved;
+    most_per_row =
+        std::max(most_per_row, double(basis.cols()) / static_cast<double>(part.rows.size()));
   }
+  if (targets.empty()) return absl::OkStatus();
+  // An error of the coefficients spreads over more rows than there are coefficients.
+  const Eigen::VectorXd steps =
+      LargestSteps(region.rms, detail_rms / std::sqrt(most_per_row), options.rounding);
+  PLEAT_ASSIGN_OR_RETURN(
+      CoefficientFoldBlock block,
+      CoefficientFoldBlock::Round(first_input, std::move(targets), weights, steps));
+  fold->push_back(std::move(block));
+  return absl::OkStatus();
 }
 
 // Root mean squares of the scores around their means.
@@ -206,8 +234,8 @@ absl::StatusOr<RegionalTraining> TrainRegional(const Eigen::MatrixXd& features,
   }
   for (size_t r = 0; r < bases.size(); ++r) {
     MapRegion(options, details.basis.rows(), &bases[r]);
-    AddFold(parts, training.regional.regions[r].first_output, bases[r],
-            options.regional_basis.fold_rest * detail_rms, &training.fold);
+    PLEAT_RETURN_IF_ERROR(AddFold(parts, training.regional.regions[r].first_output, bases[r],
+                                  detail_rms, options, &training.fold));
   }
   return training;
 }

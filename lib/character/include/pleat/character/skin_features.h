@@ -18,11 +18,14 @@ namespace pleat {
 // What a model file holds. E: edges, k: components of a region.
 struct SkinFeaturesParameters {
   struct Region {
-    std::vector<int> edges;   // e of the E edges, ascending; a region without any has no features
-    Eigen::MatrixXf weights;  // 3 e x k
-    Eigen::VectorXf offset;   // k: component = weights^T (values of the edges) - offset
+    std::vector<int> edges;  // e of the E edges, ascending; a region without any has no features
+    DetailBasisParameters weights;  // k x 3 e in planes of 8-bit integers, of mean zero
+    Eigen::VectorXf offset;         // k: features = weights (values of the edges) - offset
   };
   SkinEdgesParameters edges;
+  // 3 E, near the values of the edges, or empty. It is taken off the values before these are
+  // rounded for the product, and changes nothing else.
+  Eigen::VectorXf center;
   std::vector<Region> regions;
 };
 
@@ -32,7 +35,7 @@ class SkinFeatures {
   // The memory of one thread, reused without allocation.
   struct Workspace {
     SkinEdges::Workspace edges;
-    Eigen::VectorXf values;    // 3 E
+    Eigen::VectorXf values;    // 3 E, without the center
     Eigen::VectorXf gathered;  // those of each region's edges, region after region
     Eigen::VectorXf features;  // D_E
     CoefficientFold::Workspace projection;
@@ -77,8 +80,10 @@ class SkinFeatures {
   SkinEdges edges_;
   std::vector<std::vector<int>> region_edges_;
   std::vector<int> region_ends_;
-  CoefficientFold projection_;  // from the gathered values, one block for each region
-  Eigen::VectorXf offset_;      // D_E
+  CoefficientFold projection_;       // from the gathered values, one block for each region
+  Eigen::VectorXf center_;           // 3 E
+  Eigen::VectorXf offset_;           // D_E, as it is stored
+  Eigen::VectorXf centered_offset_;  // D_E, of values without the center
   int num_features_ = 0;
 };
 

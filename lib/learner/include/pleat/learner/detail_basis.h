@@ -38,8 +38,9 @@ class DetailBasis {
 
   // Coefficients made ready for the sums.
   struct Query {
-    std::vector<int16_t> weights;  // P, rounded up to pairs
-    float unit = 0;                // of the integer sums
+    std::vector<int16_t> weights;     // P, rounded up to pairs
+    float unit = 0;                   // of the integer sums
+    std::vector<float> coefficients;  // P, of the component of each plane
   };
 
   // Rounds `basis` (D_M x r): component k gets planes until its step (scale of its last plane) is
@@ -66,7 +67,7 @@ class DetailBasis {
   Eigen::MatrixXd Dense() const;        // D_M x r
   Eigen::VectorXd FinestSteps() const;  // r: scale of each component's last plane, or infinity
 
-  // coefficients: r, finite. No allocation after the first call.
+  // coefficients: r; when one is not finite, all count as zero. No allocation after the first call.
   void SetCoefficients(const Eigen::Ref<const Eigen::VectorXf>& coefficients, Query* query) const;
 
   // Blocks first_block to first_block + num_blocks - 1 of the details of several queries, which
@@ -82,9 +83,10 @@ class DetailBasis {
   size_t PlaceOf(int row, int plane) const;  // in values_
 
   int num_details_ = 0, num_components_ = 0;
-  std::vector<int> components_;  // P
-  std::vector<float> scales_;    // P
-  std::vector<float> mean_;      // by blocks
+  std::vector<int> components_;      // P
+  bool has_one_plane_each_ = false;  // every component one: its number is that of the component
+  std::vector<float> scales_;        // P
+  std::vector<float> mean_;          // by blocks
   // By blocks, in a block by pairs of planes, in a pair row by row.
   std::vector<int8_t, LargePageAllocator<int8_t>> values_;
 };

@@ -67,8 +67,10 @@ struct RegionalGpParameters {
   };
   Eigen::VectorXd input_mean;    // D
   Eigen::VectorXd input_scales;  // D, units of the inputs
-  Eigen::MatrixXd inputs;        // N x D, normalized: (x - mean) / scale
-  Eigen::VectorXd output_mean;   // r, of all outputs
+  // N x D, normalized: (x - mean) / scale. A RegionalGp keeps them in single precision, and only
+  // the columns that are in a set.
+  Eigen::MatrixXd inputs;
+  Eigen::VectorXd output_mean;  // r, of all outputs
   std::vector<Region> regions;
 };
 
@@ -80,8 +82,8 @@ class RegionalGp {
   // The memory that one thread needs for its queries. It is sized by the first query and reused
   // without allocation.
   struct Workspace {
-    Eigen::VectorXd row;      // D, normalized
-    Eigen::VectorXd scratch;  // memory of RegionalFactors
+    Eigen::VectorXf row;      // D, normalized
+    Eigen::VectorXf scratch;  // memory of RegionalFactors
     Eigen::VectorXf factors;  // R N, all kernels
     Eigen::VectorXf sum;      // r
     std::vector<float> part;  // the outputs of one region, filled up to whole registers
@@ -100,7 +102,7 @@ class RegionalGp {
   static absl::StatusOr<RegionalGp> FromParameters(RegionalGpParameters parameters);
 
   RegionalGpParameters parameters() const;
-  int num_inputs() const { return static_cast<int>(parameters_.inputs.cols()); }
+  int num_inputs() const { return static_cast<int>(parameters_.input_mean.size()); }
   int num_outputs() const { return static_cast<int>(parameters_.output_mean.size()); }
   size_t memory_bytes() const;
 
@@ -117,10 +119,11 @@ class RegionalGp {
  private:
   explicit RegionalGp(RegionalGpParameters parameters);
   Eigen::Index num_factors() const {  // R N
-    return parameters_.inputs.rows() * static_cast<Eigen::Index>(parameters_.regions.size());
+    return num_rows_ * static_cast<Eigen::Index>(parameters_.regions.size());
   }
 
-  RegionalGpParameters parameters_;               // without the alphas
+  RegionalGpParameters parameters_;               // without alphas and inputs
+  Eigen::Index num_rows_ = 0;                     // N
   std::vector<Eigen::Index> num_region_outputs_;  // r_R of each
   // The alphas of all regions one after the other, each N x its outputs row by row, filled up with
   // zeros to whole registers. A query reads them once from front to back.
