@@ -25,11 +25,11 @@ std::map<std::vector<int>, int> DifferentSets(const RegionalGpParameters& parame
 RegionalFactors::RegionalFactors(const RegionalGpParameters& parameters)
     : num_rows_(parameters.inputs.rows()) {
   const std::map<std::vector<int>, int> sets = DifferentSets(parameters);
-  set_bounds_.assign(sets.size(), std::numeric_limits<float>::infinity());
+  set_bounds_.assign(sets.size(), std::numeric_limits<double>::infinity());
   for (const RegionalGpParameters::Region& region : parameters.regions) {
     for (const RegionalGpParameters::Scale& scale : region.scales) {
       const int set = sets.at(scale.columns);
-      set_bounds_[set] = std::min(set_bounds_[set], static_cast<float>(scale.max_norm));
+      set_bounds_[set] = std::min(set_bounds_[set], scale.max_norm);
       scales_.push_back({.set = set,
                          .exponent = static_cast<float>(-.5 * scale.inverse_width),
                          .amplitude = static_cast<float>(scale.amplitude),
@@ -78,7 +78,9 @@ void RegionalFactors::StoreRows(const Eigen::MatrixXd& inputs) {
         lane[c * kLanes] = value;
         square += double(value) * value;
       }
-      lane[(columns_.size() + a) * kLanes] = static_cast<float>(square);
+      float* const squares = lane + (columns_.size() + 2 * a) * kLanes;
+      squares[0] = static_cast<float>(square);
+      squares[kLanes] = static_cast<float>(square - squares[0]);
     }
   }
 }
@@ -93,8 +95,10 @@ Eigen::MatrixXd RegionalFactors::Inputs(Eigen::Index num_inputs) const {
   return inputs;
 }
 
+// Of a chunk: products and squares of all atoms in doubles, products and distances of all sets in
+// floats; of the row: what shortens it in each set, and its square in each atom.
 size_t RegionalFactors::scratch_size() const {
-  return kLanes * (2 * atom_ends_.size() + 2 * set_ends_.size()) + 3 * set_ends_.size() +
+  return kLanes * (2 * atom_ends_.size() + set_ends_.size()) + 3 * set_ends_.size() +
          atom_ends_.size();
 }
 
@@ -102,10 +106,23 @@ size_t RegionalFactors::scratch_size() const {
 struct RegionalFactorsKernel {
   typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
   typedef uint32_t Bits __attribute__((vector_size(64)));
-  static constexpr ptrdiff_t kLanes = RegionalFactors::kLanes;
+  typedef float HalfOfLanes __attribute__((vector_size(32), aligned(4), may_alias));
+  typedef double Doubles __attribute__((vector_size(64), aligned(8), may_alias));
+  static constexpr ptrdiff_t kLanes = RegionalFactors::kLanes, kHalf = kLanes / 2;
 
   static PLEAT_ALWAYS_INLINE Lanes& At(float* values, size_t i) {
     return *reinterpret_cast<Lanes*>(values + i * kLanes);
+  }
+  static PLEAT_ALWAYS_INLINE Doubles& At(double* values, size_t i, int half) {
+    return *reinterpret_cast<Doubles*>(values + i * kLanes + half * kHalf);
+  }
+  static PLEAT_ALWAYS_INLINE Doubles Load(const float* values, size_t i, int half) {
+    const auto* from = reinterpret_cast<const HalfOfLanes*>(values + i * kLanes + half * kHalf);
+    return __builtin_convertvector(*from, Doubles);
+  }
+  static PLEAT_ALWAYS_INLINE void Store(Doubles numbers, int half, float* values, size_t i) {
+    *reinterpret_cast<HalfOfLanes*>(values + i * kLanes + half * kHalf) =
+        __builtin_convertvector(numbers, HalfOfLanes);
   }
 
   // exp(x) for x <= 0, off by 1e-7 of itself at most; below -87 that of -87. x = n log 2 + r with
@@ -130,66 +147,67 @@ struct RegionalFactorsKernel {
     return p * (Lanes)power;
   }
 
-  // How the sums over one set change when its row is shortened; a row within the bound leaves them
-  // as they are, to the bit.
+  // The row as one set sees it.
   struct Shortening {
-    float factor;          // s
-    float distance_more;   // (s^2 - 1) |x|^2
-    float distance_slope;  // 2 (1 - s)
+    double factor;        // s, 1 within the bound
+    double square;        // s^2 |x|^2
+    double twice_factor;  // 2 s
   };
 
-  static PLEAT_ALWAYS_INLINE void Shorten(const RegionalFactors& f, const float* row,
-                                          float* atom_squares, Shortening* shortenings) {
+  static PLEAT_ALWAYS_INLINE void Shorten(const RegionalFactors& f, const double* row,
+                                          double* atom_squares, Shortening* shortenings) {
     size_t c = 0;
     for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
       double square = 0;
-      for (; c < f.atom_ends_[a]; ++c) square += double(row[f.columns_[c]]) * row[f.columns_[c]];
-      atom_squares[a] = static_cast<float>(square);
+      for (; c < f.atom_ends_[a]; ++c) square += row[f.columns_[c]] * row[f.columns_[c]];
+      atom_squares[a] = square;
     }
     size_t i = 0;
     for (size_t set = 0; set < f.set_ends_.size(); ++set) {
       double square = 0;
       for (; i < f.set_ends_[set]; ++i) square += atom_squares[f.set_atoms_[i]];
-      const double norm = std::sqrt(square);
-      shortenings[set] = {1, 0, 0};
-      if (!(norm > f.set_bounds_[set])) continue;
-      const double s = f.set_bounds_[set] / norm;
-      shortenings[set] = {static_cast<float>(s), static_cast<float>((s * s - 1) * square),
-                          static_cast<float>(2 * (1 - s))};
+      const double norm = std::sqrt(square), bound = f.set_bounds_[set];
+      const bool longer = norm > bound;
+      const double factor = longer ? bound / norm : 1;
+      shortenings[set] = {factor, longer ? bound * bound : square, 2 * factor};
     }
   }
 
   // Of the rows of one chunk: the products and the distances of all sets.
   static PLEAT_ALWAYS_INLINE void Sums(const RegionalFactors& f, const float* inputs,
-                                       const float* row, const float* atom_squares,
-                                       const Shortening* shortenings, float* atoms,
-                                       float* products) {
-    // |x - x_n|^2 = |x|^2 + |x_n|^2 - 2 x . x_n: of every column only the product is needed.
+                                       const double* row, const Shortening* shortenings,
+                                       double* atoms, float* products) {
     const float* squares = inputs + kLanes * f.columns_.size();
     size_t c = 0;
     for (size_t a = 0; a < f.atom_ends_.size(); ++a) {
-      Lanes product = {};
+      Doubles low = {}, high = {};
       for (; c < f.atom_ends_[a]; ++c) {
-        product += row[f.columns_[c]] * *reinterpret_cast<const Lanes*>(inputs + c * kLanes);
+        const double value = row[f.columns_[c]];
+        low += value * Load(inputs, c, 0);
+        high += value * Load(inputs, c, 1);
       }
-      const Lanes square = *reinterpret_cast<const Lanes*>(squares + a * kLanes);
-      At(atoms, 2 * a) = atom_squares[a] + square - 2 * product;
-      At(atoms, 2 * a + 1) = product;
+      At(atoms, 2 * a, 0) = low;
+      At(atoms, 2 * a, 1) = high;
+      for (const int half : {0, 1}) {
+        At(atoms, 2 * a + 1, half) = Load(squares, 2 * a, half) + Load(squares, 2 * a + 1, half);
+      }
     }
     float* distances = products + f.set_ends_.size() * kLanes;
-    size_t i = 0;
+    size_t begin = 0;
     for (size_t set = 0; set < f.set_ends_.size(); ++set) {
-      Lanes distance = {}, product = {};
-      for (; i < f.set_ends_[set]; ++i) {
-        distance += At(atoms, 2 * f.set_atoms_[i]);
-        product += At(atoms, 2 * f.set_atoms_[i] + 1);
+      const Shortening& own = shortenings[set];
+      for (const int half : {0, 1}) {
+        Doubles square = {}, product = {};
+        for (size_t i = begin; i < f.set_ends_[set]; ++i) {
+          product += At(atoms, 2 * f.set_atoms_[i], half);
+          square += At(atoms, 2 * f.set_atoms_[i] + 1, half);
+        }
+        const Doubles distance = own.square + square - own.twice_factor * product;
+        // Rounding may leave less than nothing, which a narrow kernel would blow up.
+        Store(distance > 0 ? distance : Doubles{}, half, distances, set);
+        Store(own.factor * product, half, products, set);
       }
-      const Shortening& shortening = shortenings[set];
-      const Lanes shortened =
-          distance + shortening.distance_more + shortening.distance_slope * product;
-      // Rounding may leave less than nothing, which a narrow kernel would blow up.
-      At(distances, set) = shortened > 0 ? shortened : Lanes{};
-      At(products, set) = shortening.factor * product;
+      begin = f.set_ends_[set];
     }
   }
 
@@ -214,16 +232,17 @@ struct RegionalFactorsKernel {
     }
   }
 
-  static PLEAT_ALWAYS_INLINE void Run(const RegionalFactors& f, const float* row, float* scratch,
+  static PLEAT_ALWAYS_INLINE void Run(const RegionalFactors& f, const double* row, double* scratch,
                                       float* factors) {
-    float* atoms = scratch;
-    float* products = atoms + 2 * kLanes * f.atom_ends_.size();
-    float* atom_squares = products + 2 * kLanes * f.set_ends_.size();
+    double* atoms = scratch;
+    double* set_lanes = atoms + 2 * kLanes * f.atom_ends_.size();
+    auto* products = reinterpret_cast<float*>(set_lanes);
+    double* atom_squares = set_lanes + kLanes * f.set_ends_.size();
     auto* shortenings = reinterpret_cast<Shortening*>(atom_squares + f.atom_ends_.size());
     Shorten(f, row, atom_squares, shortenings);
     const float* inputs = f.inputs_.data();
     for (ptrdiff_t n = 0; n < f.num_rows_; n += kLanes) {
-      Sums(f, inputs, row, atom_squares, shortenings, atoms, products);
+      Sums(f, inputs, row, shortenings, atoms, products);
       Kernels(f, products, std::min(kLanes, f.num_rows_ - n), factors + n);
       inputs += f.chunk_size();
     }
@@ -235,7 +254,7 @@ const KernelVariants<RegionalFactors::Function>& RegionalFactors::Variants() {
   return variants;
 }
 
-void RegionalFactors::Compute(const float* row, float* scratch, float* factors) const {
+void RegionalFactors::Compute(const double* row, double* scratch, float* factors) const {
   Variants().front().kernel(*this, row, scratch, factors);
 }
 

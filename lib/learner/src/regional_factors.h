@@ -18,27 +18,28 @@ namespace pleat {
 // A row of a set that is longer than the bound of the set is shortened to it, by s = bound / |x|.
 // Its columns are shared with other sets, so not the row is changed but the sums over it:
 //
-//   s x . x_n = s (x . x_n),   |s x - x_n|^2 = |x - x_n|^2 + (s^2 - 1) |x|^2 + 2 (1 - s) x . x_n
+//   s x . x_n = s (x . x_n),   |s x - x_n|^2 = s^2 |x|^2 + |x_n|^2 - 2 s (x . x_n)
 //
-// All of it is in single precision, in which the rows are stored: the rows of a set have norms near
-// 1, so a squared distance is off by some 1e-7, and a kernel value by some 1e-6 of its amplitude.
+// The rows are stored in single precision; sums over them are double, because a distance is what
+// is left of numbers that nearly cancel. From the distances on all is single: the weights of the
+// regions magnify an error of the kernels by several hundred, but these are as exact as a float.
 class RegionalFactors {
  public:
   RegionalFactors() = default;
   explicit RegionalFactors(const RegionalGpParameters& parameters);  // alphas are not needed
 
   size_t memory_bytes() const { return inputs_.size() * sizeof(float); }
-  // Floats that Compute() needs for its own use.
+  // Doubles that Compute() needs for its own use.
   size_t scratch_size() const;
 
   // The rows of the training, N x num_inputs; zeros in columns that no set has.
   Eigen::MatrixXd Inputs(Eigen::Index num_inputs) const;
 
   // row: D, normalized. factors[r * N + n] = k_r(row, row n of the training).
-  void Compute(const float* row, float* scratch, float* factors) const;
+  void Compute(const double* row, double* scratch, float* factors) const;
 
   // Kernels this processor can run, the fastest first; all give the same bits.
-  using Function = void (*)(const RegionalFactors& factors_of, const float* row, float* scratch,
+  using Function = void (*)(const RegionalFactors& factors_of, const double* row, double* scratch,
                             float* factors);
   static const KernelVariants<Function>& Variants();
 
@@ -57,18 +58,18 @@ class RegionalFactors {
   friend struct RegionalFactorsKernel;
 
   void StoreRows(const Eigen::MatrixXd& inputs);
-  size_t chunk_size() const { return kLanes * (columns_.size() + atom_ends_.size()); }
+  size_t chunk_size() const { return kLanes * (columns_.size() + 2 * atom_ends_.size()); }
 
   ptrdiff_t num_rows_ = 0;
   // By kLanes rows, in these by columns in the order of the atoms, then the squared norm of the row
-  // in each atom; zeros after the last row.
+  // in each atom, as a float and what that rounds off; zeros after the last row.
   std::vector<float, LargePageAllocator<float>> inputs_;
-  std::vector<int> columns_;       // of all atoms, one after the other
-  std::vector<size_t> atom_ends_;  // in columns_
-  std::vector<int> set_atoms_;     // of all sets, one after the other
-  std::vector<size_t> set_ends_;   // in set_atoms_
-  std::vector<float> set_bounds_;  // the longest row of each set
-  std::vector<Scale> scales_;      // of all regions, one after the other
+  std::vector<int> columns_;        // of all atoms, one after the other
+  std::vector<size_t> atom_ends_;   // in columns_
+  std::vector<int> set_atoms_;      // of all sets, one after the other
+  std::vector<size_t> set_ends_;    // in set_atoms_
+  std::vector<double> set_bounds_;  // the longest row of each set
+  std::vector<Scale> scales_;       // of all regions, one after the other
   std::vector<Region> regions_;
 };
 

@@ -144,8 +144,7 @@ void RegionalGp::Predict(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace
 
 void RegionalGp::SetRow(const Eigen::Ref<const Eigen::VectorXd>& row, Workspace* workspace) const {
   assert(row.size() == num_inputs());
-  workspace->row =
-      (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales).cast<float>();
+  workspace->row = (row - parameters_.input_mean).cwiseQuotient(parameters_.input_scales);
   workspace->scratch.resize(static_cast<Eigen::Index>(factors_->scratch_size()));
   workspace->factors.resize(num_factors());
   factors_->Compute(workspace->row.data(), workspace->scratch.data(), workspace->factors.data());

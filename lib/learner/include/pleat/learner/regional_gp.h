@@ -82,8 +82,8 @@ class RegionalGp {
   // The memory that one thread needs for its queries. It is sized by the first query and reused
   // without allocation.
   struct Workspace {
-    Eigen::VectorXf row;      // D, normalized
-    Eigen::VectorXf scratch;  // memory of RegionalFactors
+    Eigen::VectorXd row;      // D, normalized
+    Eigen::VectorXd scratch;  // memory of RegionalFactors
     Eigen::VectorXf factors;  // R N, all kernels
     Eigen::VectorXf sum;      // r
     std::vector<float> part;  // the outputs of one region, filled up to whole registers
