@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model_versions.h"
 #include "planes_section.h"
 #include "pleat/base/status.h"
 #include "pleat/math/array_io.h"
