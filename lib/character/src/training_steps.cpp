@@ -23,6 +23,7 @@
 #include "option_values.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
+#include "pleat/fitting/fit_weights.h"
 #include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
 #include "pleat/gp/scaling.h"
@@ -266,8 +267,17 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
     PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,
                                                   nullptr, progress.Stage("refine", .6, .8)));
   }
+  if (!widen) {
+    return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
+                     progress.Stage("fit", .8, 1));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack refined,
+                         FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options,
+                                   resources, nullptr, progress.Stage("fit", .8, .9)));
+  rigged->rig.fit_weights =
+      ComputeFitWeights(frames.sequence, rigged->rig, refined, resources.num_threads);
   return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
-                   progress.Stage("fit", .8, 1));
+                   progress.Stage("fit", .9, 1));
 }
 
 Eigen::VectorXd LearningData::DetailOf(const Eigen::VectorXd& scores) const {

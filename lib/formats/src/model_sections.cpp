@@ -128,6 +128,8 @@ void WriteSkin(const Rig& rig, ByteWriter* writer) {
     writer->WriteArray(std::span<const uint16_t>(vertex.bones).first(count));
     writer->WriteArray(std::span<const float>(vertex.weights).first(count));
   }
+  writer->Write(static_cast<uint32_t>(rig.fit_weights.size() > 0));
+  WriteMatrix(rig.fit_weights, writer);
 }
 
 absl::StatusOr<Rig> ReadSkin(ByteReader* reader, uint32_t version, const Skeleton& skeleton,
@@ -154,7 +156,16 @@ absl::StatusOr<Rig> ReadSkin(ByteReader* reader, uint32_t version, const Skeleto
   }
   PLEAT_ASSIGN_OR_RETURN(SkinWeights weights,
                          SkinWeights::Create(skeleton.num_joints(), std::move(influences)));
-  return Rig{skeleton, std::move(weights), std::move(rest_positions)};
+  Rig rig{skeleton, std::move(weights), std::move(rest_positions)};
+  if (version < kFirstWithInfluences) return rig;
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t has_fit_weights, reader->Read<uint32_t>("fit weight flag"));
+  if (has_fit_weights > 1) return absl::InvalidArgumentError("unknown fit weight flag");
+  if (has_fit_weights == 0) return rig;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, count, 1, "fit weights", &rig.fit_weights));
+  if (!(rig.fit_weights.minCoeff() > 0) || !(rig.fit_weights.maxCoeff() < 1e6f)) {
+    return absl::InvalidArgumentError("a fit weight is not positive, or out of range");
+  }
+  return rig;
 }
 
 void WriteControl(const CharacterModel::Parts& parts, ByteWriter* writer) {
