@@ -49,6 +49,43 @@ TEST(MomentsTest, ChainMomentsAreSumsOverVertices) {
             1e-9);
 }
 
+// A fit weight of two counts like a vertex that is there twice.
+TEST(MomentsTest, FitWeightsAreRepetitions) {
+  const SkinnedFigure figure = MakeSkinnedFigure({.num_rings = 3, .num_sides = 4});
+  const PoseTrack track = MakeSmoothPoses(figure.rig.skeleton, 3, 1);
+  const Eigen::Matrix3Xf once = MakeSkinnedSequence(figure, track).frame(2);
+  const Eigen::Index count = once.cols();
+  std::vector<int> repeated;
+  Rig weighted = figure.rig;
+  weighted.fit_weights.resize(count);
+  for (int v = 0; v < count; ++v) {
+    const int times = 1 + v % 3;
+    weighted.fit_weights[v] = static_cast<float>(times);
+    repeated.insert(repeated.end(), times, v);
+  }
+  Rig larger = figure.rig;
+  larger.rest_positions = figure.rig.rest_positions(Eigen::all, repeated);
+  std::vector<VertexInfluences> influences;
+  for (const int v : repeated) influences.push_back(figure.rig.weights.vertex(v));
+  larger.weights = SkinWeights::Create(18, influences).value();
+  const Eigen::Matrix3Xf frame = once(Eigen::all, repeated);
+
+  const RigMoments a = ComputeRigMoments(weighted), b = ComputeRigMoments(larger);
+  EXPECT_EQ(a.num_vertices, b.num_vertices);
+  // The centers of the rest meshes differ, which the chain takes out again.
+  const ChainMoments chain_a = ComputeChainMoments(a, figure.rig.skeleton);
+  const ChainMoments chain_b = ComputeChainMoments(b, figure.rig.skeleton);
+  EXPECT_LT((chain_a.gram - chain_b.gram).norm(), 1e-9 * chain_b.gram.norm());
+  const FrameMoments frame_a = ComputeFrameMoments(weighted, a, once);
+  const FrameMoments frame_b = ComputeFrameMoments(larger, b, frame);
+  EXPECT_LT((frame_a.center - frame_b.center).norm(), 1e-9);
+  EXPECT_NEAR(frame_a.sum_squares, frame_b.sum_squares, 1e-9 * frame_b.sum_squares);
+  EXPECT_LT((ComputeChainCross(a, frame_a, figure.rig.skeleton) -
+             ComputeChainCross(b, frame_b, figure.rig.skeleton))
+                .norm(),
+            1e-8);
+}
+
 // Only what hangs together counts: neither the place of the rest mesh nor the order of vertices.
 TEST(MomentsTest, PlaceAndOrderOfTheRestMeshDoNotMatter) {
   const SkinnedFigure figure = MakeSkinnedFigure({.num_rings = 3, .num_sides = 4});

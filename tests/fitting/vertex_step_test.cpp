@@ -67,7 +67,19 @@ TEST_F(VertexStepTest, WeightsOfOneBoneBecomeTheTrueBlends) {
   for (int v = 0; v < dense.rows(); ++v) {
     EXPECT_NEAR(dense.row(v).sum(), 1, 1e-5);
     EXPECT_GE(dense.row(v).minCoeff(), 0);
-    EXPECT_LE((dense.row(v).array() > 0).count(), kMaxInfluences);
+    EXPECT_LE((dense.row(v).array() > 0).count(), kStandardInfluences);
+  }
+}
+
+TEST_F(VertexStepTest, AVertexHasAsManyBonesAsItMay) {
+  const Rig rigid = Rigid();
+  for (const int most : {1, 2, 8}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(
+        const SkinWeights refined,
+        RefineWeights(moments_, rigid, rigid.weights, adjacency_,
+                      {.prior = 1e-6, .max_influences = most, .num_threads = 1}, {}));
+    EXPECT_LE(refined.most_influences(), most);
+    if (most == 8) EXPECT_GT(refined.most_influences(), 4);
   }
 }
 

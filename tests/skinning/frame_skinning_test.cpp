@@ -93,9 +93,11 @@ class FarBonesTest : public FrameSkinningTest {
     const int num_joints = figure_.rig.skeleton.num_joints(), num_bones = num_joints - 1;
     std::vector<VertexInfluences> influences(num_vertices());
     for (int v = 0; v < num_vertices(); ++v) {
-      for (int k = 0; k < kMaxInfluences; ++k) {
+      // Every third block has up to eight bones on a vertex.
+      const int count = v / kSkinningLanes % 3 == 0 ? kMaxInfluences - v % 3 : 4;
+      for (int k = 0; k < count; ++k) {
         influences[v].bones[k] = static_cast<uint16_t>(1 + (v / 3 + 5 * k) % num_bones);
-        influences[v].weights[k] = std::array{.5f, .25f, .15f, .1f}[k];
+        influences[v].weights[k] = static_cast<float>(2 * (count - k)) / float(count * (count + 1));
       }
     }
     figure_.rig.weights = SkinWeights::Create(num_joints, influences).value();

@@ -13,6 +13,8 @@ namespace pleat {
 namespace {
 
 using ::testing::HasSubstr;
+using Bones = std::array<uint16_t, kMaxInfluences>;
+using Weights = std::array<float, kMaxInfluences>;
 
 TEST(SkinWeightsTest, FromDenseKeepsTheFourLargestAndNormalizes) {
   Eigen::MatrixXd dense(2, 7);
@@ -22,11 +24,12 @@ TEST(SkinWeightsTest, FromDenseKeepsTheFourLargestAndNormalizes) {
   EXPECT_EQ(weights.num_vertices(), 2);
   EXPECT_EQ(weights.num_joints(), 7);
   const VertexInfluences& first = weights.vertex(0);
-  EXPECT_EQ(first.bones, (std::array<uint16_t, 4>{2, 6, 4, 5}));
+  EXPECT_EQ(first.bones, (Bones{2, 6, 4, 5}));
   EXPECT_NEAR(first.weights[0], .5 / 1.15, 1e-6);
   EXPECT_NEAR(first.weights[3], .15 / 1.15, 1e-6);
   EXPECT_EQ(weights.vertex(1).bones[0], 3);
-  EXPECT_EQ(weights.vertex(1).weights, (std::array<float, 4>{1, 0, 0, 0}));
+  EXPECT_EQ(weights.vertex(1).weights, (Weights{1}));
+  EXPECT_EQ(weights.most_influences(), 4);
   EXPECT_LT((weights.ToDense().rowwise().sum().array() - 1).abs().maxCoeff(), 1e-6);
 }
 
@@ -50,7 +53,7 @@ TEST(SkinWeightsTest, FromDenseNamesTheVertexWithoutWeight) {
 
 TEST(SkinWeightsTest, CreateChecksEveryInfluence) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  auto create = [](std::array<uint16_t, 4> bones, std::array<float, 4> weights) {
+  auto create = [](Bones bones, Weights weights) {
     return SkinWeights::Create(5, {{{1}, {1}}, {bones, weights}});
   };
   EXPECT_THAT(create({1, 4, 2, 3}, {.4f, .3f, .2f, .1f}), IsOk());
@@ -82,10 +85,10 @@ TEST(SkinWeightsTest, FromDenseRefusesANanWhereverItStands) {
 TEST(SkinWeightsTest, EqualWeightsGoToTheLowerBones) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights,
                              SkinWeights::FromDense(Eigen::MatrixXd::Constant(1, 8, .3)));
-  EXPECT_EQ(weights.vertex(0).bones, (std::array<uint16_t, 4>{1, 2, 3, 4}));
+  EXPECT_EQ(weights.vertex(0).bones, (Bones{1, 2, 3, 4}));
   std::map<int, double> equal;
-  for (const int bone : {6, 5, 3, 2, 1}) equal[bone] = .2;
-  EXPECT_EQ(StrongestInfluences(equal).bones, (std::array<uint16_t, 4>{1, 2, 3, 5}));
+  for (const int bone : {12, 9, 8, 7, 6, 5, 3, 2, 1}) equal[bone] = .2;
+  EXPECT_EQ(StrongestInfluences(equal).bones, (Bones{1, 2, 3, 5, 6, 7, 8, 9}));
 }
 
 // Whatever is pruned: what stays is what was strongest, in its old proportions.
@@ -102,10 +105,11 @@ TEST(SkinWeightsTest, PruningKeepsTheLargestInTheirProportions) {
     if (by_bone.empty()) continue;
     PLEAT_ASSERT_OK_AND_ASSIGN(const SkinWeights weights, SkinWeights::FromDense(dense));
     const VertexInfluences& kept = weights.vertex(0);
-    const VertexInfluences same = StrongestInfluences(by_bone);
-    EXPECT_EQ(kept.bones, same.bones);
-    EXPECT_EQ(kept.weights, same.weights);
-    const size_t count = std::min<size_t>(kMaxInfluences, by_bone.size());
+    const size_t count = std::min<size_t>(kStandardInfluences, by_bone.size());
+    if (by_bone.size() <= kStandardInfluences) {
+      EXPECT_EQ(kept.bones, StrongestInfluences(by_bone).bones);
+      EXPECT_EQ(kept.weights, StrongestInfluences(by_bone).weights);
+    }
     float sum = 0;
     for (size_t k = 0; k < kMaxInfluences; ++k) {
       sum += kept.weights[k];

@@ -110,6 +110,7 @@ std::span<const OptionText> OptionTexts() {
       {"learner", nullptr, "what predicts the details"},
       {"fit", nullptr, "pose fit"},
       {"refine", nullptr, "what of the rig is refined on the training frames"},
+      {"influences", nullptr, "bones that may move a vertex after full refinement, 1 to 8"},
       {"deformation", nullptr, "what is learned"},
       {"detail_axes", "axes", "axes of the details"},
       {"detail_coordinates", nullptr, "coordinates of the details"},

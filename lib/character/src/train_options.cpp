@@ -10,6 +10,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
 #include "pleat/base/status.h"
+#include "pleat/skinning/skin_weights.h"
 
 namespace pleat {
 namespace {
@@ -72,6 +73,7 @@ TrainOptions TrainOptions::Paper() {
   paper.learner = LearnerChoice::kSgplvm;
   paper.fit = PoseFitMethod::kWalk;
   paper.refine = RigRefinement::kNone;
+  paper.influences = kStandardInfluences;
   paper.detail_axes = DetailAxes::kWorld;
   paper.history_form = HistoryForm::kPoses;
   paper.resolution_percent = 5;
@@ -105,6 +107,7 @@ absl::Status ValidateTrainOptions(const TrainOptions& options) {
   PLEAT_RETURN_IF_ERROR(choices);
   PLEAT_RETURN_IF_ERROR(CheckRange("bend_stiffness", options.bend_stiffness, 0.0, 1.0));
   PLEAT_RETURN_IF_ERROR(CheckRange("smoothness", options.smoothness, 0.0, 1.0));
+  PLEAT_RETURN_IF_ERROR(CheckRange("influences", options.influences, 1, kMaxInfluences));
   PLEAT_RETURN_IF_ERROR(CheckRange("history", options.history, 1, 8));
   PLEAT_RETURN_IF_ERROR(CheckRange("resolution_percent", options.resolution_percent, 1.0, 100.0));
   PLEAT_RETURN_IF_ERROR(

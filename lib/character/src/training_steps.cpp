@@ -23,6 +23,7 @@
 #include "option_values.h"
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
+#include "pleat/fitting/fit_weights.h"
 #include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
 #include "pleat/gp/scaling.h"
@@ -31,6 +32,7 @@
 namespace pleat {
 namespace {
 
+constexpr int kWideningRounds = 3;    // of rig refinement, with all influences
 constexpr int kMaxBridgedFrames = 2;  // held-out frames in a row between two training frames
 
 // Returns an error that says how topology `b` of the clip `name` differs from `a`.
@@ -252,10 +254,30 @@ absl::StatusOr<PoseTrack> FitTrainingFrames(const TrainOptions& options,
   refinement.locked_joints = rigged->locked_joints;
   refinement.bend_stiffness = options.bend_stiffness;
   refinement.num_threads = resources.num_threads;
-  PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,
-                                                nullptr, progress.Stage("refine", .2, .8)));
+  // More bones are taken only when the rig is as good as the standard number makes it, and are then
+  // pulled to that rig: from the start they would explain what the joints should.
+  const bool widen = options.refine == RigRefinement::kFull;
+  refinement.max_influences = std::min(options.influences, kStandardInfluences);
+  PLEAT_ASSIGN_OR_RETURN(rigged->rig,
+                         RefineRig(frames.sequence, rigged->rig, first, refinement, nullptr,
+                                   progress.Stage("refine", .2, widen ? .6 : .8)));
+  if (widen) {
+    refinement.num_rounds = kWideningRounds;
+    refinement.max_influences = options.influences;
+    PLEAT_ASSIGN_OR_RETURN(rigged->rig, RefineRig(frames.sequence, rigged->rig, first, refinement,
+                                                  nullptr, progress.Stage("refine", .6, .8)));
+  }
+  if (!widen) {
+    return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
+                     progress.Stage("fit", .8, 1));
+  }
+  PLEAT_ASSIGN_OR_RETURN(const PoseTrack refined,
+                         FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options,
+                                   resources, nullptr, progress.Stage("fit", .8, .9)));
+  rigged->rig.fit_weights =
+      ComputeFitWeights(frames.sequence, rigged->rig, refined, resources.num_threads);
   return FitFrames(frames.sequence, frames.clip_starts, rigged->rig, options, resources, summary,
-                   progress.Stage("fit", .8, 1));
+                   progress.Stage("fit", .9, 1));
 }
 
 Eigen::VectorXd LearningData::DetailOf(const Eigen::VectorXd& scores) const {

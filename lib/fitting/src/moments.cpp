@@ -47,7 +47,8 @@ RigMoments ComputeRigMoments(const Rig& rig) {
   assert(rig.rest_positions.cols() == num_vertices && num_vertices > 0);
   RigMoments moments;
   moments.num_joints = num_joints;
-  moments.num_vertices = num_vertices;
+  moments.num_vertices =
+      rig.fit_weights.size() == 0 ? num_vertices : rig.fit_weights.cast<double>().sum();
   moments.center = rig.rest_positions.rowwise().mean();
   moments.products.assign(static_cast<size_t>(num_joints) * num_joints, Eigen::Matrix4d::Zero());
   for (int v = 0; v < num_vertices; ++v) {
@@ -55,7 +56,7 @@ RigMoments ComputeRigMoments(const Rig& rig) {
     const auto weights = NormalizedWeights(influences);
     Vector4d u;
     u << rig.rest_positions.col(v) - moments.center, 1;
-    const Eigen::Matrix4d square = u * u.transpose();
+    const Eigen::Matrix4d square = rig.fit_weight(v) * u * u.transpose();
     for (int k = 0; k < kMaxInfluences && weights[k] > 0; ++k) {
       for (int l = 0; l < kMaxInfluences && weights[l] > 0; ++l) {
         moments.products[influences.bones[k] * num_joints + influences.bones[l]] +=
@@ -77,17 +78,20 @@ FrameMoments ComputeFrameMoments(const Rig& rig, const RigMoments& rig_moments,
   assert(positions.cols() == rig.rest_positions.cols());
   FrameMoments frame;
   Vector3d sum = Vector3d::Zero();
-  for (Eigen::Index v = 0; v < positions.cols(); ++v) sum += positions.col(v).cast<double>();
-  frame.center = sum / static_cast<double>(positions.cols());
+  for (Eigen::Index v = 0; v < positions.cols(); ++v) {
+    sum += rig.fit_weight(v) * positions.col(v).cast<double>();
+  }
+  frame.center = sum / rig_moments.num_vertices;
   frame.cross.assign(rig_moments.num_joints, Matrix4x3d::Zero());
   for (Eigen::Index v = 0; v < positions.cols(); ++v) {
     const VertexInfluences& influences = rig.weights.vertex(static_cast<int>(v));
     const auto weights = NormalizedWeights(influences);
     const Vector3d y = positions.col(v).cast<double>() - frame.center;
-    frame.sum_squares += y.squaredNorm();
+    const double fit_weight = rig.fit_weight(v);
+    frame.sum_squares += fit_weight * y.squaredNorm();
     Vector4d u;
     u << rig.rest_positions.col(v) - rig_moments.center, 1;
-    const Matrix4x3d product = u * y.transpose();
+    const Matrix4x3d product = fit_weight * u * y.transpose();
     for (int k = 0; k < kMaxInfluences && weights[k] > 0; ++k) {
       frame.cross[influences.bones[k]] += weights[k] * product;
     }

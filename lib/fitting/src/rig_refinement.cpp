@@ -149,6 +149,7 @@ class RigRefiner {
     if (options_.weights) {
       const WeightStepOptions step{.smoothness = options_.weight_smoothness,
                                    .prior = options_.weight_prior,
+                                   .max_influences = options_.max_influences,
                                    .num_threads = options_.num_threads};
       PLEAT_ASSIGN_OR_RETURN(rig_.weights, RefineWeights(moments, rig_, first_.weights, adjacency,
                                                          step, progress.Stage("refine", .4, .9)));
@@ -198,6 +199,11 @@ absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const Pose
       return absl::InvalidArgumentError(absl::StrCat("rig refinement: locked joint ", j, " of ",
                                                      rig.skeleton.num_joints(), " joints"));
     }
+  }
+  if (options.max_influences < 1 || options.max_influences > kMaxInfluences) {
+    return absl::InvalidArgumentError(absl::StrCat("rig refinement: max_influences (",
+                                                   options.max_influences, ") must be 1 to ",
+                                                   kMaxInfluences));
   }
   const double smallest_pull =
       std::min({options.weight_smoothness, options.weight_prior, options.rest_smoothness,

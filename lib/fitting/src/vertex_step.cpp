@@ -90,13 +90,14 @@ void AddWeights(const VertexInfluences& influences, const Candidates& candidates
   }
 }
 
-VertexInfluences ToInfluences(const Candidates& candidates, const SimplexQpVector& weights) {
+VertexInfluences ToInfluences(const Candidates& candidates, const SimplexQpVector& weights,
+                              int max_influences) {
   std::array<int, kMaxSimplexQpSize> order;
   for (int c = 0; c < candidates.size(); ++c) order[c] = c;
   std::stable_sort(order.begin(), order.begin() + candidates.size(),
                    [&](int a, int b) { return weights[a] > weights[b]; });
   VertexInfluences influences;
-  const int count = std::min(kMaxInfluences, candidates.size());
+  const int count = std::min(max_influences, candidates.size());
   double sum = 0;
   for (int k = 0; k < count; ++k) sum += weights[order[k]];
   for (int k = 0; k < count && weights[order[k]] > 1e-6; ++k) {
@@ -144,8 +145,8 @@ VertexInfluences SolveVertexWeights(const VertexMoments& moments, const Rig& rig
   }
   AddWeights(current[v], candidates, 1, &x);
   x /= x.sum();
-  SolveSparseSimplexQp(hessian, linear, kMaxInfluences, &x);
-  return ToInfluences(candidates, x);
+  SolveSparseSimplexQp(hessian, linear, options.max_influences, &x);
+  return ToInfluences(candidates, x, options.max_influences);
 }
 
 }  // namespace

@@ -38,11 +38,12 @@ struct WeightStepOptions {
   // center):
   double smoothness = 0;  // pull of a vertex's weights to the mean of its neighbors' weights
   double prior = 0;       // pull to the first weights
-  int num_sweeps = 3;     // over all vertices, each from the neighbors' weights of the one before
+  int max_influences = kStandardInfluences;  // bones of a vertex
+  int num_sweeps = 3;  // over all vertices, each from the neighbors' weights of the one before
   int num_threads = 0;
 };
 
-// Returns the weights of every vertex: at most kMaxInfluences bones, non-negative, sum 1. A vertex
+// Returns the weights of every vertex: at most max_influences bones, non-negative, sum 1. A vertex
 // may take bones of its own, of its neighbors, and bones next to its own in the skeleton.
 absl::StatusOr<SkinWeights> RefineWeights(const VertexMoments& moments, const Rig& rig,
                                           const SkinWeights& first,

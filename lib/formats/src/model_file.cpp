@@ -119,7 +119,7 @@ absl::Status CheckUnfoldedSize(const CharacterModel::Parts& parts, uint64_t num_
                    num_components, " components is over the limit of ", max_bytes, " bytes"));
 }
 
-absl::Status ReadMeshSections(const Sections& sections, const MeshLimits& limits,
+absl::Status ReadMeshSections(const Sections& sections, uint32_t version, const MeshLimits& limits,
                               CharacterModel::Parts* parts) {
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 0, [&](ByteReader* reader) {
     return ReadInfo(reader, &parts->name, &parts->frame_rate);
@@ -134,7 +134,7 @@ absl::Status ReadMeshSections(const Sections& sections, const MeshLimits& limits
   PLEAT_RETURN_IF_ERROR(ReadSection(
       sections, 3, [&](ByteReader* reader) { return Assign(ReadSkeleton(reader), &skeleton); }));
   return ReadSection(sections, 4, [&](ByteReader* reader) {
-    return Assign(ReadSkin(reader, skeleton, parts->topology.num_vertices()), &parts->rig);
+    return Assign(ReadSkin(reader, version, skeleton, parts->topology.num_vertices()), &parts->rig);
   });
 }
 
@@ -143,6 +143,7 @@ absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
   const std::string_view options = sections[5];
   PLEAT_ASSIGN_OR_RETURN(parts->options,
                          ParseTrainOptions(absl::string_view(options.data(), options.size())));
+  if (version < kFirstWithInfluences) parts->options.influences = kStandardInfluences;
   PLEAT_RETURN_IF_ERROR(ReadSection(sections, 6, [&](ByteReader* reader) -> absl::Status {
     PLEAT_ASSIGN_OR_RETURN(const uint32_t count, reader->Read<uint32_t>("feature count"));
     PLEAT_RETURN_IF_ERROR(
@@ -191,7 +192,7 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> DecodeModel(std::string_vi
   PLEAT_ASSIGN_OR_RETURN(const SealedFile file, OpenSealedFile(kKind, bytes));
   PLEAT_ASSIGN_OR_RETURN(const Sections sections, CutSections(file.bytes));
   CharacterModel::Parts parts;
-  PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, limits, &parts));
+  PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, file.version, limits, &parts));
   PLEAT_RETURN_IF_ERROR(ReadLearnedSections(sections, file.version, limits, &parts));
   return CharacterModel::Create(std::move(parts));
 }

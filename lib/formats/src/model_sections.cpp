@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "model_versions.h"
 #include "pleat/base/status.h"
 #include "pleat/math/array_io.h"
 #include "pleat/mesh/mesh_sections.h"
@@ -121,26 +122,50 @@ absl::StatusOr<Skeleton> ReadSkeleton(ByteReader* reader) {
 
 void WriteSkin(const Rig& rig, ByteWriter* writer) {
   WriteMatrix(rig.rest_positions, writer);
+  const auto count = static_cast<size_t>(rig.weights.most_influences());
+  writer->Write(static_cast<uint32_t>(count));
   for (const VertexInfluences& vertex : rig.weights.influences()) {
-    writer->WriteArray(std::span<const uint16_t>(vertex.bones));
-    writer->WriteArray(std::span<const float>(vertex.weights));
+    writer->WriteArray(std::span<const uint16_t>(vertex.bones).first(count));
+    writer->WriteArray(std::span<const float>(vertex.weights).first(count));
   }
+  writer->Write(static_cast<uint32_t>(rig.fit_weights.size() > 0));
+  WriteMatrix(rig.fit_weights, writer);
 }
 
-absl::StatusOr<Rig> ReadSkin(ByteReader* reader, const Skeleton& skeleton, int num_vertices) {
+absl::StatusOr<Rig> ReadSkin(ByteReader* reader, uint32_t version, const Skeleton& skeleton,
+                             int num_vertices) {
   const auto count = static_cast<uint64_t>(num_vertices);
   Eigen::Matrix3Xd rest_positions;
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, 3, count, "rest positions", &rest_positions));
-  constexpr uint64_t kInfluenceBytes = kMaxInfluences * (sizeof(uint16_t) + sizeof(float));
-  PLEAT_RETURN_IF_ERROR(reader->Require(count, kInfluenceBytes, "skin weights"));
+  uint32_t most = kStandardInfluences;
+  if (version >= kFirstWithInfluences) {
+    PLEAT_ASSIGN_OR_RETURN(most, reader->Read<uint32_t>("influence count"));
+  }
+  if (most < 1 || most > kMaxInfluences) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(most, " influences of a vertex, expected 1 to ", kMaxInfluences));
+  }
+  PLEAT_RETURN_IF_ERROR(
+      reader->Require(count, most * (sizeof(uint16_t) + sizeof(float)), "skin weights"));
   std::vector<VertexInfluences> influences(count);
   for (VertexInfluences& vertex : influences) {
-    PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint16_t>(vertex.bones), "bones"));
-    PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<float>(vertex.weights), "skin weights"));
+    PLEAT_RETURN_IF_ERROR(
+        reader->ReadArray(std::span<uint16_t>(vertex.bones).first(most), "bones"));
+    PLEAT_RETURN_IF_ERROR(
+        reader->ReadArray(std::span<float>(vertex.weights).first(most), "skin weights"));
   }
   PLEAT_ASSIGN_OR_RETURN(SkinWeights weights,
                          SkinWeights::Create(skeleton.num_joints(), std::move(influences)));
-  return Rig{skeleton, std::move(weights), std::move(rest_positions)};
+  Rig rig{skeleton, std::move(weights), std::move(rest_positions)};
+  if (version < kFirstWithInfluences) return rig;
+  PLEAT_ASSIGN_OR_RETURN(const uint32_t has_fit_weights, reader->Read<uint32_t>("fit weight flag"));
+  if (has_fit_weights > 1) return absl::InvalidArgumentError("unknown fit weight flag");
+  if (has_fit_weights == 0) return rig;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, count, 1, "fit weights", &rig.fit_weights));
+  if (!(rig.fit_weights.minCoeff() > 0) || !(rig.fit_weights.maxCoeff() < 1e6f)) {
+    return absl::InvalidArgumentError("a fit weight is not positive, or out of range");
+  }
+  return rig;
 }
 
 void WriteControl(const CharacterModel::Parts& parts, ByteWriter* writer) {

@@ -24,7 +24,8 @@ void WriteSkeleton(const Skeleton& skeleton, ByteWriter* writer);
 absl::StatusOr<Skeleton> ReadSkeleton(ByteReader* reader);
 
 void WriteSkin(const Rig& rig, ByteWriter* writer);
-absl::StatusOr<Rig> ReadSkin(ByteReader* reader, const Skeleton& skeleton, int num_vertices);
+absl::StatusOr<Rig> ReadSkin(ByteReader* reader, uint32_t version, const Skeleton& skeleton,
+                             int num_vertices);
 
 void WriteSkinFeatures(const std::optional<SkinFeatures>& features, ByteWriter* writer);
 absl::StatusOr<std::optional<SkinFeatures>> ReadSkinFeatures(ByteReader* reader, uint32_t version,

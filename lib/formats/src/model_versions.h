@@ -13,5 +13,7 @@ inline constexpr uint32_t kFirstWithParts = 4;
 inline constexpr uint32_t kFirstWithSkinFeatures = 4;
 // Before it the weights of the fold and of the skin's features are floats.
 inline constexpr uint32_t kFirstWithPlanes = 5;
+// Before it every vertex has four influences, and no option says how many.
+inline constexpr uint32_t kFirstWithInfluences = 5;
 
 }  // namespace pleat

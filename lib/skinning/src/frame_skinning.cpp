@@ -31,6 +31,7 @@ FrameSkinning::FrameSkinning(const Rig& rig, std::vector<int> lane_vertices)
     for (int k = 0; k < kMaxInfluences; ++k) {
       block.weights[k * kSkinningLanes + lane] = influences.weights[k];
       block.bones[k * kSkinningLanes + lane] = influences.bones[k];
+      if (influences.weights[k] > 0 && k >= block.num_influences) block.num_influences = 8;
       if (k > 0 && influences.weights[k] > 0) {
         pairs.emplace(influences.bones[0], influences.bones[k]);
       }
@@ -118,7 +119,7 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
     // The slow way, for the few frames in which the quaternions of two bones of a vertex disagree
     // although neighbors along the skeleton agree.
     if (!motions.signs.empty() && details != nullptr) {
-      for (int place = 0; place < kMaxInfluences * kLanes; ++place) {
+      for (int place = 0; place < block.num_influences * kLanes; ++place) {
         const size_t strongest = block.bones[place % kLanes];
         const size_t other = block.bones[place];
         signed_weights[place] =

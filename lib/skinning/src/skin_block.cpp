@@ -1,4 +1,4 @@
-// The same body is compiled for each instruction set. Each sum has one order, over the four
+// The same body is compiled for each instruction set. Each sum has one order, over the
 // influences of a vertex, whatever the width of the registers; so all kernels give the same bits,
 // and a prediction does not depend on the machine.
 #include "skin_block.h"
@@ -46,6 +46,7 @@ PLEAT_ALWAYS_INLINE void Transpose(const float (&blended)[kLanes][kParameters],
 }
 
 // m[parameter] = sum_k w_k (parameter of bone k), vertex by vertex.
+template <int kInfluences>
 PLEAT_ALWAYS_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m) {
   alignas(64) float blended[kLanes][kParameters];
   alignas(64) float lanes[kParameters][kLanes];
@@ -53,7 +54,7 @@ PLEAT_ALWAYS_INLINE void BlendVertices(const SkinBlockInputs& inputs, Sixteen* m
   const Sixteen on_quaternion = *reinterpret_cast<const Sixteen*>(kOnQuaternion);
   for (int lane = 0; lane < kLanes; ++lane) {
     Sixteen sum;
-    for (int k = 0; k < kMaxInfluences; ++k) {
+    for (int k = 0; k < kInfluences; ++k) {
       const float weight = block.weights[k * kLanes + lane];
       // The other sign is exact: w - 2 w = -w.
       const float change = inputs.quaternion_weights[k * kLanes + lane] - weight;
@@ -105,7 +106,11 @@ PLEAT_ALWAYS_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, S
 struct SkinBlockBody {
   static PLEAT_ALWAYS_INLINE void Run(const SkinBlockInputs& inputs, float* positions) {
     Sixteen m[kParameters], position[3];
-    BlendVertices(inputs, m);
+    if (inputs.block->num_influences == 4) {
+      BlendVertices<4>(inputs, m);
+    } else {
+      BlendVertices<kMaxInfluences>(inputs, m);
+    }
     Move(m, inputs, position);
     if (inputs.details != nullptr) AddDetails(m, inputs.details, position);
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -116,12 +121,13 @@ struct SkinBlockBody {
 
 #if defined(__x86_64__)
 // The same sums with all vertices side by side: the bones' numbers lie in registers.
+template <int kInfluences>
 PLEAT_TARGET_AVX512 PLEAT_ALWAYS_INLINE void BlendByLookup(const SkinBlockInputs& inputs,
                                                            bool with_axes, Sixteen* m) {
   const FrameSkinning::Block& block = *inputs.block;
-  __m512i bones[kMaxInfluences];
-#pragma GCC unroll 4
-  for (int k = 0; k < kMaxInfluences; ++k) {
+  __m512i bones[kInfluences];
+#pragma GCC unroll 8
+  for (int k = 0; k < kInfluences; ++k) {
     // The plain conversion reads an undefined register, of which gcc 12 warns.
     bones[k] = _mm512_maskz_cvtepu16_epi32(
         0xffff, _mm256_load_si256(reinterpret_cast<const __m256i*>(block.bones + k * kLanes)));
@@ -132,8 +138,8 @@ PLEAT_TARGET_AVX512 PLEAT_ALWAYS_INLINE void BlendByLookup(const SkinBlockInputs
     const float* weights = IsQuaternion(p) ? inputs.quaternion_weights : block.weights;
     const __m512 low = _mm512_loadu_ps(inputs.tables + p * kLookupBones);
     const __m512 high = _mm512_loadu_ps(inputs.tables + p * kLookupBones + kLanes);
-#pragma GCC unroll 4
-    for (int k = 0; k < kMaxInfluences; ++k) {
+#pragma GCC unroll 8
+    for (int k = 0; k < kInfluences; ++k) {
       const Sixteen weight = *reinterpret_cast<const UnalignedSixteen*>(weights + k * kLanes);
       const Sixteen part = weight * _mm512_permutex2var_ps(low, bones[k], high);
       m[p] = k == 0 ? part : m[p] + part;
@@ -172,14 +178,14 @@ PLEAT_TARGET_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float
     return;
   }
   Sixteen m[kParameters], position[3];
-  if (inputs.details != nullptr) {
-    BlendByLookup(inputs, true, m);
-    Move(m, inputs, position);
-    AddDetails(m, inputs.details, position);
+  const bool with_axes = inputs.details != nullptr;
+  if (inputs.block->num_influences == 4) {
+    BlendByLookup<4>(inputs, with_axes, m);
   } else {
-    BlendByLookup(inputs, false, m);
-    Move(m, inputs, position);
+    BlendByLookup<kMaxInfluences>(inputs, with_axes, m);
   }
+  Move(m, inputs, position);
+  if (with_axes) AddDetails(m, inputs.details, position);
   StoreByVertex(position, positions);
 }
 #endif

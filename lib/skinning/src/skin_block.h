@@ -13,7 +13,7 @@ inline constexpr int kLookupBones = 32;
 
 // The inputs of a kernel. columns: 16 numbers of each bone. tables: kMotionParameters x
 // kLookupBones, the parameters of all bones; null where there are more bones. quaternion_weights:
-// those of `block` with signs (4 x 16). details: 48 values, x of all vertices, then y, then z; or
+// those of `block` with signs (8 x 16). details: 48 values, x of all vertices, then y, then z; or
 // null. The output has 48 values, x, y, z of each vertex. All kernels give the same bits.
 struct SkinBlockInputs {
   const FrameSkinning::Block* block = nullptr;

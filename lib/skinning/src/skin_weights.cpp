@@ -14,7 +14,7 @@ absl::StatusOr<SkinWeights> SkinWeights::FromDense(const Eigen::Ref<const Eigen:
   result.num_joints_ = static_cast<int>(dense.cols());
   result.influences_.resize(dense.rows());
   std::vector<int> order(std::max<Eigen::Index>(0, dense.cols() - 1));
-  const size_t kept = std::min<size_t>(kMaxInfluences, order.size());
+  const size_t kept = std::min<size_t>(kStandardInfluences, order.size());
   for (Eigen::Index v = 0; v < dense.rows(); ++v) {
     std::iota(order.begin(), order.end(), 1);
     // Ties go to the lower bone, so that equal weights give the same influences everywhere.
@@ -80,6 +80,14 @@ VertexInfluences StrongestInfluences(const std::map<int, double>& bone_weights) 
     result.weights[k] = static_cast<float>(-sorted[k].first / total);
   }
   return result;
+}
+
+int SkinWeights::most_influences() const {
+  size_t most = 0;
+  for (const VertexInfluences& vertex : influences_) {
+    while (most < kMaxInfluences && vertex.weights[most] > 0) ++most;
+  }
+  return static_cast<int>(most);
 }
 
 Eigen::MatrixXd SkinWeights::ToDense() const {

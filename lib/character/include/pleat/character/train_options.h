@@ -18,6 +18,7 @@ struct TrainOptions {
   LearnerChoice learner = LearnerChoice::kAuto;  // auto: chosen on held-out training frames
   PoseFitMethod fit = PoseFitMethod::kAllJoints;
   RigRefinement refine = RigRefinement::kFull;
+  int influences = 8;  // bones that may move a vertex after full refinement, 1..8
   // What is learned: what the mesh does beyond its skinned rig, or all deformation beyond the
   // motion of the root, with which the paper compares.
   DetailBase deformation = DetailBase::kSkinned;
@@ -74,6 +75,7 @@ void VisitTrainOptions(Options& options, Visitor&& visit) {
   visit("learner", options.learner);
   visit("fit", options.fit);
   visit("refine", options.refine);
+  visit("influences", options.influences);
   visit("deformation", options.deformation);
   visit("detail_axes", options.detail_axes);
   visit("detail_coordinates", options.detail_coordinates);

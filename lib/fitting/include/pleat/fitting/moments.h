@@ -13,10 +13,11 @@ namespace pleat {
 
 // The moments of a rig, computed once. u_i = [rest position relative to `center`; 1], and W are the
 // skinning weights (rows normalized to sum 1). They do not depend on the joints, so joints can be
-// refined against them.
+// refined against them. Every sum over vertices, here and below, counts vertex i as
+// Rig::fit_weights says, for which no formula has a letter of its own.
 struct RigMoments {
   int num_joints = 0;
-  double num_vertices = 0;
+  double num_vertices = 0;                           // the sum of the fit weights
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // mean rest position, meters
   // U_kl = sum_i W_ik W_il u_i u_i^T at [k * num_joints + l]; blocks of bone 0 are zero.
   std::vector<Eigen::Matrix4d> products;

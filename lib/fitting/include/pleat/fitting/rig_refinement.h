@@ -33,10 +33,11 @@ struct RigRefinementOptions {
   double rest_prior = 0.1;
 
   int num_rounds = 5;
-  int max_frames = 400;          // evenly spaced ones are used of a longer sequence
-  int max_iterations = 20;       // limit of the pose solver, per frame and step
-  double bend_stiffness = 1e-6;  // as in PoseFitOptions
-  int num_threads = 0;           // 0 = one per core; the result does not depend on it
+  int max_influences = kStandardInfluences;  // bones of a vertex, 1..kMaxInfluences
+  int max_frames = 400;                      // evenly spaced ones are used of a longer sequence
+  int max_iterations = 20;                   // limit of the pose solver, per frame and step
+  double bend_stiffness = 1e-6;              // as in PoseFitOptions
+  int num_threads = 0;                       // 0 = one per core; the result does not depend on it
 
   // Options for joints alone, which are held harder, since they are all that can follow cloth.
   static RigRefinementOptions JointsOnly() {
@@ -54,7 +55,7 @@ struct RigRefinementSummary {
 
 // Returns the refined rig; fit the poses again with it. `track` holds the poses of all frames,
 // fitted with `rig` (FitPoses). Leaves of the skeleton have no influence on the mesh and stay. A
-// vertex keeps at most kMaxInfluences bones: bones of its own, of its neighbors, or next to its own
+// vertex keeps at most max_influences bones: bones of its own, of its neighbors, or next to its own
 // in the skeleton. The result does not depend on the number of threads.
 //
 // The error is kInvalidArgument when rig, track and sequence do not belong together or an option is

@@ -15,6 +15,13 @@ struct Rig {
   Skeleton skeleton;
   SkinWeights weights;
   Eigen::Matrix3Xd rest_positions;  // 3 x V, meters, rest pose
+  // V, mean 1: how much each vertex counts in a pose fit, or empty when all count alike. Cloth says
+  // little about the bones below it.
+  Eigen::VectorXf fit_weights{};
+
+  double fit_weight(Eigen::Index v) const {
+    return fit_weights.size() == 0 ? 1 : double{fit_weights[v]};
+  }
 };
 
 // Linear blend skinning: column v of `positions` = sum_b w_vb (linear_b rest_v + translation_b).

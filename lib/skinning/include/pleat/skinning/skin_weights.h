@@ -1,4 +1,4 @@
-// Skinning weights: at most four bones per vertex.
+// Skinning weights: at most eight bones per vertex.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,9 @@
 
 namespace pleat {
 
-inline constexpr int kMaxInfluences = 4;
+inline constexpr int kMaxInfluences = 8;
+// What automatic rigs begin with, and what every engine takes.
+inline constexpr int kStandardInfluences = 4;
 
 // The bones that move one vertex. Bone b is the bone that ends in joint b (b >= 1).
 struct VertexInfluences {
@@ -19,17 +21,17 @@ struct VertexInfluences {
   std::array<float, kMaxInfluences> weights{};  // >= 0, sum 1, falling; unused entries are 0
 };
 
-// Returns the four largest of `bone_weights` (bone -> weight >= 0, at least one positive),
-// normalized.
+// Returns the kMaxInfluences largest of `bone_weights` (bone -> weight >= 0, at least one
+// positive), normalized.
 VertexInfluences StrongestInfluences(const std::map<int, double>& bone_weights);
 
 // Skinning weights of a mesh, valid by construction: finite, non-negative, normalized, with bones
 // in [1, num_joints).
 class SkinWeights {
  public:
-  // Keeps the four largest weights of every row of `dense` (V x num_joints, column b = bone b,
-  // column 0 ignored) and normalizes them. The error is kInvalidArgument and names the first vertex
-  // without weight.
+  // Keeps the kStandardInfluences largest weights of every row of `dense` (V x num_joints, column b
+  // = bone b, column 0 ignored) and normalizes them. The error is kInvalidArgument and names the
+  // first vertex without weight.
   static absl::StatusOr<SkinWeights> FromDense(const Eigen::Ref<const Eigen::MatrixXd>& dense);
   // Checks `influences` and takes them as they are (sums within 1e-4 of 1, used entries first),
   // but for the bones of unused entries, which become 0. The error is kInvalidArgument and names
@@ -41,6 +43,8 @@ class SkinWeights {
   int num_joints() const { return num_joints_; }
   const VertexInfluences& vertex(int v) const { return influences_[v]; }
   const std::vector<VertexInfluences>& influences() const { return influences_; }
+  // The largest number of bones that move one vertex.
+  int most_influences() const;
   Eigen::MatrixXd ToDense() const;  // V x num_joints
 
  private:

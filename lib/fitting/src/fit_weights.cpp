@@ -1,0 +1,45 @@
+#include "pleat/fitting/fit_weights.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <vector>
+
+#include "pleat/base/parallel.h"
+
+namespace pleat {
+
+Eigen::VectorXf ComputeFitWeights(const MeshSequence& sequence, const Rig& rig,
+                                  const PoseTrack& track, int num_threads, int max_frames) {
+  assert(track.num_frames() == sequence.num_frames());
+  const int num_frames = std::min(sequence.num_frames(), max_frames);
+  // Items have a fixed size, and their sums are added in order, so that the number of threads does
+  // not show.
+  constexpr int kItemFrames = 16;
+  const int num_items = (num_frames + kItemFrames - 1) / kItemFrames;
+  std::vector<Eigen::VectorXd> sums(static_cast<size_t>(num_items));
+  ParallelFor(num_items, num_threads, [&](int item) {
+    sums[item].setZero(sequence.num_vertices());
+    BoneTransforms transforms;
+    Eigen::Matrix3Xd skinned;
+    for (int f = item * kItemFrames; f < std::min(num_frames, (item + 1) * kItemFrames); ++f) {
+      const int t = static_cast<int>(static_cast<int64_t>(f) * sequence.num_frames() / num_frames);
+      ComputeBoneTransforms(rig.skeleton, track.pose(t), {}, &transforms);
+      SkinVertices(rig.weights, rig.rest_positions, transforms, &skinned);
+      sums[item] +=
+          (sequence.frame(t).cast<double>() - skinned).colwise().squaredNorm().transpose();
+    }
+  });
+  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(sequence.num_vertices());
+  for (const Eigen::VectorXd& sum : sums) residuals += sum;
+  const double mean = residuals.mean();
+  if (!(mean > 0)) return {};
+  // Three times the mean keeps vertices that happen to fit well from deciding alone: no vertex
+  // counts more than four thirds of an average one.
+  constexpr double kMeans = 3;
+  Eigen::VectorXd weights = (residuals.array() + kMeans * mean).inverse();
+  weights /= weights.mean();
+  return weights.cast<float>();
+}
+
+}  // namespace pleat
