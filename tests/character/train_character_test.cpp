@@ -64,8 +64,8 @@ TEST(TrainCharacterTest, ReportsWorstFramesAndJoints) {
     return record.joint_fit_percent[SmallCharacter()->skeleton().FindJoint(joint)];
   };
   ASSERT_EQ(record.joint_fit_percent.size(), static_cast<size_t>(kNumHumanJoints));
-  EXPECT_GT(error_of("leftLowerLeg"), 2 * error_of("leftLowerArm"));
-  EXPECT_GT(error_of("rightLowerLeg"), 2 * error_of("head"));
+  EXPECT_GT(error_of("leftUpperLeg"), 1.5 * error_of("leftLowerArm"));
+  EXPECT_GT(error_of("rightUpperLeg"), 1.5 * error_of("head"));
   EXPECT_EQ(record.unsmoothed_jitter_degrees, record.pose_jitter_degrees);
   EXPECT_NEAR(record.unsmoothed_rms_percent, record.fit.rms_percent, 1e-3);
 }

@@ -79,7 +79,9 @@ TEST_F(VertexStepTest, AVertexHasAsManyBonesAsItMay) {
         RefineWeights(moments_, rigid, rigid.weights, adjacency_,
                       {.prior = 1e-6, .max_influences = most, .num_threads = 1}, {}));
     EXPECT_LE(refined.most_influences(), most);
-    if (most == 8) EXPECT_GT(refined.most_influences(), 4);
+    if (most == 8) {
+      EXPECT_GT(refined.most_influences(), 4);
+    }
   }
 }
 

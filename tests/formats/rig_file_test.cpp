@@ -61,9 +61,9 @@ TEST(RigFile, NormalizesWeightsOfBones) {
   PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, ResolveRig(file, StillClip(figure)));
   ASSERT_TRUE(rig.weights.has_value());
   const VertexInfluences& vertex = rig.weights->vertex(0);
-  EXPECT_EQ(vertex.bones, (std::array<uint16_t, 4>{4, 2, 3, 5}));
-  EXPECT_FLOAT_EQ(vertex.weights[0], 4 / 8.5f);
-  EXPECT_FLOAT_EQ(vertex.weights[3], .5f / 8.5f);
+  EXPECT_EQ(vertex.bones, (std::array<uint16_t, kMaxInfluences>{4, 2, 3, 5, 6}));
+  EXPECT_FLOAT_EQ(vertex.weights[0], 4 / 8.75f);
+  EXPECT_FLOAT_EQ(vertex.weights[3], .5f / 8.75f);
   root["weights"]["vertices"][0] = {0, 1};
   EXPECT_THAT(ResolveRig(*DecodeRigJson(root.dump()), StillClip(figure)),
               HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("vertex 0")));

@@ -39,8 +39,8 @@ TEST(UserRig, JointWeightsBecomeBoneWeights) {
   EXPECT_EQ(rig.weights.value().vertex(0).bones[0],
             1);  // the nearer of the bones that begin in hips
   EXPECT_EQ(rig.weights.value().vertex(1).bones[0], 2);
-  EXPECT_THAT(rig.weights.value().vertex(2).bones, ElementsAre(3, 4, 0, 0));
-  EXPECT_THAT(rig.weights.value().vertex(2).weights, ElementsAre(.75f, .25f, 0, 0));
+  EXPECT_THAT(rig.weights.value().vertex(2).bones, ElementsAre(3, 4, 0, 0, 0, 0, 0, 0));
+  EXPECT_THAT(rig.weights.value().vertex(2).weights, ElementsAre(.75f, .25f, 0, 0, 0, 0, 0, 0));
   EXPECT_EQ(rig.weights.value().vertex(3).bones[0], 4);
 }
 
@@ -60,18 +60,26 @@ TEST(UserRig, SaysWhichVertexIsWrong) {
   expect_fault({{{0, 1}}, {{1, std::nan("")}}}, "nan");
 }
 
-TEST(UserRig, KeepsTheStrongestFour) {
+TEST(UserRig, KeepsTheStrongestEight) {
   std::vector<Joint> joints = {{"root", -1, {0, 0, 0}}};
-  for (int j = 1; j < 8; ++j) {
+  for (int j = 1; j < 12; ++j) {
     joints.push_back({absl::StrCat("j", j), j - 1, {0, static_cast<double>(j), 0}});
   }
-  PLEAT_ASSERT_OK_AND_ASSIGN(
-      const UserRig rig,
-      RigFromJointWeights(*Skeleton::Create(joints),
-                          {{{0, .1}, {1, .4}, {2, .2}, {3, .05}, {4, .2}, {5, .05}}},
-                          Eigen::Matrix3Xd::Zero(3, 1)));
-  EXPECT_THAT(rig.weights.value().vertex(0).bones, ElementsAre(2, 3, 5, 1));
-  EXPECT_FLOAT_EQ(rig.weights.value().vertex(0).weights[0], .4f / .9f);
+  PLEAT_ASSERT_OK_AND_ASSIGN(const UserRig rig, RigFromJointWeights(*Skeleton::Create(joints),
+                                                                    {{{0, .1},
+                                                                      {1, .4},
+                                                                      {2, .2},
+                                                                      {3, .05},
+                                                                      {4, .2},
+                                                                      {5, .05},
+                                                                      {6, .03},
+                                                                      {7, .03},
+                                                                      {8, .01},
+                                                                      {9, .03}}},
+                                                                    Eigen::Matrix3Xd::Zero(3, 1)));
+  // The weight of a joint goes to the bone that begins there.
+  EXPECT_THAT(rig.weights.value().vertex(0).bones, ElementsAre(2, 3, 5, 1, 4, 6, 7, 8));
+  EXPECT_FLOAT_EQ(rig.weights.value().vertex(0).weights[0], .4f / 1.06f);
 }
 
 TEST(UserRig, TooManyJointsAreRefused) {

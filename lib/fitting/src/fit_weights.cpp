@@ -32,8 +32,14 @@ Eigen::VectorXf ComputeFitWeights(const MeshSequence& sequence, const Rig& rig,
   });
   Eigen::VectorXd residuals = Eigen::VectorXd::Zero(sequence.num_vertices());
   for (const Eigen::VectorXd& sum : sums) residuals += sum;
-  const double mean = residuals.mean();
-  if (!(mean > 0)) return {};
+  const double mean = residuals.mean() / num_frames;
+  residuals /= num_frames;
+  // What is left of a perfect fit is rounding, which says nothing about a vertex.
+  constexpr double kRounding = 1e-6;
+  const Eigen::Vector3d center = rig.rest_positions.rowwise().mean();
+  const double squared_size =
+      (rig.rest_positions.colwise() - center).colwise().squaredNorm().mean();
+  if (!(mean > kRounding * kRounding * squared_size)) return {};
   // Three times the mean keeps vertices that happen to fit well from deciding alone: no vertex
   // counts more than four thirds of an average one.
   constexpr double kMeans = 3;

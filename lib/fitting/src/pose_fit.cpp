@@ -76,8 +76,8 @@ class PoseFitter {
   void Summarize(const PoseTrack& track, PoseFitSummary* summary) const {
     *summary = {};
     double iterations = 0;
+    for (const double square : MeanSquares()) summary->frame_rms_m.push_back(std::sqrt(square));
     for (const Frame& frame : frames_) {
-      summary->frame_rms_m.push_back(std::sqrt(MeanSquare(frame)));
       iterations += frame.num_iterations;
       summary->num_rescued_frames += frame.rescued;
     }
@@ -105,16 +105,31 @@ class PoseFitter {
     bool rescued = false;
   };
 
-  // Returns the squared vertex distance of a frame's pose, the mean over vertices.
-  double MeanSquare(const Frame& frame) const {
-    PoseEnergy energy = energy_;
-    energy.SetFrame(frame.cross, frame.sum_squares);
-    return std::max(0.0, energy.DataValue(frame.pose)) / chain_.num_vertices;
+  // Returns the squared vertex distance of each frame's pose, the mean over vertices, in which all
+  // count alike. Where they do not in the fit, its energy cannot say it.
+  std::vector<double> MeanSquares() const {
+    std::vector<double> squares(frames_.size());
+    ParallelFor(static_cast<int>(frames_.size()), options_.num_threads, [&](int t) {
+      const Frame& frame = frames_[t];
+      if (rig_.fit_weights.size() > 0) {
+        BoneTransforms transforms;
+        Eigen::Matrix3Xd skinned;
+        ComputeBoneTransforms(rig_.skeleton, FromChainPose(rig_.skeleton, frame.pose, frame.center),
+                              {}, &transforms);
+        SkinVertices(rig_.weights, rig_.rest_positions, transforms, &skinned);
+        squares[t] = (sequence_.frame(t).cast<double>() - skinned).colwise().squaredNorm().mean();
+        return;
+      }
+      PoseEnergy energy = energy_;
+      energy.SetFrame(frame.cross, frame.sum_squares);
+      squares[t] = std::max(0.0, energy.DataValue(frame.pose)) / chain_.num_vertices;
+    });
+    return squares;
   }
 
   double Rms() const {
     double squares = 0;
-    for (const Frame& frame : frames_) squares += MeanSquare(frame);
+    for (const double square : MeanSquares()) squares += square;
     return std::sqrt(squares / static_cast<double>(frames_.size()));
   }
 

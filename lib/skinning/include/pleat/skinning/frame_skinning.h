@@ -61,11 +61,12 @@ class FrameSkinning {
   // The data of 16 vertices. The last one of a block fills the lanes left over.
   struct alignas(64) Block {
     float rest[3 * kSkinningLanes];  // x of all, y, z; meters
-    // Those that its vertices have, as a multiple of four: kernels are unrolled for it, and entries
-    // without weight, which add zero, change no bit of a sum.
-    int num_influences = 4;
     float weights[kMaxInfluences * kSkinningLanes];
     uint16_t bones[kMaxInfluences * kSkinningLanes];  // the strongest of each vertex first
+    // Those that its vertices have, as a multiple of four: kernels are unrolled for it, and entries
+    // without weight, which add zero, change no bit of a sum.
+    // It is last, because kernels load the lists above as whole, aligned registers.
+    int num_influences = 4;
   };
 
  private:
