@@ -68,6 +68,18 @@ std::optional<FrameRate> RateOfKeys(const std::vector<float>& times_s) {
   return std::nullopt;
 }
 
+std::optional<FrameRate> RateOfInterval(double seconds, double tolerance_s) {
+  for (const bool is_whole : {true, false}) {
+    for (const FrameRate rate : kUsualRates) {
+      if ((rate.denominator == 1) == is_whole &&
+          std::abs(seconds - 1 / rate.fps()) <= tolerance_s) {
+        return rate;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 double FrameNumberAt(float seconds, FrameRate rate) {
   const double frame = double{seconds} * rate.fps();
   const double rounding =

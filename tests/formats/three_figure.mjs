@@ -1,0 +1,65 @@
+// node three_figure.mjs FILE: what three.js shows of a skinned GLB or of a BVH clip, as text: for
+// each key of the animation, the places of all vertices (GLB) or of all joints (BVH), a line each.
+import fs from 'fs';
+import path from 'path';
+import { createRequire } from 'module';
+import { pathToFileURL } from 'url';
+
+const require = createRequire(import.meta.url);  // unlike import, it heeds NODE_PATH
+const loaders = path.dirname(require.resolve('three/examples/jsm/loaders/BVHLoader.js'));
+const load = (file) => import(pathToFileURL(file));
+// The module that the loaders import.
+const THREE = await load(path.join(loaders, '..', '..', '..', 'build', 'three.module.js'));
+globalThis.self = globalThis;
+
+const file = process.argv[2];
+const lines = [];
+const add = (v) => lines.push(`${v.x} ${v.y} ${v.z}`);
+
+function showGlb(gltf) {
+  const mixer = new THREE.AnimationMixer(gltf.scene);
+  const clip = gltf.animations[0];
+  const times = clip.tracks[0].times;
+  const action = mixer.clipAction(clip);
+  action.setLoop(THREE.LoopOnce);
+  action.clampWhenFinished = true;
+  action.play();
+  let mesh = null;
+  gltf.scene.traverse((object) => { if (object.isSkinnedMesh) mesh = mesh || object; });
+  const point = new THREE.Vector3();
+  for (const time of times) {
+    mixer.setTime(time);
+    gltf.scene.updateMatrixWorld(true);
+    for (let v = 0; v < mesh.geometry.attributes.position.count; ++v) {
+      mesh.getVertexPosition(v, point);
+      add(point.applyMatrix4(mesh.matrixWorld));
+    }
+  }
+}
+
+function showBvh({ clip, skeleton }) {
+  const root = new THREE.Group();
+  root.add(skeleton.bones[0]);
+  const mixer = new THREE.AnimationMixer(root);
+  const action = mixer.clipAction(clip);
+  action.setLoop(THREE.LoopOnce);
+  action.clampWhenFinished = true;
+  action.play();
+  const point = new THREE.Vector3();
+  for (const time of clip.tracks[0].times) {
+    mixer.setTime(time);
+    root.updateMatrixWorld(true);
+    for (const bone of skeleton.bones) add(point.setFromMatrixPosition(bone.matrixWorld));
+  }
+}
+
+if (file.endsWith('.bvh')) {
+  const { BVHLoader } = await load(path.join(loaders, 'BVHLoader.js'));
+  showBvh(new BVHLoader().parse(fs.readFileSync(file, 'utf8')));
+} else {
+  const { GLTFLoader } = await load(path.join(loaders, 'GLTFLoader.js'));
+  const bytes = fs.readFileSync(file);
+  const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+  showGlb(await new GLTFLoader().parseAsync(buffer, ''));
+}
+fs.writeSync(1, lines.join('\n') + '\n');
