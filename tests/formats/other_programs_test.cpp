@@ -110,6 +110,33 @@ TEST(OtherProgramsTest, ThreeJsShowsSkinMotionAndFolds) {
   EXPECT_LT((shown - wanted).colwise().norm().maxCoeff(), 1e-5);
 }
 
+// three.js reads UsdSkel by code of its own. It splits the mesh into corners, each of which must
+// move with the same vertex in all frames.
+TEST(OtherProgramsTest, ThreeJsSkinsTheUsdText) {
+  if (!HasNodePackage("three/examples/jsm/loaders/USDLoader.js")) {
+    GTEST_SKIP() << "node with a package three that has USDLoader.js is not here (NODE_PATH)";
+  }
+  const TemporaryFolder folder;
+  CharacterFile character = FoldedFigure();
+  character.morphs->targets.setZero();  // USD text has none
+  ASSERT_THAT(WriteCharacterUsda(folder.File("figure.usda"), character), IsOk());
+  std::istringstream text(Node("three_figure.mjs", folder.File("figure.usda")));
+  const Eigen::Matrix3Xd shown = ReadPoints(text), wanted = Shown(character);
+  const Eigen::Index num_vertices = character.rig.rest_positions.cols();
+  const Eigen::Index num_corners = shown.cols() / kNumFrames;
+  ASSERT_EQ(num_corners * kNumFrames, shown.cols());
+  ASSERT_EQ(num_corners, 3 * character.topology.num_triangles()) << text.str();
+  for (Eigen::Index c = 0; c < num_corners; ++c) {
+    Eigen::Index vertex = 0;
+    (wanted.leftCols(num_vertices).colwise() - shown.col(c)).colwise().norm().minCoeff(&vertex);
+    for (int t = 0; t < kNumFrames; ++t) {
+      EXPECT_LT((shown.col(t * num_corners + c) - wanted.col(t * num_vertices + vertex)).norm(),
+                1e-5)
+          << c << " " << t;
+    }
+  }
+}
+
 TEST(OtherProgramsTest, ThreeJsPlacesTheJointsOfABvh) {
   if (!HasNodePackage("three")) {
     GTEST_SKIP() << "node with the package three is not on this machine (NODE_PATH)";

@@ -1,5 +1,6 @@
-// node three_figure.mjs FILE: what three.js shows of a skinned GLB or of a BVH clip, as text: for
-// each key of the animation, the places of all vertices (GLB) or of all joints (BVH), a line each.
+// node three_figure.mjs FILE: what three.js shows of a skinned GLB or USD text, or of a BVH clip, as
+// text: for each key of the animation, the places of all vertices (of all corners of USD, which it
+// splits) or of all joints (BVH), a line each.
 import fs from 'fs';
 import path from 'path';
 import { createRequire } from 'module';
@@ -13,27 +14,31 @@ const THREE = await load(path.join(loaders, '..', '..', '..', 'build', 'three.mo
 globalThis.self = globalThis;
 
 const file = process.argv[2];
-const lines = [];
-const add = (v) => lines.push(`${v.x} ${v.y} ${v.z}`);
+let lines = [];
+const add = (v) => lines.push(`${v.x} ${v.y} ${v.z}\n`);
+function endKey() {
+  fs.writeSync(1, lines.join(''));
+  lines = [];
+}
 
-function showGlb(gltf) {
-  const mixer = new THREE.AnimationMixer(gltf.scene);
-  const clip = gltf.animations[0];
+function showMesh(scene, clip) {
+  const mixer = new THREE.AnimationMixer(scene);
   const times = clip.tracks[0].times;
   const action = mixer.clipAction(clip);
   action.setLoop(THREE.LoopOnce);
   action.clampWhenFinished = true;
   action.play();
   let mesh = null;
-  gltf.scene.traverse((object) => { if (object.isSkinnedMesh) mesh = mesh || object; });
+  scene.traverse((object) => { if (object.isSkinnedMesh) mesh = mesh || object; });
   const point = new THREE.Vector3();
   for (const time of times) {
     mixer.setTime(time);
-    gltf.scene.updateMatrixWorld(true);
+    scene.updateMatrixWorld(true);
     for (let v = 0; v < mesh.geometry.attributes.position.count; ++v) {
       mesh.getVertexPosition(v, point);
       add(point.applyMatrix4(mesh.matrixWorld));
     }
+    endKey();
   }
 }
 
@@ -50,16 +55,21 @@ function showBvh({ clip, skeleton }) {
     mixer.setTime(time);
     root.updateMatrixWorld(true);
     for (const bone of skeleton.bones) add(point.setFromMatrixPosition(bone.matrixWorld));
+    endKey();
   }
 }
 
 if (file.endsWith('.bvh')) {
   const { BVHLoader } = await load(path.join(loaders, 'BVHLoader.js'));
   showBvh(new BVHLoader().parse(fs.readFileSync(file, 'utf8')));
+} else if (file.endsWith('.usda')) {
+  const { USDLoader } = await load(path.join(loaders, 'USDLoader.js'));
+  const scene = new USDLoader().parse(fs.readFileSync(file, 'utf8'));
+  showMesh(scene, scene.animations[0]);
 } else {
   const { GLTFLoader } = await load(path.join(loaders, 'GLTFLoader.js'));
   const bytes = fs.readFileSync(file);
   const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-  showGlb(await new GLTFLoader().parseAsync(buffer, ''));
+  const gltf = await new GLTFLoader().parseAsync(buffer, '');
+  showMesh(gltf.scene, gltf.animations[0]);
 }
-fs.writeSync(1, lines.join('\n') + '\n');

@@ -42,9 +42,12 @@ class BvhParser {
   absl::StatusOr<std::string_view> ParseField(const char* name) {
     const std::string_view line = words_.NextLine();
     const size_t colon = line.find(':');
-    const bool is_field = colon != std::string_view::npos &&
-                          absl::EqualsIgnoreCase(absl::string_view(line.data(), colon), name);
-    if (!is_field) {
+    std::string found;
+    TextWords words(line.substr(0, colon));
+    for (std::string_view word = words.Next(); !word.empty(); word = words.Next()) {
+      absl::StrAppend(&found, found.empty() ? "" : " ", std::string(word));
+    }
+    if (colon == std::string_view::npos || !absl::EqualsIgnoreCase(found, name)) {
       return Fault(absl::StrCat("found ", QuotedWord(line), " where '", name, ":' must stand"));
     }
     return TextWords(line.substr(colon + 1)).Next();

@@ -17,7 +17,8 @@ std::optional<FrameRate> RateOfFloatTimes(const std::vector<float>& times_s);
 // Fewer times than frames are enough: keys of an animation. None when no rate fits.
 std::optional<FrameRate> RateOfKeys(const std::vector<float>& times_s);
 
-// The usual rate whose frames last `seconds`, within `tolerance_s`: a whole number where one fits.
+// The usual rate whose frames last `seconds`, within `tolerance_s`: the nearest whole number where
+// one fits, else the nearest fraction.
 std::optional<FrameRate> RateOfInterval(double seconds, double tolerance_s);
 
 // The number of the frame at `seconds`, rounded to a whole number where it is one but for the

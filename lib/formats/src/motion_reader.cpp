@@ -47,7 +47,8 @@ absl::StatusOr<Motion> DecodeAnyMotion(const std::string& path, std::string_view
                                        const Skeleton& skeleton, const ReadMotionOptions& options) {
   if (IsBvhText(bytes)) return MotionOfBvh(bytes, skeleton, options.limits);
   if (IsGlb(bytes)) return MotionOfGlb(bytes, skeleton, options);
-  if (IsGltfText(bytes)) {
+  const bool is_motion = bytes.find("pleat.motion/") != std::string_view::npos;
+  if (!is_motion && IsGltfText(bytes)) {
     PLEAT_ASSIGN_OR_RETURN(const std::string packed, PackGltf(bytes, path, options.limits));
     return MotionOfGlb(packed, skeleton, options);
   }
