@@ -52,7 +52,7 @@ TEST(CharacterGlbWriterTest, MorphTargetsAreAddedBeforeTheSkin) {
   }
   const nlohmann::json& mesh = gltf.root["meshes"][0];
   EXPECT_EQ(mesh["extras"]["targetNames"],
-            (std::vector<std::string>{"mean_folds", "folds_1", "folds_2"}));
+            (std::vector<std::string>{"base_folds", "folds_1", "folds_2"}));
   EXPECT_EQ(mesh["weights"].size(), 3u);
 }
 

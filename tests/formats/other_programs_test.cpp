@@ -41,7 +41,7 @@ CharacterFile FoldedFigure() {
   }
   morphs.weights.resize(kNumFrames, 2);
   for (int t = 0; t < kNumFrames; ++t) {
-    morphs.weights.row(t) << 1, std::sin(static_cast<float>(t));
+    morphs.weights.row(t) << 1, .5f + .5f * std::sin(static_cast<float>(t));
   }
   character.morphs = morphs;
   return character;

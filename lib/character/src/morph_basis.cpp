@@ -179,12 +179,16 @@ class MorphBasisBuilder {
     return absl::OkStatus();
   }
 
+  // Programs cut weights at 0 and at 1. What lies below 0 goes into target 0, which always shows.
   void Normalize() {
     for (Eigen::Index k = 1; k < basis_.targets.cols(); ++k) {
-      const float largest = basis_.weights.col(k).cwiseAbs().maxCoeff();
-      if (!(largest > 0)) continue;
-      basis_.targets.col(k) *= largest;
-      basis_.weights.col(k) /= largest;
+      const float low = basis_.weights.col(k).minCoeff();
+      const float range = basis_.weights.col(k).maxCoeff() - low;
+      basis_.targets.col(0) += low * basis_.targets.col(k);
+      basis_.weights.col(k).array() -= low;
+      if (!(range > 0)) continue;
+      basis_.targets.col(k) *= range;
+      basis_.weights.col(k) /= range;
     }
   }
 

@@ -139,7 +139,7 @@ class CharacterGlb {
   }
 
   json TargetNames() const {
-    json names = json::array({"mean_folds"});
+    json names = json::array({"base_folds"});
     for (size_t k = 1; k < num_targets(); ++k) names.push_back(absl::StrCat("folds_", k));
     return names;
   }

@@ -33,10 +33,10 @@ struct MorphBasisError {
 
 // skin(rest + sum_k weights(t, k) * target_k) is frame t of the clip.
 struct MorphBasis {
-  // 3V x N, meters, in the rest pose: target 0 is the mean of the clip, the others are its
-  // principal components. Float32, as files hold them.
+  // 3V x N, meters, in the rest pose: target 0 is what all frames have, the others are the
+  // principal components of the clip. Float32, as files hold them.
   Eigen::MatrixXf targets;
-  Eigen::MatrixXf weights;  // T x N; the largest magnitude of a target is 1
+  Eigen::MatrixXf weights;  // T x N, from 0 to 1; of target 0 always 1
   // With no targets, with 1, 2, 3, 4, 6, 8, 12, ... and with N.
   std::vector<MorphBasisError> errors;
 };
