@@ -29,6 +29,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddTrainVerb(*app, session);
   AddMotionVerb(*app, session);
   AddPoseVerb(*app, session);
+  AddExportVerb(*app, session);
   AddEvaluateVerb(*app, session);
   AddRenderVerb(*app, session);
   AddCompareVerb(*app, session);

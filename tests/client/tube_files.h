@@ -8,7 +8,7 @@
 #include "client/run_pleat.h"
 #include "pleat/base/file.h"
 #include "pleat/formats/model_file.h"
-#include "pleat/formats/motion_file.h"
+#include "pleat/formats/motion_reader.h"
 #include "pleat/formats/rig_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/skinning/user_rig.h"

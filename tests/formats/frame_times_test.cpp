@@ -47,5 +47,12 @@ TEST(FrameTimesTest, FrameNumbersAreWholeWhereTheyAreMeant) {
   EXPECT_EQ(FrameNumberAt(0.5f, {25, 1}), 12.5);
 }
 
+TEST(FrameTimesTest, IntervalsAreThoseOfUsualRatesWholeOnesFirst) {
+  EXPECT_EQ(RateOfInterval(.0083333, 1e-6), (FrameRate{120, 1}));
+  EXPECT_EQ(RateOfInterval(.042, 5e-4), (FrameRate{24, 1}));
+  EXPECT_EQ(RateOfInterval(.0333667, 7e-6), (FrameRate{30000, 1001}));
+  EXPECT_EQ(RateOfInterval(.07, 1e-5), std::nullopt);
+}
+
 }  // namespace
 }  // namespace pleat

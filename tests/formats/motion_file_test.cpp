@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/file.h"
 #include "pleat/math/rotations.h"
 #include "pleat/skeleton/human_template.h"
 #include "support/hostile_bytes.h"
@@ -73,7 +74,8 @@ TEST(MotionFileTest, WrittenMotionReadsBack) {
   scales[kLeftFoot] = 1.25;
   const TemporaryFolder folder;
   ASSERT_THAT(WriteMotion(folder.File("m.json"), HumanTemplate(), track, scales), IsOk());
-  PLEAT_ASSERT_OK_AND_ASSIGN(const Motion read, ReadMotion(folder.File("m.json"), HumanTemplate()));
+  PLEAT_ASSERT_OK_AND_ASSIGN(const Motion read,
+                             DecodeMotion(*ReadFile(folder.File("m.json")), HumanTemplate()));
   EXPECT_TRUE(read.warnings.empty());
   EXPECT_EQ(read.bone_scales, scales);
   EXPECT_EQ(read.track.fps(), 29.97);

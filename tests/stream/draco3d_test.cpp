@@ -10,6 +10,7 @@
 #include "draco/compression/decode.h"
 #include "pleat/base/file.h"
 #include "pleat/stream/frame_encoder.h"
+#include "support/programs.h"
 #include "support/source_folder.h"
 #include "support/status_matchers.h"
 #include "support/temporary_folder.h"
@@ -17,22 +18,6 @@
 
 namespace pleat {
 namespace {
-
-// What `command` prints; empty when it fails.
-std::string Output(const std::string& command) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::string output;
-  std::array<char, 4096> buffer;
-  while (pipe != nullptr && fgets(buffer.data(), buffer.size(), pipe.get()) != nullptr) {
-    output += buffer.data();
-  }
-  return output;
-}
-
-bool HasPackage(const std::string& name) {
-  return Output("node -e \"require.resolve('" + name + "'); console.log('found')\" 2>/dev/null") ==
-         "found\n";
-}
 
 // The line that the scripts print, from Draco's own decoder.
 std::string Expected(const std::string& name, const std::string& bytes) {
@@ -110,20 +95,20 @@ class Payloads {
 };
 
 TEST(Draco3dTest, NodeReadsEveryPayload) {
-  if (!HasPackage("draco3d")) {
+  if (!HasNodePackage("draco3d")) {
     GTEST_SKIP() << "node with the package draco3d is not on this machine (NODE_PATH)";
   }
   const Payloads payloads;
-  EXPECT_EQ(Output("node " + InSourceFolder("tests/stream/draco3d.js ") + payloads.folder()),
+  EXPECT_EQ(OutputOf("node " + InSourceFolder("tests/stream/draco3d.js ") + payloads.folder()),
             payloads.expected());
 }
 
 TEST(Draco3dTest, ThreeJsReadsEveryPayload) {
-  if (!HasPackage("three")) {
+  if (!HasNodePackage("three")) {
     GTEST_SKIP() << "node with the package three is not on this machine (NODE_PATH)";
   }
   const Payloads payloads;
-  EXPECT_EQ(Output("node " + InSourceFolder("tests/stream/dracoloader.mjs ") + payloads.folder()),
+  EXPECT_EQ(OutputOf("node " + InSourceFolder("tests/stream/dracoloader.mjs ") + payloads.folder()),
             payloads.expected());
 }
 

@@ -3,12 +3,14 @@
 #include <filesystem>
 
 #include "absl/strings/match.h"
+#include "cli/io/frame_rate.h"
 #include "cli/io/input.h"
 #include "cli/service.h"
 #include "cli/show/progress_display.h"
 #include "pleat/base/status.h"
 #include "pleat/character/fit_motion.h"
 #include "pleat/formats/model_file.h"
+#include "pleat/formats/motion_reader.h"
 
 namespace pleat {
 
@@ -38,7 +40,13 @@ absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
 
 absl::StatusOr<Motion> LoadMotion(const std::string& source, const std::string& fps,
                                   const CharacterModel& model, const Session& session) {
-  if (absl::EndsWith(source, ".json")) return ReadMotion(source, model.skeleton());
+  ReadMotionOptions options;
+  if (!fps.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(options.frame_rate, ParseFrameRate(fps));
+  }
+  if (HoldsMotion(source, model.skeleton(), options)) {
+    return ReadMotion(source, model.skeleton(), options);
+  }
   PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence, ReadInput(session, source, fps));
   Motion motion;
   PLEAT_ASSIGN_OR_RETURN(motion.track, FitMotionWithProgress(model, sequence, session));

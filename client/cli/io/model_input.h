@@ -27,8 +27,8 @@ absl::StatusOr<PoseTrack> FitMotionWithProgress(const CharacterModel& model,
                                                 const MeshSequence& sequence,
                                                 const Session& session);
 
-// Returns the poses of `source`: a motion file, or else a mesh sequence, to which poses are fitted.
-// fps: the frame rate of a sequence that does not have one; may be empty.
+// Returns the poses of `source`: a motion (motion_reader.h), or else a mesh sequence, to which
+// poses are fitted. fps: the frame rate of a source that does not have one; may be empty.
 absl::StatusOr<Motion> LoadMotion(const std::string& source, const std::string& fps,
                                   const CharacterModel& model, const Session& session);
 

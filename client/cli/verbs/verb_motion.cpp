@@ -58,10 +58,10 @@ void AddMotionVerb(CLI::App& app, Session& session) {
   verb->add_option("MODEL", options->model, "a .pleat file, or the id of a model on the server")
       ->required();
   verb->add_option("SOURCE", options->source,
-                   "a motion (.json), or a mesh sequence of the model's connectivity")
+                   "a motion (.json, .bvh, .glb), or a mesh sequence of the model's connectivity")
       ->required();
   verb->add_option("-o,--output", options->output, "motion file (.json)")->required();
-  verb->add_option("--fps", options->fps, "frames per second, where a sequence does not say");
+  verb->add_option("--fps", options->fps, "frames per second, where SOURCE does not say");
   AddObjectFlag(verb, session);
   verb->add_option("--scale-rotation", options->edits.scale_rotation,
                    "JOINT=FACTOR: more or less of the motion of the bone that ends in JOINT "

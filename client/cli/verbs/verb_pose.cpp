@@ -23,7 +23,7 @@
 #include "pleat/base/status.h"
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/formats/model_file.h"
-#include "pleat/formats/motion_file.h"
+#include "pleat/formats/motion_reader.h"
 #include "pleat/stream/frame_encoder.h"
 
 namespace pleat {
@@ -250,7 +250,8 @@ void AddPoseVerb(CLI::App& app, Session& session) {
                            [options, &session] { return RunPose(*options, session); });
   verb->add_option("MODEL", options->model, "a .pleat file, or the id of a model on the server")
       ->required();
-  verb->add_option("--motion", options->motion, "motion file (.json)")->required();
+  verb->add_option("--motion", options->motion, "motion (.json, .bvh, or .glb with the joints)")
+      ->required();
   verb->add_option("-o,--output", options->output, "OUT.ENDING (see --format) or a folder")
       ->required();
   verb->add_option("--format", options->format, FormatFlagHelp("drc"))->capture_default_str();

@@ -47,6 +47,7 @@ void AddRenderVerb(CLI::App& app, Session& session);
 void AddRigVerb(CLI::App& app, Session& session);
 void AddTrainVerb(CLI::App& app, Session& session);
 void AddPoseVerb(CLI::App& app, Session& session);
+void AddExportVerb(CLI::App& app, Session& session);
 void AddMotionVerb(CLI::App& app, Session& session);
 void AddBenchVerb(CLI::App& app, Session& session);
 void AddEvaluateVerb(CLI::App& app, Session& session);

@@ -68,6 +68,19 @@ std::optional<FrameRate> RateOfKeys(const std::vector<float>& times_s) {
   return std::nullopt;
 }
 
+std::optional<FrameRate> RateOfInterval(double seconds, double tolerance_s) {
+  const auto distance = [&](FrameRate rate) { return std::abs(seconds - 1 / rate.fps()); };
+  std::optional<FrameRate> nearest;
+  for (const bool is_whole : {true, false}) {
+    for (const FrameRate rate : kUsualRates) {
+      if ((rate.denominator == 1) != is_whole || distance(rate) > tolerance_s) continue;
+      if (!nearest || distance(rate) < distance(*nearest)) nearest = rate;
+    }
+    if (nearest) break;
+  }
+  return nearest;
+}
+
 double FrameNumberAt(float seconds, FrameRate rate) {
   const double frame = double{seconds} * rate.fps();
   const double rounding =

@@ -17,6 +17,10 @@ std::optional<FrameRate> RateOfFloatTimes(const std::vector<float>& times_s);
 // Fewer times than frames are enough: keys of an animation. None when no rate fits.
 std::optional<FrameRate> RateOfKeys(const std::vector<float>& times_s);
 
+// The usual rate whose frames last `seconds`, within `tolerance_s`: the nearest whole number where
+// one fits, else the nearest fraction.
+std::optional<FrameRate> RateOfInterval(double seconds, double tolerance_s);
+
 // The number of the frame at `seconds`, rounded to a whole number where it is one but for the
 // rounding of the seconds to float32.
 double FrameNumberAt(float seconds, FrameRate rate);

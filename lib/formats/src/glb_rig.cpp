@@ -9,6 +9,7 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "bone_joints.h"
 #include "glb_container.h"
 #include "glb_nodes.h"
 #include "glb_skin.h"
@@ -73,46 +74,13 @@ class SkinReader {
     }
     PLEAT_RETURN_IF_ERROR(MakeSkeleton());
     PLEAT_RETURN_IF_ERROR(ReadMeshes());
+    TakeBoneJoints(skin_places_, &file_);
     return std::move(file_);
   }
 
  private:
-  // Fills parent_joints_: the index in the skin of the nearest ancestor that is a joint, or -1.
-  void FindParents() {
-    std::vector<int> joint_of_node(static_cast<size_t>(nodes_.count()), -1);
-    for (size_t j = 0; j < skin_.joint_nodes.size(); ++j) {
-      joint_of_node[static_cast<size_t>(skin_.joint_nodes[j])] = static_cast<int>(j);
-    }
-    for (const int joint_node : skin_.joint_nodes) {
-      int node = nodes_.parent(joint_node);
-      while (node >= 0 && joint_of_node[static_cast<size_t>(node)] < 0) node = nodes_.parent(node);
-      parent_joints_.push_back(node < 0 ? -1 : joint_of_node[static_cast<size_t>(node)]);
-    }
-  }
-
-  // Returns the indices of the skin with every parent before its children: first the roots, of
-  // which there may be several. Roots and children of one parent stay in the order of the skin.
-  std::vector<int> ParentsFirst() const {
-    const int num_joints = static_cast<int>(parent_joints_.size());
-    std::vector<std::vector<int>> children(num_joints);
-    std::vector<int> order;
-    for (int j = 0; j < num_joints; ++j) {
-      (parent_joints_[j] >= 0 ? children[parent_joints_[j]] : order).push_back(j);
-    }
-    for (size_t i = 0; i < order.size(); ++i) {
-      order.insert(order.end(), children[order[i]].begin(), children[order[i]].end());
-    }
-    return order;
-  }
-
-  std::string NameOfNode(int node) const {
-    const json& entry = glb_.List("nodes")[static_cast<size_t>(node)];
-    const auto found = entry.find("name");
-    return found != entry.end() && found->is_string() ? found->get<std::string>() : "";
-  }
-
   std::string UniqueName(int joint, const std::vector<Joint>& before) const {
-    std::string name = NameOfNode(skin_.joint_nodes[joint]);
+    std::string name = GlbNodeName(glb_, skin_.joint_nodes[joint]);
     if (name.empty()) name = absl::StrCat("joint_", skin_.joint_nodes[joint]);
     const std::string stem = name;
     const auto is_taken = [&] {
@@ -143,7 +111,7 @@ class SkinReader {
            node = nodes_.parent(node)) {
         const bool is_common =
             ++num_below[static_cast<size_t>(node)] == static_cast<int>(roots.size());
-        if (is_common && common.name.empty()) common.name = NameOfNode(node);
+        if (is_common && common.name.empty()) common.name = GlbNodeName(glb_, node);
       }
     }
     if (common.name.empty()) common.name = "root";
@@ -155,8 +123,8 @@ class SkinReader {
   }
 
   absl::Status MakeSkeleton() {
-    FindParents();
-    const std::vector<int> order = ParentsFirst();
+    parent_joints_ = ParentJoints(skin_, nodes_);
+    const std::vector<int> order = ParentsFirst(parent_joints_);
     new_index_.assign(skin_.joint_nodes.size(), -1);
     if (!skin_.inverse_binds.empty()) {
       // Nodes may be posed, so this is only where a mesh in another place or unit may be.
@@ -173,12 +141,14 @@ class SkinReader {
                                   kMaxUserJoints, " joints"));
       }
       joints.push_back(CommonRoot({order.begin(), order.begin() + num_roots}));
+      skin_places_.push_back(-1);
     }
     const int parent_of_roots = static_cast<int>(joints.size()) - 1;
     for (const int j : order) {
       new_index_[j] = static_cast<int>(joints.size());
       const int parent = parent_joints_[j] < 0 ? parent_of_roots : new_index_[parent_joints_[j]];
       joints.push_back({UniqueName(j, joints), parent, RestPosition(j)});
+      skin_places_.push_back(j);
     }
     absl::StatusOr<Skeleton> skeleton = Skeleton::Create(std::move(joints));
     if (!skeleton.ok()) return Fault(std::string(skeleton.status().message()));
@@ -238,6 +208,7 @@ class SkinReader {
   GlbSkin skin_;
   std::vector<int> parent_joints_;  // of every joint of the skin, an index in it; -1 = root
   std::vector<int> new_index_;      // the index in file_.skeleton of every joint of the skin
+  std::vector<int> skin_places_;    // the index in the skin of every joint of file_.skeleton
   RigFile file_;
 };
 

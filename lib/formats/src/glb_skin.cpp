@@ -87,6 +87,39 @@ absl::StatusOr<GlbSkin> ReadGlbSkin(const GlbContainer& glb, const GlbNodes& nod
   return result;
 }
 
+std::vector<int> ParentJoints(const GlbSkin& skin, const GlbNodes& nodes) {
+  std::vector<int> joint_of_node(static_cast<size_t>(nodes.count()), -1);
+  for (size_t j = 0; j < skin.joint_nodes.size(); ++j) {
+    joint_of_node[static_cast<size_t>(skin.joint_nodes[j])] = static_cast<int>(j);
+  }
+  std::vector<int> parents;
+  for (const int joint_node : skin.joint_nodes) {
+    int node = nodes.parent(joint_node);
+    while (node >= 0 && joint_of_node[static_cast<size_t>(node)] < 0) node = nodes.parent(node);
+    parents.push_back(node < 0 ? -1 : joint_of_node[static_cast<size_t>(node)]);
+  }
+  return parents;
+}
+
+std::vector<int> ParentsFirst(const std::vector<int>& parents) {
+  const int num_joints = static_cast<int>(parents.size());
+  std::vector<std::vector<int>> children(num_joints);
+  std::vector<int> order;
+  for (int j = 0; j < num_joints; ++j) {
+    (parents[j] >= 0 ? children[parents[j]] : order).push_back(j);
+  }
+  for (size_t i = 0; i < order.size(); ++i) {
+    order.insert(order.end(), children[order[i]].begin(), children[order[i]].end());
+  }
+  return order;
+}
+
+std::string GlbNodeName(const GlbContainer& glb, int node) {
+  const json& entry = glb.List("nodes")[static_cast<size_t>(node)];
+  const auto found = entry.find("name");
+  return found != entry.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
 absl::StatusOr<std::vector<std::vector<JointInfluence>>> ReadGlbInfluences(const GlbContainer& glb,
                                                                            const json& attributes,
                                                                            size_t num_vertices,

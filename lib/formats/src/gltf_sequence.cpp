@@ -1,23 +1,20 @@
 #include "gltf_sequence.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "frame_times.h"
 #include "glb_animation.h"
+#include "glb_frames.h"
 #include "glb_mesh.h"
 #include "glb_pose.h"
 #include "glb_remainders.h"
 #include "glb_vertex_ids.h"
 #include "gltf_file.h"
 #include "pleat/base/status.h"
-#include "pleat/base/utf8.h"
 
 namespace pleat {
 namespace {
@@ -26,57 +23,6 @@ using nlohmann::json;
 
 // How many vertices of morph targets are added for each vertex of a frame at most.
 constexpr uint64_t kMaxTargetsPerVertex = 256;
-
-// When the frames are, and how many a second has.
-struct FrameTimes {
-  std::vector<float> times;
-  FrameRate rate;
-};
-
-void AddGltfNote(NoteSeverity severity, const char* kind, std::string text, InputReport* report) {
-  report->notes.push_back({.severity = severity, .kind = kind, .text = std::move(text)});
-}
-
-std::vector<float> TimesOfFrames(float begin, float end, FrameRate rate, int64_t max_frames) {
-  const double num_steps = std::floor((double{end} - begin) * rate.fps() + 1e-3);
-  const auto count = static_cast<int64_t>(std::min(num_steps, static_cast<double>(max_frames)));
-  std::vector<float> times;
-  for (int64_t i = 0; i <= count; ++i) {
-    times.push_back(static_cast<float>(begin + static_cast<double>(i) / rate.fps()));
-  }
-  return times;
-}
-
-// The keys themselves where they are evenly spaced; else the frames of a rate between the first key
-// and the last.
-FrameTimes ChooseFrames(const GlbAnimation& animation, const InputReading& reading) {
-  const std::vector<float> keys = animation.KeyTimes();
-  const std::optional<FrameRate>& wanted = reading.options.frame_rate;
-  std::optional<FrameRate> even = RateOfFloatTimes(keys);
-  const std::optional<FrameRate> said = animation.frame_rate();
-  if (even && said && std::abs(even->fps() / said->fps() - 1) < 1e-3) even = said;
-  InputReport* report = reading.report;
-  report->has_frame_rate = even.has_value();
-  if ((even && wanted.value_or(*even) == *even) || keys.size() == 1) {
-    return {keys, wanted.value_or(even.value_or(FrameRate{}))};
-  }
-  const std::optional<FrameRate> between = RateOfKeys(keys);
-  report->has_frame_rate = even || between;
-  const FrameRate rate = wanted.value_or(even ? *even : between.value_or(FrameRate{}));
-  if (!wanted && !between) {
-    AddGltfNote(NoteSeverity::kWarning, "frame_rate_assumed",
-                absl::StrFormat("the keys lie at the frames of no usual rate; %g frames per second "
-                                "are taken, say --fps for another rate",
-                                rate.fps()),
-                report);
-  } else {
-    AddGltfNote(NoteSeverity::kNote, "animation_sampled",
-                absl::StrFormat("its %d keys are sampled at %g frames per second%s", keys.size(),
-                                rate.fps(), wanted ? "" : ", at whose frames they lie"),
-                report);
-  }
-  return {TimesOfFrames(keys.front(), keys.back(), rate, reading.options.limits.max_frames), rate};
-}
 
 // The weights of morph targets that a node has without an animation.
 std::vector<float> WeightsOf(const GlbContainer& glb, int node) {
@@ -101,7 +47,9 @@ class AnimationReader {
     PLEAT_ASSIGN_OR_RETURN(mesh_, ReadGlbMesh(glb_, nodes_, false, reading_.options.limits));
     reading_.report->notes.insert(reading_.report->notes.end(), mesh_.notes.begin(),
                                   mesh_.notes.end());
-    const FrameTimes frames = ChooseFrames(animation_, reading_);
+    const GlbFrames frames = ChooseGlbFrames(
+        animation_, {reading_.options.frame_rate, reading_.options.limits.max_frames},
+        reading_.report);
     reading_.report->first_frame = FrameNumberAt(frames.times.front(), frames.rate);
     PLEAT_RETURN_IF_ERROR(
         CheckSequenceCounts({.num_vertices = mesh_.topology.num_vertices(),
@@ -170,34 +118,6 @@ class AnimationReader {
   std::vector<Eigen::Matrix3Xf> frames_;
 };
 
-std::string AnimationName(const GlbContainer& glb, size_t index) {
-  const json& entry = glb.Entry("animations", index);
-  const auto name = entry.is_object() ? entry.find("name") : entry.end();
-  return entry.is_object() && name != entry.end() && name->is_string()
-             ? EscapeControls(name->get<std::string>())
-             : std::string();
-}
-
-// The first animation with channels, none when there is none; a note says which others there are.
-absl::StatusOr<std::optional<GlbAnimation>> ChooseAnimation(const GlbContainer& glb,
-                                                            const GlbNodes& nodes,
-                                                            InputReport* report) {
-  const size_t count = glb.List("animations").size();
-  for (size_t i = 0; i < count; ++i) {
-    PLEAT_ASSIGN_OR_RETURN(GlbAnimation animation, GlbAnimation::Read(glb, nodes, i));
-    if (animation.num_channels() == 0) continue;
-    if (count > 1) {
-      AddGltfNote(NoteSeverity::kWarning, "animations_left_out",
-                  absl::StrCat("the file holds ", count, " animations; number ", i, " '",
-                               AnimationName(glb, i),
-                               "' is read; export the others into files of their own"),
-                  report);
-    }
-    return std::optional(std::move(animation));
-  }
-  return std::optional<GlbAnimation>();
-}
-
 }  // namespace
 
 absl::StatusOr<std::optional<MeshSequence>> DecodeGlbAnimation(std::string_view bytes,
@@ -209,7 +129,7 @@ absl::StatusOr<std::optional<MeshSequence>> DecodeGlbAnimation(std::string_view 
   absl::StatusOr<GlbNodes> nodes = GlbNodes::Read(*glb);
   if (!nodes.ok()) return WithContext(path, nodes.status());
   InputReport report;
-  absl::StatusOr<std::optional<GlbAnimation>> animation = ChooseAnimation(*glb, *nodes, &report);
+  absl::StatusOr<std::optional<GlbAnimation>> animation = ChooseGlbAnimation(*glb, *nodes, &report);
   if (!animation.ok()) return WithContext(path, animation.status());
   if (!*animation) return std::optional<MeshSequence>();
   absl::StatusOr<MeshSequence> sequence =

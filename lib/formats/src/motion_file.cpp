@@ -260,12 +260,6 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
   return MotionParser(root, skeleton, limits).Parse();
 }
 
-absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
-                                  const MeshLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, limits.max_document_bytes));
-  return WithContext(path, DecodeMotion(text, skeleton, limits));
-}
-
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales) {
   assert(CheckJointCount(track, skeleton.num_joints()).ok());

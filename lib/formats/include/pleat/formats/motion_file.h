@@ -1,4 +1,4 @@
-// Motions as JSON (docs/formats/motion.md).
+// Motions as JSON (docs/formats/motion.md). ReadMotion (motion_reader.h) reads them from files.
 #pragma once
 
 #include <string>
@@ -24,8 +24,6 @@ struct Motion {
 // kResourceExhausted names the limit that the file exceeds.
 absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skeleton,
                                     const MeshLimits& limits = {});
-absl::StatusOr<Motion> ReadMotion(const std::string& path, const Skeleton& skeleton,
-                                  const MeshLimits& limits = {});
 
 // Writes a motion. `track` must have skeleton.num_joints() joints (asserted). bone_scales: J
 // entries or empty.
