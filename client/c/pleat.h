@@ -66,10 +66,10 @@ typedef struct pleat_error {
   char message[1020]; /* UTF-8, ends with a zero; longer words are cut */
 } pleat_error;
 
-/* Where models and evaluators take the memory of their tables and matrices, which is nearly all of
- * what they need: pleat_model_info.memory_bytes, within a few percent. Names, lists and messages
- * come from the C++ library as ever. Both functions must be safe to call from every thread that
- * uses the library. */
+/* Where models and evaluators take the memory of their matrices and learned tables, which is most
+ * of what they need (pleat_model_info.memory_bytes counts all of it). Lists of the mesh, names and
+ * messages come from the C++ library as ever. Both functions must be safe to call from every thread
+ * that uses the library. */
 typedef struct pleat_allocator {
   size_t struct_size;
   void* user; /* passed back as it is */

@@ -83,6 +83,23 @@ TEST_F(PoseParametersTest, PositionsGoIntoTheRowsOfTheCaller) {
   EXPECT_TRUE(rows_hold(shown.positions));
 }
 
+TEST_F(PoseParametersTest, AClipGoesIntoTheRowsOfTheCaller) {
+  const int num_vertices = model_->num_vertices();
+  std::vector<Eigen::Matrix3Xf> expected, found(20, Eigen::Matrix3Xf(3, num_vertices));
+  const auto keep = [&](int, const EvaluatedFrame& frame) {
+    expected.push_back(frame.positions);
+    return absl::OkStatus();
+  };
+  ASSERT_THAT(evaluator_.EvaluateClip(track_, {}, keep), IsOk());
+  std::vector<VertexRows> rows;
+  for (Eigen::Matrix3Xf& frame : found) rows.push_back(RowsOf(&frame));
+  const auto is_empty = [](int, const EvaluatedFrame& frame) {
+    return frame.positions.size() == 0 ? absl::OkStatus() : absl::InternalError("a frame");
+  };
+  ASSERT_THAT(evaluator_.EvaluateClip(track_, {}, is_empty, {}, rows), IsOk());
+  EXPECT_EQ(found, expected);
+}
+
 TEST_F(PoseParametersTest, ParametersTravelAsFloat32AndNormalized) {
   Pose longer = track_.pose(5);
   for (Eigen::Quaterniond& rotation : longer.rotations) rotation.coeffs() *= 1.005;

@@ -13,6 +13,7 @@
 
 extern "C" {
 void* __real_malloc(size_t size);                 // NOLINT: the names are the linker's
+void* __real_calloc(size_t count, size_t size);   // NOLINT
 void* __real_realloc(void* memory, size_t size);  // NOLINT
 void __real_free(void* memory);                   // NOLINT
 }
@@ -80,6 +81,14 @@ extern "C" {
 
 void* __wrap_malloc(size_t size) {  // NOLINT
   return pleat::FromCaller() ? pleat::AllocateSized(size) : __real_malloc(size);
+}
+
+// The compiler makes it of malloc and memset.
+void* __wrap_calloc(size_t count, size_t size) {  // NOLINT
+  if (!pleat::FromCaller()) return __real_calloc(count, size);
+  if (size > 0 && count > static_cast<size_t>(-1) / size) return nullptr;
+  void* const memory = pleat::AllocateSized(count * size);
+  return memory == nullptr ? nullptr : std::memset(memory, 0, count * size);
 }
 
 void* __wrap_realloc(void* memory, size_t size) {  // NOLINT

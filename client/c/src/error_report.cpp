@@ -21,7 +21,7 @@ pleat_code Fill(pleat_code code, absl::string_view message, pleat_error* error) 
   if (error == nullptr) return code;
   const size_t size = PrefixOfWholeCharacters(message, sizeof(error->message) - 1);
   error->code = code;
-  std::memcpy(error->message, message.data(), size);
+  if (size > 0) std::memcpy(error->message, message.data(), size);  // no words: no address
   error->message[size] = '\0';
   return code;
 }

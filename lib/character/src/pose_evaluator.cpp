@@ -18,7 +18,6 @@
 // Everything that a query needs on its way is in its Scratch, which keeps its memory. In a batch of
 // sessions every query brings the scratch of its own session's evaluator (scratch_of), so what has
 // been allocated does not depend on which session evaluates for the others.
-//
 // Parameters leave after Predict. Another machine continues with Show, which begins at Place with
 // the rounded rotations and gets by without poses of the past and without the training rows.
 #include "pleat/character/pose_evaluator.h"
@@ -351,7 +350,7 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
 absl::Status PoseEvaluator::EvaluateClip(
     const PoseTrack& track, const std::vector<double>& bone_scales,
     const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
-    const Progress& progress) {
+    const Progress& progress, std::span<const VertexRows> rows) {
   const int num_joints = model_->skeleton().num_joints();
   PLEAT_RETURN_IF_ERROR(CheckJointCount(track, num_joints));
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
@@ -373,6 +372,7 @@ absl::Status PoseEvaluator::EvaluateClip(
       }
       queries[i] = {
           .poses = &pointers[i], .bone_scales = &bone_scales, .frame = &frames[i], .status = {}};
+      if (!rows.empty()) queries[i].rows = rows[static_cast<size_t>(begin + i)];
     }
     EvaluateChecked({queries.data(), static_cast<size_t>(count)});
     for (int i = 0; i < count; ++i) {

@@ -88,11 +88,12 @@ class PoseEvaluator {
 
   // Evaluates every frame of `track` in order. The history comes from the track itself and is
   // interpolated where its frame rate differs from the model's. `consume` may stop the clip with an
-  // error, which is returned; so does a cancelled `progress`.
+  // error, which is returned; so does a cancelled `progress`. rows: empty, or where the positions
+  // of each of the T frames go in place of the frame that `consume` sees.
   absl::Status EvaluateClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
-      const Progress& progress = {});
+      const Progress& progress = {}, std::span<const VertexRows> rows = {});
   // Does the same without the learned detail.
   absl::Status EvaluateSkinnedClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
