@@ -70,7 +70,9 @@ absl::Status Start(const pleat_session_options& options, pleat_session* session)
     PLEAT_ASSIGN_OR_RETURN(live.model, DecodeModel(bytes));
     session->num_vertices = live.model->num_vertices();
   }
-  ClipQuery character{.model_id = model_id, .skinned_only = options.skinned_only != 0};
+  ClipQuery character;
+  character.model_id = model_id;
+  character.skinned_only = options.skinned_only != 0;
   if (options.bone_scales != nullptr) {
     character.bone_scales.assign(options.bone_scales,
                                  options.bone_scales + options.num_bone_scales);

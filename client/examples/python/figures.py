@@ -38,6 +38,8 @@ def compare(name, protocol="reconstruct"):
 
 def plot(title, rows):
     figure, axes = plt.subplots(figsize=(7, 3))
+    skinned = rows[0]["report"]
+    axes.plot(skinned["test_frames"], skinned["errors"]["skinned"]["frame_mean_percent"], label="skinned only")
     for row in rows:
         report = row["report"]
         axes.plot(report["test_frames"], report["errors"]["hybrid"]["frame_mean_percent"], label=row["name"])

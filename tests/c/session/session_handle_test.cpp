@@ -149,7 +149,7 @@ TEST_F(ParameterSessionTest, ParametersBecomeTheMeshHere) {
   EXPECT_CALL(server.models, DownloadModel)
       .WillOnce([&](grpc::ServerContext*, const v1::DownloadModelRequest* request,
                     grpc::ServerWriter<v1::DownloadModelResponse>* out) {
-        EXPECT_EQ(request->model_id(), "m");
+        EXPECT_EQ(request->id(), "m");
         v1::DownloadModelResponse response;
         response.set_size_bytes(bytes_.size());
         response.set_data(bytes_);
