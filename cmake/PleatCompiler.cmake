@@ -13,6 +13,10 @@ endif()
 # -ffp-contract=off and no -ffast-math: the same bytes in must give the same model bytes out on
 # every build of one source tree (ARCHITECTURE.md, invariants).
 add_compile_options(-Wall -Wextra -Werror -Wno-psabi -ffp-contract=off)
+# For lib/, proto/ and client/remote: one compilation serves programs and the shared libraries of
+# client/c. Without semantic interposition the compiler inlines as it does for programs; sections let
+# the linker leave out what a library does not use.
+set(PLEAT_SHARED_OPTIONS -fPIC -fno-semantic-interposition -ffunction-sections -fdata-sections)
 string(REPLACE "-O2" "-O3" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELWITHDEBINFO}")
 

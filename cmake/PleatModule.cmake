@@ -34,6 +34,9 @@ function(pleat_add_module name)
   target_sources(${target} PUBLIC FILE_SET HEADERS
                  BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include FILES ${headers})
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  if(NOT name MATCHES "^server_")  # those stand in programs alone
+    target_compile_options(${target} PRIVATE ${PLEAT_SHARED_OPTIONS})
+  endif()
   list(TRANSFORM ARG_DEPENDS PREPEND pleat_)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} ${ARG_PACKAGES}
                         PRIVATE ${ARG_PRIVATE_PACKAGES})

@@ -1,8 +1,9 @@
 # Headers that most sources of a layer include, compiled once per layer: parsing Eigen, GoogleMock,
 # gRPC or CLI11 takes longer than compiling most of our own files (docs/performance.md, "Build").
 #
-#   pleat_use_precompiled(TARGET LAYER)     LAYER: math | grpc | cli | test | server_test
+#   pleat_use_precompiled(TARGET LAYER)     LAYER: math | remote | grpc | cli | test | server_test
 #
+# A layer is compiled with the options of its targets: math and remote stand in shared libraries too.
 # Sources still include what they use. Public headers are checked without any of this, one by one,
 # by the target all_verify_interface_header_sets.
 option(PLEAT_PRECOMPILED_HEADERS "Compile common headers once" ON)
@@ -11,11 +12,13 @@ set(PLEAT_PRECOMPILED_math <algorithm> <functional> <map> <memory> <string> <vec
     <absl/status/statusor.h> <absl/strings/str_cat.h>)
 set(PLEAT_PRECOMPILED_test ${PLEAT_PRECOMPILED_math} <gmock/gmock.h> <gtest/gtest.h>)
 set(PLEAT_PRECOMPILED_grpc ${PLEAT_PRECOMPILED_math} <grpcpp/grpcpp.h>)
+set(PLEAT_PRECOMPILED_remote ${PLEAT_PRECOMPILED_grpc})
 set(PLEAT_PRECOMPILED_server_test ${PLEAT_PRECOMPILED_test} <grpcpp/grpcpp.h>)
 set(PLEAT_PRECOMPILED_cli ${PLEAT_PRECOMPILED_math} <CLI/CLI.hpp> <nlohmann/json.hpp>
     <absl/strings/str_format.h>)
 set(PLEAT_PRECOMPILED_PACKAGES_test GTest::gmock)
 set(PLEAT_PRECOMPILED_PACKAGES_grpc gRPC::grpc++)
+set(PLEAT_PRECOMPILED_PACKAGES_remote gRPC::grpc++)
 set(PLEAT_PRECOMPILED_PACKAGES_server_test GTest::gmock gRPC::grpc++)
 set(PLEAT_PRECOMPILED_PACKAGES_cli CLI11::CLI11 nlohmann_json::nlohmann_json)
 
@@ -42,14 +45,17 @@ function(pleat_use_precompiled target layer)
     target_link_libraries(pleat_precompiled_${layer} PRIVATE Eigen3::Eigen absl::statusor
                           absl::strings Threads::Threads ${PLEAT_PRECOMPILED_PACKAGES_${layer}})
     target_precompile_headers(pleat_precompiled_${layer} PRIVATE ${PLEAT_PRECOMPILED_${layer}})
-    if(layer MATCHES "grpc|server")
+    if(layer MATCHES "math|remote")
+      target_compile_options(pleat_precompiled_${layer} PRIVATE ${PLEAT_SHARED_OPTIONS})
+    endif()
+    if(layer MATCHES "grpc|remote|server")
       target_compile_options(pleat_precompiled_${layer} PRIVATE -pthread)
     endif()
     if(layer MATCHES "test|cli")
       target_compile_options(pleat_precompiled_${layer} PRIVATE ${PLEAT_COLD_OPTIONS})
     endif()
   endif()
-  if(layer MATCHES "grpc|server")  # spdlog asks for it; compiler and user of the headers must agree
+  if(layer MATCHES "grpc|remote|server")  # spdlog asks for it; compiler and user of the headers must agree
     target_compile_options(${target} PRIVATE -pthread)
   endif()
   target_precompile_headers(${target} REUSE_FROM pleat_precompiled_${layer})

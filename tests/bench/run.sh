@@ -9,7 +9,7 @@ pleat=build/bin/pleat
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 
-for bench in gp fitting character codec server; do
+for bench in gp fitting character engine codec server; do
   echo "== ${bench}_bench"
   "build/bin/${bench}_bench" --benchmark_min_time=0.2 2>/dev/null
 done

@@ -53,6 +53,53 @@ TEST_F(PoseParametersTest, ShownParametersAreTheFrameWithinTwoMicrometers) {
   }
 }
 
+// Rows of the caller take the place of the frame's own positions, in a batch and when shown.
+TEST_F(PoseParametersTest, PositionsGoIntoTheRowsOfTheCaller) {
+  constexpr int kStride = 6;
+  const std::vector<const Pose*> poses = History(9, 3);
+  const Eigen::Matrix3Xf expected = Positions(poses);
+  std::vector<float> buffer(static_cast<size_t>(kStride) * model_->num_vertices(), 4);
+  const VertexRows rows{.data = buffer.data() + 1, .stride = kStride};
+  EvaluatedFrame frame;
+  PoseQuery query{.poses = &poses, .frame = &frame, .rows = rows};
+  evaluator_.EvaluateBatch({&query, 1});
+  ASSERT_THAT(query.status, IsOk());
+  EXPECT_EQ(frame.positions.size(), 0);
+  EXPECT_GT(frame.confidence, 0);
+  const auto rows_hold = [&](const Eigen::Matrix3Xf& positions) {
+    for (int v = 0; v < model_->num_vertices(); ++v) {
+      if (Eigen::Map<Eigen::Vector3f>(rows.row(v)) != positions.col(v)) return false;
+      if (buffer[kStride * v] != 4 || buffer[kStride * v + 5] != 4) return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(rows_hold(expected));
+
+  FrameParameters parameters;
+  EvaluatedFrame shown;
+  ASSERT_THAT(evaluator_.Predict(poses, false, &parameters), IsOk());
+  ASSERT_THAT(evaluator_.Show(parameters, {}, &shown), IsOk());
+  ASSERT_THAT(evaluator_.Show(parameters, {}, &frame, rows), IsOk());
+  EXPECT_TRUE(rows_hold(shown.positions));
+}
+
+TEST_F(PoseParametersTest, AClipGoesIntoTheRowsOfTheCaller) {
+  const int num_vertices = model_->num_vertices();
+  std::vector<Eigen::Matrix3Xf> expected, found(20, Eigen::Matrix3Xf(3, num_vertices));
+  const auto keep = [&](int, const EvaluatedFrame& frame) {
+    expected.push_back(frame.positions);
+    return absl::OkStatus();
+  };
+  ASSERT_THAT(evaluator_.EvaluateClip(track_, {}, keep), IsOk());
+  std::vector<VertexRows> rows;
+  for (Eigen::Matrix3Xf& frame : found) rows.push_back(RowsOf(&frame));
+  const auto is_empty = [](int, const EvaluatedFrame& frame) {
+    return frame.positions.size() == 0 ? absl::OkStatus() : absl::InternalError("a frame");
+  };
+  ASSERT_THAT(evaluator_.EvaluateClip(track_, {}, is_empty, {}, rows), IsOk());
+  EXPECT_EQ(found, expected);
+}
+
 TEST_F(PoseParametersTest, ParametersTravelAsFloat32AndNormalized) {
   Pose longer = track_.pose(5);
   for (Eigen::Quaterniond& rotation : longer.rotations) rotation.coeffs() *= 1.005;

@@ -61,6 +61,8 @@ PLANTED = {
                               {"client/cli/a.cpp": include("pleat/remote/remote_character_service.h")}),
     "server-decodes-no-draco": ({"server/handlers/src/a.cpp": include("pleat/stream/draco_file.h")},
                                 {"client/draco_child/main.cpp": include("pleat/stream/draco_file.h")}),
+    "c-interface": ({"client/c/pleat.h": GUARD + "#include <string>\n"},
+                    {"client/c/pleat.h": GUARD + "#include <stdint.h>\n"}),
     "prints": ({"lib/gp/src/a.cpp": "std::cerr << 1;\n"}, {"client/cli/main.cpp": "std::cerr << 1;\n"}),
     "exits": ({"lib/gp/src/a.cpp": "std::exit(1);\n"}, {"lib/gp/src/a.cpp": "Exits(1);\n"}),
     "environment": ({"lib/gp/src/a.cpp": 'std::getenv("HOME");\n'}, {"client/a.cpp": 'std::getenv("HOME");\n'}),

@@ -76,11 +76,11 @@ def check_modules(tree):
 
 def test_shares(tree):
     """{folder: (sources with a test of the same name, sources)}; main.cpp is tested as a program."""
-    tests = {pathlib.PurePosixPath(path).name for path in tree.select(["_test.cpp"], ["tests/"])}
+    tests = {pathlib.PurePosixPath(path).stem for path in tree.select(["_test.cpp", "_test.py"], ["tests/"])}
     shares = {}
     for folder in PROGRAM_FOLDERS:
         stems = {pathlib.PurePosixPath(path).stem for path in tree.select([".cpp"], [f"{folder}/"])} - {"main"}
-        shares[folder] = (sum(f"{stem}_test.cpp" in tests for stem in stems), len(stems))
+        shares[folder] = (sum(f"{stem}_test" in tests for stem in stems), len(stems))
     return shares
 
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "support/mesh_shapes.h"
 
@@ -77,6 +78,33 @@ TEST(NormalsTest, TurnWithTheMeshAndFlipWithItsFaces) {
   Eigen::Matrix3Xi more(3, triangles.cols() + 2);
   more << triangles, Eigen::Vector3i(0, 0, 1), Eigen::Vector3i(2, 2, 2);
   EXPECT_EQ(SumTriangleNormals(sphere.positions, more), normals);
+}
+
+// The same directions as in double precision, in rows that leave what is between them alone.
+TEST(NormalsTest, OfAFrameAreUnitLongAndKeepToTheirRows) {
+  const MeshShape sphere = MakeUvSphere(1, 15, 23);
+  const int num_vertices = sphere.topology.num_vertices();
+  constexpr int kStride = 7;
+  std::vector<float> buffer(static_cast<size_t>(kStride) * num_vertices, 5);
+  Eigen::Matrix3Xf positions = sphere.positions.cast<float>();
+  const VertexRows normals{.data = buffer.data() + 2, .stride = kStride};
+  ComputeVertexNormals(RowsOf(&positions), num_vertices, sphere.topology.triangles(), normals);
+  const Eigen::Matrix3Xd expected =
+      SumTriangleNormals(sphere.positions, sphere.topology.triangles());
+  for (int v = 0; v < num_vertices; ++v) {
+    const Eigen::Map<Eigen::Vector3f> normal(normals.row(v));
+    EXPECT_LT((normal.cast<double>() - expected.col(v).normalized()).norm(), 1e-5) << v;
+    EXPECT_EQ(buffer[v * kStride + 1], 5);
+    EXPECT_EQ(buffer[v * kStride + 5], 5);
+  }
+}
+
+TEST(NormalsTest, OfALooseVertexIsZeroInAFrameToo) {
+  const Topology loose = *Topology::Create(4, {0, 1, 2}, {3});
+  Eigen::Matrix3Xf positions = Eigen::Matrix3Xf::Identity(3, 4), normals(3, 4);
+  ComputeVertexNormals(RowsOf(&positions), 4, loose.triangles(), RowsOf(&normals));
+  EXPECT_EQ(normals.col(3), Eigen::Vector3f::Zero());
+  EXPECT_NEAR(normals.col(0).norm(), 1, 1e-6);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ class FrameSkinningTest : public ::testing::Test {
   }
   Eigen::Matrix3Xf Skin(const float* details) const {
     Eigen::Matrix3Xf positions = Eigen::Matrix3Xf::Constant(3, num_vertices(), 1e9f);
-    skinning_.SkinBlocks(motions_, 0, num_blocks_, details, &positions);
+    skinning_.SkinBlocks(motions_, 0, num_blocks_, details, RowsOf(&positions));
     return positions;
   }
 
@@ -59,7 +59,8 @@ class FrameSkinningTest : public ::testing::Test {
         if (!with_tables) motions.tables.clear();
         for (const auto& [set, skin_block] : SkinBlockVariants()) {
           Eigen::Matrix3Xf positions(3, num_vertices());
-          skinning_.SkinBlocksWith(skin_block, motions, 0, num_blocks_, details, &positions);
+          skinning_.SkinBlocksWith(skin_block, motions, 0, num_blocks_, details,
+                                   RowsOf(&positions));
           EXPECT_EQ(
               0, std::memcmp(positions.data(), expected.data(), positions.size() * sizeof(float)))
               << NameOf(set);
@@ -129,12 +130,25 @@ TEST_F(FarBonesTest, NothingIsLeftOfTheFrameBefore) {
 
 TEST_F(FarBonesTest, EveryKernelGivesTheSameBits) { CompareKernels(); }
 
+// The vertices of an interleaved buffer, with what belongs to others between them.
+TEST_F(FrameSkinningTest, RowsWithAStrideHoldTheSameAndNothingElseIsTouched) {
+  const Eigen::Matrix3Xf expected = Skin(details_.data());
+  constexpr int kStride = 8;
+  std::vector<float> buffer(static_cast<size_t>(kStride) * num_vertices(), -1);
+  const VertexRows rows{.data = buffer.data() + 1, .stride = kStride};
+  skinning_.SkinBlocks(motions_, 0, num_blocks_, details_.data(), rows);
+  for (int v = 0; v < num_vertices(); ++v) {
+    EXPECT_EQ(Eigen::Map<Eigen::Vector3f>(rows.row(v)), expected.col(v)) << v;
+    for (const int other : {0, 4, 5, 6, 7}) EXPECT_EQ(buffer[kStride * v + other], -1);
+  }
+}
+
 TEST_F(FrameSkinningTest, PartsGiveTheWhole) {
   const Eigen::Matrix3Xf expected = Skin(details_.data());
   Eigen::Matrix3Xf positions(3, num_vertices());
   for (int block = 0; block < num_blocks_; ++block) {
     skinning_.SkinBlocks(motions_, block, 1, details_.data() + 3 * kSkinningLanes * block,
-                         &positions);
+                         RowsOf(&positions));
   }
   EXPECT_EQ(positions, expected);
 }
@@ -154,7 +168,7 @@ TEST_F(FrameSkinningTest, EveryNumberOfVerticesFillsItsMatrixAndNothingElse) {
       for (const auto& [set, skin_block] : SkinBlockVariants()) {
         Eigen::Matrix3Xf positions(3, count);
         skinning.SkinBlocksWith(skin_block, motions_, 0, skinning.num_blocks(), details,
-                                &positions);
+                                RowsOf(&positions));
         EXPECT_EQ(positions, expected) << NameOf(set) << " " << count;
       }
     }
@@ -181,7 +195,7 @@ TEST_F(FrameSkinningTest, LanesInAnotherOrderGiveTheSamePositions) {
     }
   }
   Eigen::Matrix3Xf positions(3, num_vertices());
-  skinning.SkinBlocks(motions_, 0, skinning.num_blocks(), details.data(), &positions);
+  skinning.SkinBlocks(motions_, 0, skinning.num_blocks(), details.data(), RowsOf(&positions));
   EXPECT_EQ(positions, Skin(details_.data()));
 }
 
@@ -231,7 +245,8 @@ TEST(ManyBonesTest, KernelsAgreeWithDoublePrecisionBeyondTheTables) {
     EXPECT_EQ(motions.tables.empty(), num_joints > kLookupBones);
     for (const auto& [set, skin_block] : SkinBlockVariants()) {
       Eigen::Matrix3Xf positions(3, 40);
-      skinning.SkinBlocksWith(skin_block, motions, 0, skinning.num_blocks(), nullptr, &positions);
+      skinning.SkinBlocksWith(skin_block, motions, 0, skinning.num_blocks(), nullptr,
+                              RowsOf(&positions));
       EXPECT_LT((positions.cast<double>() - expected).cwiseAbs().maxCoeff(), 2e-5)
           << NameOf(set) << " " << num_joints;
     }

@@ -18,7 +18,6 @@
 // Everything that a query needs on its way is in its Scratch, which keeps its memory. In a batch of
 // sessions every query brings the scratch of its own session's evaluator (scratch_of), so what has
 // been allocated does not depend on which session evaluates for the others.
-//
 // Parameters leave after Predict. Another machine continues with Show, which begins at Place with
 // the rounded rotations and gets by without poses of the past and without the training rows.
 #include "pleat/character/pose_evaluator.h"
@@ -190,7 +189,7 @@ void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
   static const std::vector<double> kNoScales;
   for (size_t begin = 0; begin < queries.size(); begin += kMostTogether) {
     std::array<Scratch*, kMostTogether> scratches{};
-    std::array<EvaluatedFrame*, kMostTogether> frames{};
+    std::array<VertexRows, kMostTogether> positions{};
     std::array<PoseQuery*, kMostTogether> taken{};
     size_t count = 0, num_own = 0;
     // Queries with details come first, because Predict takes them from the front.
@@ -213,10 +212,11 @@ void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
         continue;
       }
       Place(taken[i]->bone_scales ? *taken[i]->bone_scales : kNoScales, scratches[i]);
-      frames[num_frames] = taken[i]->frame;
+      taken[i]->frame->confidence = scratches[i]->confidence;
+      positions[num_frames] = RowsFor(taken[i]->rows, taken[i]->frame);
       scratches[num_frames++] = scratches[i];
     }
-    FillFrames({scratches.data(), num_frames}, {frames.data(), num_frames});
+    FillFrames({scratches.data(), num_frames}, {positions.data(), num_frames});
   }
 }
 
@@ -292,7 +292,8 @@ absl::Status PoseEvaluator::Predict(const std::vector<const Pose*>& poses, bool 
 }
 
 absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
-                                 const std::vector<double>& bone_scales, EvaluatedFrame* frame) {
+                                 const std::vector<double>& bone_scales, EvaluatedFrame* frame,
+                                 const VertexRows& rows) {
   const Eigen::VectorXf& coefficients = parameters.coefficients;
   const int num_joints = model_->skeleton().num_joints();
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
@@ -311,18 +312,24 @@ absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
   scratch->confidence = parameters.confidence;
   if (scratch->has_details) scratch->coefficients = coefficients;
   Place(bone_scales, scratch);
-  FillFrames({&scratch, 1}, {&frame, 1});
+  frame->confidence = scratch->confidence;
+  const VertexRows positions = RowsFor(rows, frame);
+  FillFrames({&scratch, 1}, {&positions, 1});
   return absl::OkStatus();
 }
 
+VertexRows PoseEvaluator::RowsFor(const VertexRows& rows, EvaluatedFrame* frame) const {
+  if (rows.data != nullptr) return rows;
+  frame->positions.resize(3, model_->num_vertices());
+  return RowsOf(&frame->positions);
+}
+
 void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
-                               std::span<EvaluatedFrame* const> frames) {
+                               std::span<const VertexRows> positions) {
   std::array<const PartedBasis::Query*, kMostTogether> expansions{};
   std::array<float*, kMostTogether> details{};
   size_t num_detailed = 0;
   for (size_t q = 0; q < scratches.size(); ++q) {
-    frames[q]->positions.resize(3, model_->num_vertices());
-    frames[q]->confidence = scratches[q]->confidence;
     if (!scratches[q]->has_details) continue;
     expansions[num_detailed] = &scratches[q]->expansion;
     details[num_detailed++] = scratches[q]->details.data();
@@ -335,8 +342,7 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
     for (size_t q = 0; q < scratches.size(); ++q) {
       const Scratch& s = *scratches[q];
       model_->skinning().SkinBlocks(s.motions, block, count,
-                                    s.has_details ? s.details.data() : nullptr,
-                                    &frames[q]->positions);
+                                    s.has_details ? s.details.data() : nullptr, positions[q]);
     }
   }
 }
@@ -344,7 +350,7 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
 absl::Status PoseEvaluator::EvaluateClip(
     const PoseTrack& track, const std::vector<double>& bone_scales,
     const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
-    const Progress& progress) {
+    const Progress& progress, std::span<const VertexRows> rows) {
   const int num_joints = model_->skeleton().num_joints();
   PLEAT_RETURN_IF_ERROR(CheckJointCount(track, num_joints));
   PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
@@ -366,6 +372,7 @@ absl::Status PoseEvaluator::EvaluateClip(
       }
       queries[i] = {
           .poses = &pointers[i], .bone_scales = &bone_scales, .frame = &frames[i], .status = {}};
+      if (!rows.empty()) queries[i].rows = rows[static_cast<size_t>(begin + i)];
     }
     EvaluateChecked({queries.data(), static_cast<size_t>(count)});
     for (int i = 0; i < count; ++i) {

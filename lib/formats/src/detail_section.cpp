@@ -63,8 +63,9 @@ absl::Status ReadWhitener(ByteReader* reader, uint64_t num_rows, uint64_t max_un
   }
   const auto size = static_cast<Eigen::Index>(num_rows);
   whitener->setZero(size, size);
-  Eigen::VectorXf values;
   for (Eigen::Index row = 0; row < size; ++row) {
+    // A new one each time: when memory ends, Eigen frees what a resized matrix held a second time.
+    Eigen::VectorXf values;
     PLEAT_RETURN_IF_ERROR(
         ReadMatrix(reader, static_cast<uint64_t>(row) + 1, 1, "whitener", &values));
     whitener->row(row).head(row + 1) = values.transpose();

@@ -17,4 +17,28 @@ Eigen::Matrix3Xd SumTriangleNormals(const Eigen::Ref<const Eigen::Matrix3Xd>& po
   return normals;
 }
 
+void ComputeVertexNormals(const VertexRows& positions, int num_vertices,
+                          const Eigen::Matrix3Xi& triangles, const VertexRows& normals) {
+  using Row = Eigen::Map<Eigen::Vector3f>;
+  for (int v = 0; v < num_vertices; ++v) Row(normals.row(v)).setZero();
+  for (Eigen::Index f = 0; f < triangles.cols(); ++f) {
+    const int* corners = triangles.data() + 3 * f;
+    const Row a(positions.row(corners[0]));
+    const Eigen::Vector3f twice_area =
+        (Row(positions.row(corners[1])) - a).cross(Row(positions.row(corners[2])) - a);
+    for (int c = 0; c < 3; ++c) Row(normals.row(corners[c])) += twice_area;
+  }
+  for (int v = 0; v < num_vertices; ++v) {
+    Row normal(normals.row(v));
+    const float length = normal.norm();
+    // Below this the direction is rounding; a person's vertex has some 1e-5 square meters.
+    constexpr float kNoLength = 1e-20f;
+    if (length > kNoLength) {
+      normal /= length;
+    } else {
+      normal.setZero();
+    }
+  }
+}
+
 }  // namespace pleat

@@ -37,6 +37,15 @@ absl::Status CheckJointCount(const Pose& pose, int num_joints) {
                                                  " joints"));
 }
 
+void InterpolatePoses(const Pose& a, const Pose& b, double fraction, Pose* pose) {
+  assert(a.rotations.size() == b.rotations.size() && pose != &a && pose != &b);
+  pose->root_position = a.root_position + fraction * (b.root_position - a.root_position);
+  pose->rotations.resize(a.rotations.size());
+  for (size_t j = 0; j < a.rotations.size(); ++j) {
+    pose->rotations[j] = a.rotations[j].slerp(fraction, b.rotations[j]).normalized();
+  }
+}
+
 // One pass from the root to the leaves, in which every parent comes before its children. R_b is the
 // product of the rotations on the way from the root to bone b. The bone turns about its parent
 // joint, which has been placed by then and is the pivot.

@@ -8,14 +8,9 @@
 namespace pleat {
 namespace {
 
-// Returns a at fraction 0 and b at fraction 1. Fractions outside [0, 1] extrapolate.
 Pose Interpolate(const Pose& a, const Pose& b, double fraction) {
   Pose pose;
-  pose.root_position = a.root_position + fraction * (b.root_position - a.root_position);
-  pose.rotations.reserve(a.rotations.size());
-  for (size_t j = 0; j < a.rotations.size(); ++j) {
-    pose.rotations.push_back(a.rotations[j].slerp(fraction, b.rotations[j]).normalized());
-  }
+  InterpolatePoses(a, b, fraction, &pose);
   return pose;
 }
 

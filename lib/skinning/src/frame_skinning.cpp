@@ -48,11 +48,10 @@ size_t FrameSkinning::memory_bytes() const {
          lane_vertices_.size() * sizeof(int);
 }
 
-void FrameSkinning::Scatter(int block, const float* lanes, Eigen::Matrix3Xf* positions) const {
+void FrameSkinning::Scatter(int block, const float* lanes, const VertexRows& positions) const {
   const int* vertices = lane_vertices_.data() + static_cast<ptrdiff_t>(block) * kSkinningLanes;
   for (int lane = 0; lane < kSkinningLanes && vertices[lane] >= 0; ++lane) {
-    std::copy_n(lanes + 3 * lane, 3,
-                positions->data() + 3 * static_cast<ptrdiff_t>(vertices[lane]));
+    std::copy_n(lanes + 3 * lane, 3, positions.row(vertices[lane]));
   }
 }
 
@@ -94,19 +93,19 @@ void FrameSkinning::SetMotions(const BoneTransforms& transforms,
 }
 
 void FrameSkinning::SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks,
-                               const float* details, Eigen::Matrix3Xf* positions) const {
+                               const float* details, const VertexRows& positions) const {
   SkinBlocksWith(SkinBlockVariants().front().kernel, motions, first_block, num_blocks, details,
                  positions);
 }
 
 void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions,
                                    int first_block, int num_blocks, const float* details,
-                                   Eigen::Matrix3Xf* positions) const {
+                                   const VertexRows& positions) const {
   constexpr int kLanes = kSkinningLanes;
-  assert(positions->cols() == num_vertices_ && first_block >= 0 &&
+  assert(positions.stride >= 3 && first_block >= 0 &&
          first_block + num_blocks <= this->num_blocks());
-  // The kernels write whole blocks. What reaches beyond the matrix, or whose vertices do not follow
-  // each other, goes here first.
+  // The kernels write whole blocks. What reaches beyond the last row, or whose vertices do not
+  // follow each other, goes here first.
   float last[3 * kLanes];
   float signed_weights[kMaxInfluences * kLanes];
   SkinBlockInputs inputs{.columns = motions.columns.data(),
@@ -129,9 +128,11 @@ void FrameSkinning::SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotio
     }
     const int begin = i * kLanes, count = std::min(kLanes, num_vertices_ - begin);
     if (lane_vertices_.empty()) {
-      float* target = positions->data() + 3 * static_cast<ptrdiff_t>(begin);
-      skin_block(inputs, count == kLanes ? target : last);
-      if (count < kLanes) std::copy_n(last, 3 * count, target);
+      const bool in_place = count == kLanes && positions.is_packed();
+      skin_block(inputs, in_place ? positions.row(begin) : last);
+      for (int lane = 0; !in_place && lane < count; ++lane) {
+        std::copy_n(last + 3 * lane, 3, positions.row(begin + lane));
+      }
     } else {
       skin_block(inputs, last);
       Scatter(i, last, positions);

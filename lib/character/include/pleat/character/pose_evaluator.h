@@ -11,6 +11,7 @@
 #include "absl/status/status.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
+#include "pleat/mesh/vertex_rows.h"
 #include "pleat/skeleton/pose_track.h"
 
 namespace pleat {
@@ -37,6 +38,8 @@ struct PoseQuery {
   const std::vector<double>* bone_scales = nullptr;  // null: all are 1
   bool skinned_only = false;                         // leaves out the learned detail
   EvaluatedFrame* frame = nullptr;
+  // Where the positions go in place of frame->positions, which then stay as they are: V rows.
+  VertexRows rows{};
   FrameParameters* parameters = nullptr;  // when given, it is filled in place of the frame
   // The evaluator whose scratch memory the query uses. It must be of the same model, serve no other
   // query of the batch, and not be in use by others. A batch of sessions that have evaluated before
@@ -78,17 +81,19 @@ class PoseEvaluator {
   // two micrometers on a person.
   absl::Status Predict(const std::vector<const Pose*>& poses, bool skinned_only,
                        FrameParameters* parameters);
-  // kInvalidArgument names what does not fit the model. `frame` is then untouched.
+  // kInvalidArgument names what does not fit the model. `frame` is then untouched. rows: as in
+  // PoseQuery.
   absl::Status Show(const FrameParameters& parameters, const std::vector<double>& bone_scales,
-                    EvaluatedFrame* frame);
+                    EvaluatedFrame* frame, const VertexRows& rows = {});
 
   // Evaluates every frame of `track` in order. The history comes from the track itself and is
   // interpolated where its frame rate differs from the model's. `consume` may stop the clip with an
-  // error, which is returned; so does a cancelled `progress`.
+  // error, which is returned; so does a cancelled `progress`. rows: empty, or where the positions
+  // of each of the T frames go in place of the frame that `consume` sees.
   absl::Status EvaluateClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
       const std::function<absl::Status(int frame_index, const EvaluatedFrame&)>& consume,
-      const Progress& progress = {});
+      const Progress& progress = {}, std::span<const VertexRows> rows = {});
   // Does the same without the learned detail.
   absl::Status EvaluateSkinnedClip(
       const PoseTrack& track, const std::vector<double>& bone_scales,
@@ -112,8 +117,10 @@ class PoseEvaluator {
   // Computes the motions of the bones for history[0], and makes the coefficients ready to expand.
   void Place(const std::vector<double>& bone_scales, Scratch* scratch) const;
   static void TakeParameters(const Scratch& scratch, FrameParameters* parameters);
-  // Expands the details and skins all vertices; scratches[i] belongs to frames[i].
-  void FillFrames(std::span<Scratch* const> scratches, std::span<EvaluatedFrame* const> frames);
+  // Where the positions of a query go: the caller's rows, or else the frame's own.
+  VertexRows RowsFor(const VertexRows& rows, EvaluatedFrame* frame) const;
+  // Expands the details and skins all vertices; scratches[i] belongs to positions[i].
+  void FillFrames(std::span<Scratch* const> scratches, std::span<const VertexRows> positions);
 
   std::shared_ptr<const CharacterModel> model_;
   std::vector<std::unique_ptr<Scratch>> scratches_;  // as many as were needed at once so far

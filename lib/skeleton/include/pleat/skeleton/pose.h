@@ -28,6 +28,11 @@ absl::Status CheckPose(const Pose& pose);
 // OK when the pose has one rotation for each joint. kInvalidArgument names both counts.
 absl::Status CheckJointCount(const Pose& pose, int num_joints);
 
+// Sets `pose` to `a` at fraction 0 and to `b` at fraction 1; fractions outside [0, 1] extrapolate.
+// Rotations are interpolated by slerp, the root linearly. Both must have the same joints. It
+// allocates nothing once `pose` has the right size; `pose` must be neither of the two.
+void InterpolatePoses(const Pose& a, const Pose& b, double fraction, Pose* pose);
+
 // The motion of every bone in the world: x_world = linear[b] x_rest + translation[b]. Entry 0 is
 // the root's own frame: it turns by R_0 about the root's rest position and moves to root_position.
 struct BoneTransforms {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pleat/mesh/vertex_rows.h"
 #include "pleat/skeleton/pose.h"
 #include "pleat/skinning/rig.h"
 
@@ -51,12 +52,12 @@ class FrameSkinning {
   //
   // where q_v is the normalized mean of the quaternions of its bones, with signs aligned with the
   // strongest. details: x of the 16 vertices of a block, then y, then z, block by block, beginning
-  // with first_block; or null for none. positions: 3 x V.
+  // with first_block; or null for none. positions: V rows.
   void SkinBlocks(const BoneMotions& motions, int first_block, int num_blocks, const float* details,
-                  Eigen::Matrix3Xf* positions) const;
+                  const VertexRows& positions) const;
   // Does the same with a given kernel, so that tests can compare all that a processor can run.
   void SkinBlocksWith(SkinBlockFunction skin_block, const BoneMotions& motions, int first_block,
-                      int num_blocks, const float* details, Eigen::Matrix3Xf* positions) const;
+                      int num_blocks, const float* details, const VertexRows& positions) const;
 
   // The data of 16 vertices. The last one of a block fills the lanes left over.
   struct alignas(64) Block {
@@ -71,7 +72,7 @@ class FrameSkinning {
 
  private:
   // Copies the lanes of a block to their vertices.
-  void Scatter(int block, const float* lanes, Eigen::Matrix3Xf* positions) const;
+  void Scatter(int block, const float* lanes, const VertexRows& positions) const;
 
   int num_vertices_ = 0;
   std::vector<int> lane_vertices_;  // empty: in their order
