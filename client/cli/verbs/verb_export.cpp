@@ -30,7 +30,7 @@ namespace pleat {
 namespace {
 
 struct ExportOptions {
-  std::string model, motion, output, fps, influences = "all";
+  std::string model, motion, output, fps, influences;
   int num_targets = 0;
   double max_error_mm = 0;
   bool points = false;
@@ -71,8 +71,10 @@ absl::StatusOr<ExportFormat> ChooseExportFormat(const ExportOptions& options) {
   return *format;
 }
 
-absl::StatusOr<int> ParseInfluences(const std::string& text) {
-  if (text == "all") return kMaxInfluences;
+// Every engine reads four influences of a GLB; those that take no more would show others wrongly.
+absl::StatusOr<int> ParseInfluences(const std::string& text, ExportFormat format) {
+  if (text.empty() && format == ExportFormat::kGlb) return kStandardInfluences;
+  if (text.empty() || text == "all") return kMaxInfluences;
   int number = 0;
   if (absl::SimpleAtoi(text, &number) && number >= 1 && number <= kMaxInfluences) return number;
   return UsageError(absl::StrCat("--influences '", text, "': choose all or 1 to ", kMaxInfluences));
@@ -184,7 +186,7 @@ void PrintExport(const ExportOptions& options, const ExportResult& result, const
 
 absl::Status RunExport(const ExportOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const ExportFormat format, ChooseExportFormat(options));
-  PLEAT_ASSIGN_OR_RETURN(const int influences, ParseInfluences(options.influences));
+  PLEAT_ASSIGN_OR_RETURN(const int influences, ParseInfluences(options.influences, format));
   PLEAT_RETURN_IF_ERROR(
       CheckOutputFiles(session, {{"-o", options.output, {".glb", ".usda", ".bvh"}}}));
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
@@ -220,9 +222,9 @@ void AddExportVerb(CLI::App& app, Session& session) {
       "--motion", options->motion,
       "motion (.json, .bvh, .glb) or a mesh sequence of the character [the rest pose]");
   verb->add_option("--fps", options->fps, "frames per second of a motion that has none");
-  verb->add_option("--influences", options->influences,
-                   "bones per vertex: all or 1 to 4; what the cut costs is said")
-      ->capture_default_str();
+  verb->add_option(
+      "--influences", options->influences,
+      "bones per vertex: all or 1 to 8; what the cut costs is said [.glb: 4, others: all]");
   verb->add_option("--targets", options->num_targets,
                    "of .glb: so many morph targets that show the folds of the motion")
       ->check(CLI::Range(1, kMaxMorphTargets));

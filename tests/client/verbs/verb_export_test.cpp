@@ -87,7 +87,8 @@ TEST_F(ExportVerbTest, FewerInfluencesSayWhatTheyCost) {
   const Outcome outcome = Export("a.glb", {"--motion", files_.motion_path(), "--influences", "1"});
   ASSERT_EQ(outcome.code, ExitCode::kOk) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("1 bones per vertex: "));
-  EXPECT_EQ(Export("b.glb", {"--influences", "5"}).code, ExitCode::kUsage);
+  EXPECT_EQ(Export("all.glb", {"--influences", "all"}).code, ExitCode::kOk);
+  EXPECT_EQ(Export("b.glb", {"--influences", "9"}).code, ExitCode::kUsage);
 }
 
 TEST_F(ExportVerbTest, WhatDoesNotFitTogetherIsAUsageError) {
