@@ -158,9 +158,11 @@ absl::StatusOr<std::vector<int>> MatchJoints(const JointClip& clip, const Skelet
     if (matches.back() < 0) missing.push_back(EscapeControls(joint.name));
   }
   if (!missing.empty()) {
-    return ClipFault(absl::StrCat("the file is of another skeleton: of the character's joints it ",
-                                  "lacks ", absl::StrJoin(missing, ", "), "; it has ",
-                                  NamesOf(clip)));
+    const UnitGuess guess = GuessUnit(clip);
+    return ClipFault(absl::StrFormat(
+        "the file is of another skeleton: of the character's joints it lacks %s; it has %s (its "
+        "longest way from tip to tip is %.4g, as of a person in %s)",
+        absl::StrJoin(missing, ", "), NamesOf(clip), guess.size, guess.name));
   }
   for (int j = 1; j < skeleton.num_joints(); ++j) {
     const int parent = skeleton.parent(j);

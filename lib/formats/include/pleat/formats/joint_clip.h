@@ -1,7 +1,7 @@
 // A motion as the joints of other programs' files have it
-// (docs/formats/motion.md#joints-of-other-files): a hierarchy with one rotation for each joint, which
-// turns all that hangs below. BVH, the skins of glTF and UsdSkel are written from it, and BVH and
-// glTF are read into it.
+// (docs/formats/motion.md#joints-of-other-files): a hierarchy with one rotation for each joint,
+// which turns all that hangs below. BVH, the skins of glTF and UsdSkel are written from it, and BVH
+// and glTF are read into it.
 #pragma once
 
 #include <Eigen/Core>
