@@ -13,6 +13,9 @@ for bench in gp fitting character engine codec server; do
   echo "== ${bench}_bench"
   "build/bin/${bench}_bench" --benchmark_min_time=0.2 2>/dev/null
 done
+if [ -f build/python/pleat/py.typed ]; then  # with Debian's Python, for which it was built
+  PYTHONPATH=build/python:tests/c /usr/bin/python3 tests/bench/python_calls.py build/client/c/libpleat_eval.so
+fi
 echo "== store_bench"
 TMPDIR=/dev/shm build/bin/store_bench --benchmark_min_time=0.2 2>/dev/null
 
