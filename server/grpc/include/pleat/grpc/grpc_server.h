@@ -38,6 +38,8 @@ struct CallFacts {
   std::string trace_id;  // of the W3C trace that it belongs to, 32 digits; empty: none
   // What all log lines about the call name: "x-request-id" of its metadata, or made by the server.
   std::string request_id;
+  std::string project;  // that the call was let into; empty: none
+  std::string limit;    // that refused the call (google.rpc.QuotaFailure); empty: none did
   bool is_stream = false;
   bool audited = false;          // it belongs in the audit log, whatever its end
   std::vector<std::string> ids;  // that its request names; only of audited calls
@@ -80,8 +82,9 @@ struct GrpcServerOptions {
   std::function<absl::Status()> probe{};
   int num_storage_threads = 2;   // for answers out of the catalog
   int num_transfer_threads = 4;  // for uploads with their checks, downloads and decoding
-  // The largest message; 20,000 poses of 18 joints are 14 MB.
-  int max_receive_bytes = 16 << 20;
+  // The largest message; 0: 16 MB (20,000 poses of 18 joints are 14 MB), and less where the memory
+  // is small: a sixteenth of gRPC's share of it, at least 4 MB.
+  int max_receive_bytes = 0;
   // For requests and their answers while they are worked on, all calls together; most of it goes to
   // the poses of clips. A parsed pose takes three times what it takes on the wire.
   uint64_t request_bytes = uint64_t{512} << 20;
@@ -115,6 +118,7 @@ class GrpcServer {
     uint64_t requests = 0, streams = 0, messages = 0;
   };
   virtual MemoryUse memory_use() const = 0;
+  virtual int max_receive_bytes() const = 0;  // the largest message from a client
   // A channel that needs no network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
   // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then
