@@ -101,11 +101,9 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
   app->add_option("--listen", grpc->listen,
                   "HOST:PORT or unix:PATH; port 0 = any free one, printed at the start")
       ->capture_default_str();
-  app->add_option(
-         "--max-message-bytes", grpc->max_receive_bytes,
-         "Largest message from a client [16 MB; less with little --memory-bytes, 4 MB with "
-         "512 MB]")
-      ->check(CLI::Range(64 << 10, 256 << 20));
+  app->add_option("--max-message-bytes", grpc->max_receive_bytes, "Largest message from a client")
+      ->check(CLI::Range(64 << 10, 256 << 20))
+      ->capture_default_str();
   app->add_option("--max-open-streams", grpc->max_open_streams,
                   "Uploads, downloads, watches, clips and live sessions together")
       ->check(CLI::Range(1, 100'000))

@@ -41,10 +41,6 @@ constexpr int kHandshakeMs = 10'000;         // of TLS and HTTP/2 together
 // memory, within these bounds. gRPC itself sees to it (grpc::ResourceQuota).
 constexpr uint64_t kMessageShare = 8;
 constexpr uint64_t kMinMessageBytes = uint64_t{32} << 20, kMaxMessageBytes = uint64_t{1} << 30;
-// A message is in memory as a whole before it is parsed, and gRPC closes connections, no matter
-// whose, when its share is full. So that takes this many of the largest messages at the same time.
-constexpr uint64_t kLargestMessagesAtOnce = 16;
-constexpr uint64_t kMinLargestMessage = uint64_t{4} << 20, kMaxLargestMessage = uint64_t{16} << 20;
 // How long a live session that drains may take to get rid of the frame that is being written.
 constexpr auto kSlowReaderTime = std::chrono::seconds(1);
 constexpr auto kCloseTime = std::chrono::milliseconds(100);
@@ -146,8 +142,8 @@ class GrpcServerImpl final : public GrpcServer {
     port_ = listener_->port();
     acceptor_ = builder.experimental().AddExternalConnectionAcceptor(
         grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, credentials);
-    PLEAT_RETURN_IF_ERROR(LimitMessages(options, &builder));
-    builder.SetMaxReceiveMessageSize(max_receive_bytes_);
+    PLEAT_RETURN_IF_ERROR(LimitMessages(options.memory, &builder));
+    builder.SetMaxReceiveMessageSize(options.max_receive_bytes);
     RefuseCompression(&builder);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
@@ -179,7 +175,6 @@ class GrpcServerImpl final : public GrpcServer {
   MemoryUse memory_use() const override {
     return {request_memory_.used_bytes(), stream_memory_.used_bytes(), message_memory_.bytes()};
   }
-  int max_receive_bytes() const override { return max_receive_bytes_; }
   int num_connections() const override { return listener_->num_open(); }
   std::optional<int64_t> certificate_expiry() const override {
     if (certificate_.empty()) return std::nullopt;
@@ -231,16 +226,11 @@ class GrpcServerImpl final : public GrpcServer {
   }
 
   // The share of gRPC is taken for as long as the server lives.
-  absl::Status LimitMessages(const GrpcServerOptions& options, grpc::ServerBuilder* builder) {
+  absl::Status LimitMessages(MemoryBudget* memory, grpc::ServerBuilder* builder) {
     uint64_t bytes = kMaxMessageBytes;
-    if (options.memory != nullptr) {
-      bytes = std::clamp(options.memory->capacity_bytes() / kMessageShare, kMinMessageBytes, bytes);
-      PLEAT_ASSIGN_OR_RETURN(message_memory_, options.memory->Reserve(bytes, "gRPC"));
-    }
-    max_receive_bytes_ = options.max_receive_bytes;
-    if (max_receive_bytes_ == 0) {
-      max_receive_bytes_ = static_cast<int>(
-          std::clamp(bytes / kLargestMessagesAtOnce, kMinLargestMessage, kMaxLargestMessage));
+    if (memory != nullptr) {
+      bytes = std::clamp(memory->capacity_bytes() / kMessageShare, kMinMessageBytes, bytes);
+      PLEAT_ASSIGN_OR_RETURN(message_memory_, memory->Reserve(bytes, "gRPC"));
     }
     grpc::ResourceQuota quota("pleatd");
     builder->SetResourceQuota(quota.Resize(bytes));
@@ -275,7 +265,7 @@ class GrpcServerImpl final : public GrpcServer {
   std::mutex shutdown_mutex_;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
   std::unique_ptr<ConnectionListener> listener_;
-  int port_ = 0, max_receive_bytes_ = 0;
+  int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
   std::optional<RevocationWatch> revocation_;
   std::optional<HealthWatch> health_;

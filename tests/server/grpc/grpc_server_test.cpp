@@ -57,22 +57,6 @@ TEST_F(GrpcServerTest, AnAddressThatIsTakenIsRefused) {
   }
 }
 
-// Sixteen of the largest messages must fit into the share of gRPC at the same time.
-TEST_F(GrpcServerTest, TheLargestMessageDependsOnTheMemory) {
-  MockService service;
-  const auto largest = [&](uint64_t memory_bytes, int asked) {
-    MemoryBudget memory(memory_bytes, "--memory-bytes");
-    return GrpcServer::Start(&service, {.max_receive_bytes = asked, .memory = &memory})
-        .value()
-        ->max_receive_bytes();
-  };
-  EXPECT_EQ(largest(uint64_t{8} << 30, 0), 16 << 20);
-  EXPECT_EQ(largest(uint64_t{1} << 30, 0), 8 << 20);
-  EXPECT_EQ(largest(uint64_t{128} << 20, 0), 4 << 20);
-  EXPECT_EQ(largest(uint64_t{128} << 20, 32 << 20), 32 << 20);  // the operator knows better
-  EXPECT_EQ(GrpcServer::Start(&service, {}).value()->max_receive_bytes(), 16 << 20);
-}
-
 TEST_F(GrpcServerTest, CertificatesThatDoNotFitAreRefused) {
   MockService service;
   for (const GrpcServerOptions& half :

@@ -82,9 +82,8 @@ struct GrpcServerOptions {
   std::function<absl::Status()> probe{};
   int num_storage_threads = 2;   // for answers out of the catalog
   int num_transfer_threads = 4;  // for uploads with their checks, downloads and decoding
-  // The largest message; 0: 16 MB (20,000 poses of 18 joints are 14 MB), and less where the memory
-  // is small: a sixteenth of gRPC's share of it, at least 4 MB.
-  int max_receive_bytes = 0;
+  // The largest message; 20,000 poses of 18 joints are 14 MB.
+  int max_receive_bytes = 16 << 20;
   // For requests and their answers while they are worked on, all calls together; most of it goes to
   // the poses of clips. A parsed pose takes three times what it takes on the wire.
   uint64_t request_bytes = uint64_t{512} << 20;
@@ -118,7 +117,6 @@ class GrpcServer {
     uint64_t requests = 0, streams = 0, messages = 0;
   };
   virtual MemoryUse memory_use() const = 0;
-  virtual int max_receive_bytes() const = 0;  // the largest message from a client
   // A channel that needs no network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
   // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then
