@@ -197,7 +197,7 @@ absl::Status RunSweep(const StoreVerbOptions& options, const Session& session) {
   StoredFiles files(std::move(store), {});
   RunRetention(
       {.files = &files, .on_removed = [&](const std::string& text) { removed.push_back(text); }},
-      rules);
+      RulesOf(options.retention));
   return PrintSentences(options, session, removed, problems);
 }
 
