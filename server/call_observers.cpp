@@ -21,6 +21,7 @@ void Audit(const CallFacts& facts, absl::StatusCode status, double seconds, Toke
   AuditEntry entry{.rpc = facts.method.substr(facts.method.rfind('/') + 1),
                    .peer = facts.peer,
                    .token_id = facts.token_id,
+                   .project = facts.project,
                    .ids = facts.ids,
                    .trace_id = facts.trace_id,
                    .request_id = facts.request_id,
@@ -60,6 +61,8 @@ CallListener ObserveCalls(ServerMetrics* metrics, AuditLog* audit_log, TokenRegi
           [=](const CallFacts& facts, int code, double seconds) {
             const auto status = static_cast<absl::StatusCode>(code);
             metrics->CallEnded(facts.method, absl::StatusCodeToString(status), seconds);
+            metrics->CallOfProject(facts.project);
+            if (!facts.limit.empty()) metrics->CallRefused(facts.limit);
             if (!facts.is_stream && seconds > slow_call_seconds) LogSlowCall(facts, seconds);
             const bool refused = status == absl::StatusCode::kUnauthenticated ||
                                  status == absl::StatusCode::kPermissionDenied;

@@ -8,6 +8,7 @@
 #include "machine_memory.h"
 #include "pleat/base/status.h"
 #include "pleat/identity/token_file.h"
+#include "pleat/local/retention_flags.h"
 
 namespace pleat {
 namespace {
@@ -78,6 +79,10 @@ void AddProjectFlags(CLI::App* app, ProjectLimits* project) {
                   "Frames that one project may have evaluated or decoded; 0 = no limit")
       ->check(CLI::Range(0., 1e9))
       ->capture_default_str();
+  app->add_option("--project-job-cpu-seconds-per-hour", project->job_cpu_seconds_per_hour,
+                  "Processor time that the jobs of one project may use; 0 = no limit")
+      ->check(CLI::Range(0., 1e9))
+      ->capture_default_str();
   app->add_flag("--share-content", project->share_content,
                 "End an upload at once when another project has the same content; whoever knows "
                 "the SHA-256 of a file can then have it");
@@ -85,29 +90,11 @@ void AddProjectFlags(CLI::App* app, ProjectLimits* project) {
 
 constexpr double kSweepSeconds = 60;
 
-struct RetentionFlags {
-  double job_days = 0, upload_hours = 7 * 24;
-};
-
-void AddRetentionFlags(CLI::App* app, LocalServiceOptions* service, RetentionFlags* flags) {
-  app->add_option("--keep-jobs", service->retention.max_ended_jobs,
-                  "Jobs that have ended and stay in the list, the newest; 0 = all")
-      ->check(CLI::Range(int64_t{0}, int64_t{1'000'000'000}))
-      ->capture_default_str();
-  app->add_option("--keep-jobs-days", flags->job_days,
-                  "Days that a job stays in the list after its end; 0 = for ever")
-      ->check(CLI::Range(0., 36'500.))
-      ->capture_default_str();
-  app->add_option("--keep-uploads-hours", flags->upload_hours,
-                  "Hours that what has arrived of an upload stays after its last byte")
-      ->check(CLI::Range(1., 876'000.))
-      ->capture_default_str();
-}
-
-void SetRetention(const RetentionFlags& flags, LocalServiceOptions* service) {
-  service->sweep_seconds = kSweepSeconds;
-  service->retention.max_upload_age = absl::Hours(flags.upload_hours);
-  if (flags.job_days > 0) service->retention.max_job_age = absl::Hours(24 * flags.job_days);
+void AddRetentionFlags(CLI::App* app, RetentionFlags* flags) {
+  VisitRetentionFlags(
+      *flags, 1, [app](const char* flag, auto& value, const char* help, double least, double most) {
+        app->add_option(flag, value, help)->check(CLI::Range(least, most))->capture_default_str();
+      });
 }
 
 void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
@@ -198,7 +185,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   AddServiceFlags(&app, &line.options.service, &scrub_hours);
   AddProjectFlags(&app, &line.options.service.project);
   RetentionFlags retention;
-  AddRetentionFlags(&app, &line.options.service, &retention);
+  AddRetentionFlags(&app, &retention);
   std::string job_priority = "idle";
   app.add_option("--job-priority", job_priority,
                  "idle: jobs take the processor time that live sessions and other programs leave; "
@@ -230,7 +217,8 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
     return line;
   }
   line.options.service.scrub_seconds = 3600 * scrub_hours;
-  SetRetention(retention, &line.options.service);
+  line.options.service.sweep_seconds = kSweepSeconds;
+  line.options.service.retention = RulesOf(retention);
   line.options.service.jobs_in_idle_time = job_priority == "idle";
   if (line.options.token_file.empty()) {
     line.options.token_file = TokenPath(line.options.service.data_dir);

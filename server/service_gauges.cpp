@@ -2,11 +2,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pleat {
 namespace {
+
+constexpr JobState kJobStates[] = {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
+                                   JobState::kFailed, JobState::kCancelled};
 
 void AddMemoryGauge(const std::string& owner, std::function<uint64_t()> bytes,
                     ServerMetrics* metrics) {
@@ -15,14 +20,57 @@ void AddMemoryGauge(const std::string& owner, std::function<uint64_t()> bytes,
                     [bytes = std::move(bytes)] { return static_cast<double>(bytes()); });
 }
 
+// A value of each project; those without a label of their own are added up.
+void AddProjectSeries(const std::string& name, const std::string& help, bool is_counter,
+                      LocalCharacterService* service, ServerMetrics* metrics,
+                      double (*value)(const ProjectUse&)) {
+  metrics->AddSeries(name, help, is_counter, [service, metrics, value] {
+    std::map<std::string, double> by_label;
+    for (const ProjectUse& use : service->ProjectUses()) {
+      by_label[metrics->project_labels().LabelOf(use.project)] += value(use);
+    }
+    std::vector<ServerMetrics::Sample> samples;
+    for (const auto& [label, sum] : by_label) samples.push_back({{{"project", label}}, sum});
+    return samples;
+  });
+}
+
+void AddProjectJobs(LocalCharacterService* service, ServerMetrics* metrics) {
+  metrics->AddSeries("pleat_project_jobs", "Jobs by project and state", false, [service, metrics] {
+    std::map<ServerMetrics::Labels, double> by_labels;
+    for (const ProjectUse& use : service->ProjectUses()) {
+      const std::string label = metrics->project_labels().LabelOf(use.project);
+      for (const JobState state : kJobStates) {
+        const auto num = use.jobs.find(JobStateName(state));
+        by_labels[{{"project", label}, {"state", JobStateName(state)}}] +=
+            num == use.jobs.end() ? 0 : static_cast<double>(num->second);
+      }
+    }
+    std::vector<ServerMetrics::Sample> samples;
+    for (const auto& [labels, num] : by_labels) samples.push_back({labels, num});
+    return samples;
+  });
+}
+
+void AddProjectMetrics(LocalCharacterService* service, ServerMetrics* metrics) {
+  AddProjectJobs(service, metrics);
+  AddProjectSeries("pleat_project_stored_bytes", "Stored files by project", false, service, metrics,
+                   [](const ProjectUse& use) { return static_cast<double>(use.stored_bytes); });
+  AddProjectSeries("pleat_project_frames_total", "Frames evaluated and decoded, by project", true,
+                   service, metrics, [](const ProjectUse& use) { return use.frames; });
+  AddProjectSeries("pleat_project_job_cpu_seconds_total", "Processor time of jobs, by project",
+                   true, service, metrics,
+                   [](const ProjectUse& use) { return use.job_cpu_seconds; });
+}
+
 }  // namespace
 
 void AddServiceGauges(LocalCharacterService* service, ServerMetrics* metrics) {
-  for (const JobState state : {JobState::kQueued, JobState::kRunning, JobState::kSucceeded,
-                               JobState::kFailed, JobState::kCancelled}) {
+  for (const JobState state : kJobStates) {
     metrics->AddGauge("pleat_jobs", "Jobs by state", {{"state", JobStateName(state)}},
                       [service, state] { return 1. * service->CountJobsInState(state); });
   }
+  AddProjectMetrics(service, metrics);
   MemoryOwners* const memory = &service->memory();
   AddMemoryGauge(
       "models", [service] { return service->model_bytes(); }, metrics);

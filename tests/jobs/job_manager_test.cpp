@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "jobs/scripted_work.h"
-#include "pleat/base/limit_refusal.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -30,7 +29,7 @@ TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
         order.push_back(info.name);
         return Succeeds()(info, progress);
       },
-      journal.save());
+      &journal);
   std::vector<std::string> ids;
   for (const char* name : {"a", "b", "c"}) ids.push_back(jobs.Create(Named(name))->id);
   EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), 3u);
@@ -38,7 +37,7 @@ TEST(JobManagerTest, RunsJobsInOrderAndWritesThemDown) {
   jobs.Start();
   for (const std::string& id : ids) EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kSucceeded);
   EXPECT_EQ(order, (std::vector<std::string>{"a", "b", "c"}));
-  EXPECT_EQ(jobs.List()[1].result_id, "model of b");
+  EXPECT_EQ(jobs.Get(ids[1])->result_id, "model of b");
   jobs.Shutdown();
   EXPECT_EQ(journal.at(ids[0]).info.state, JobState::kSucceeded);
   EXPECT_THAT(journal.at(ids[0]).info.warnings, testing::ElementsAre("careful"));
@@ -49,7 +48,7 @@ TEST(JobManagerTest, TimesThatAreSeenAreThoseThatAreSaved) {
   Journal journal;
   std::atomic<int64_t> seconds = 1'800'000'000;  // later at every look
   JobManager jobs({.wall_clock = [&] { return absl::FromUnixSeconds(++seconds); }}, Succeeds(),
-                  journal.save());
+                  &journal);
   const JobInfo created = jobs.Create(Named("a")).value();
   EXPECT_EQ(created.created, absl::FromUnixSeconds(1'800'000'001));
   EXPECT_TRUE(!created.started && !created.ended);
@@ -66,7 +65,7 @@ TEST(JobManagerTest, TimesThatAreSeenAreThoseThatAreSaved) {
 
 TEST(JobManagerTest, OneClientCannotHaveAllPlacesOfTheQueue) {
   Journal journal;
-  JobManager jobs({.max_queued = 4, .max_queued_per_client = 2}, Succeeds(), journal.save());
+  JobManager jobs({.max_queued = 4, .max_queued_per_client = 2}, Succeeds(), &journal);
   const auto create = [&](const std::string& client) {
     JobInfo draft = Named("job");
     draft.client = client;
@@ -80,36 +79,6 @@ TEST(JobManagerTest, OneClientCannotHaveAllPlacesOfTheQueue) {
   EXPECT_THAT(create("rea"), IsOk());
   EXPECT_THAT(create("otto"),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("4 jobs are waiting")));
-}
-
-TEST(JobManagerTest, OneProjectCannotHaveAllPlacesOfTheQueue) {
-  Journal journal;
-  JobManager jobs({.max_queued_per_project = 1}, Succeeds(), journal.save());
-  const auto create = [&](const std::string& project) {
-    JobInfo draft = Named("job");
-    draft.project = project;
-    return jobs.Create(draft).status();
-  };
-  EXPECT_THAT(create("robots"), IsOk());
-  const absl::Status refused = create("robots");
-  EXPECT_THAT(refused,
-              HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("'robots' has 1")));
-  EXPECT_EQ(LimitRefusalOf(refused)->subject, "project:robots");
-  EXPECT_THAT(create("ghosts"), IsOk());
-}
-
-TEST(JobManagerTest, RequestIdsAreThoseOfAProject) {
-  Journal journal;
-  JobManager jobs({}, Succeeds(), journal.save(), journal.erase());
-  JobInfo draft = Named("job");
-  draft.request_id = "the same";
-  draft.project = "robots";
-  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo first, jobs.Create(draft));
-  EXPECT_EQ(jobs.Create(draft)->id, first.id);
-  draft.project = "ghosts";
-  draft.sequence_ids = {"something else"};
-  PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo other, jobs.Create(draft));
-  EXPECT_NE(other.id, first.id);
 }
 
 TEST(JobManagerTest, TellsHowLongAJobWasInEachStage) {
@@ -129,7 +98,7 @@ TEST(JobManagerTest, TellsHowLongAJobWasInEachStage) {
         now = now + 5;
         return JobOutcome{"model", {}};
       },
-      journal.save());
+      &journal);
   PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo job, jobs.Create(Named("job")));
   jobs.Start();
   EXPECT_EQ(WaitForEnd(jobs, job.id).state, JobState::kSucceeded);
@@ -151,7 +120,7 @@ TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {
         if (!both) return absl::DeadlineExceededError("alone");
         return JobOutcome{info.name, {}};
       },
-      journal.save());
+      &journal);
   std::vector<std::string> ids;
   for (int i = 0; i < 4; ++i) ids.push_back(jobs.Create(Named("x"))->id);
   jobs.Start();
@@ -162,7 +131,7 @@ TEST(JobManagerTest, RunsAsManyAsItHasWorkers) {
 TEST(JobManagerTest, JobsBeyondTheWorkersStayQueued) {
   Journal journal;
   Running running;
-  JobManager jobs({.num_workers = 2}, NeverEnds(&running), journal.save());
+  JobManager jobs({.num_workers = 2}, NeverEnds(&running), &journal);
   std::vector<std::string> ids;
   for (int i = 0; i < 3; ++i) ids.push_back(jobs.Create(Named("x"))->id);
   jobs.Start();
@@ -176,7 +145,7 @@ TEST(JobManagerTest, JobsBeyondTheWorkersStayQueued) {
 TEST(JobManagerTest, CancellationActsWithinASecond) {
   Journal journal;
   Running running;
-  JobManager jobs({}, NeverEnds(&running), journal.save());
+  JobManager jobs({}, NeverEnds(&running), &journal);
   jobs.Start();
   const std::string first = jobs.Create(Named("runs"))->id;
   const std::string second = jobs.Create(Named("waits"))->id;
@@ -203,7 +172,7 @@ TEST(JobManagerTest, FailuresAndExceptionsEndOneJobOnly) {
         if (info.name == "fails") return absl::FailedPreconditionError("no rig fits");
         return Succeeds()(info, progress);
       },
-      journal.save());
+      &journal);
   jobs.Start();
   const std::string throws = jobs.Create(Named("throws"))->id;
   const std::string memory = jobs.Create(Named("memory"))->id;
@@ -218,51 +187,107 @@ TEST(JobManagerTest, FailuresAndExceptionsEndOneJobOnly) {
               HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("rig")));
 }
 
+// Saving may take as long as a test wants.
+class SlowJournal final : public Journal {
+ public:
+  absl::Status Save(const JobInfo& info, int attempts) override {
+    {
+      std::unique_lock lock(mutex_);
+      waits_ = blocked_;
+      changed_.notify_all();
+      changed_.wait(lock, [&] { return !blocked_; });
+    }
+    return Journal::Save(info, attempts);
+  }
+  void Block() {
+    std::lock_guard lock(mutex_);
+    blocked_ = true;
+    waits_ = false;
+  }
+  void WaitForASave() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waits_; });
+  }
+  void Unblock() {
+    std::lock_guard lock(mutex_);
+    blocked_ = false;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool blocked_ = false, waits_ = false;  // guarded by mutex_
+};
+
 TEST(JobManagerTest, WhoAsksDoesNotWaitForAJobThatIsSaved) {
-  std::mutex mutex;
-  std::condition_variable changed;
-  bool blocked = false, waits = false;  // guarded by mutex
-  JobManager jobs({}, Succeeds(), [&](const JobInfo&, int) {
-    std::unique_lock lock(mutex);
-    waits = blocked;
-    changed.notify_all();
-    changed.wait(lock, [&] { return !blocked; });
-    return absl::OkStatus();
-  });
+  SlowJournal journal;
+  JobManager jobs({}, Succeeds(), &journal);
   const auto while_one_is_saved = [&](auto&& change, auto&& ask) {
-    {
-      std::lock_guard lock(mutex);
-      blocked = true;
-      waits = false;
-    }
+    journal.Block();
     std::thread changer(change);
-    {
-      std::unique_lock lock(mutex);
-      changed.wait(lock, [&] { return waits; });
-    }
+    journal.WaitForASave();
     ask();
-    {
-      std::lock_guard lock(mutex);
-      blocked = false;
-      changed.notify_all();
-    }
+    journal.Unblock();
     changer.join();
   };
   PLEAT_ASSERT_OK_AND_ASSIGN(const JobInfo first, jobs.Create({}));  // the workers do not run
   while_one_is_saved([&] { EXPECT_THAT(jobs.Create({}), IsOk()); },
                      [&] {
                        EXPECT_THAT(jobs.Get(first.id), IsOk());
-                       EXPECT_EQ(jobs.List().size(), 1u);  // not yet saved, so not yet there
+                       // Not yet saved, so not yet there.
+                       EXPECT_EQ(jobs.ListUnfinished().size(), 1u);
                      });
-  EXPECT_EQ(jobs.List().size(), 2u);
+  EXPECT_EQ(jobs.ListUnfinished().size(), 2u);
   while_one_is_saved([&] { EXPECT_THAT(jobs.Cancel(first.id), IsOk()); },
-                     [&] { EXPECT_EQ(jobs.List().size(), 2u); });
+                     [&] { EXPECT_EQ(jobs.ListUnfinished().size(), 2u); });
+  EXPECT_EQ(jobs.ListUnfinished().size(), 1u);
   EXPECT_EQ(jobs.Get(first.id)->state, JobState::kCancelled);
+}
+
+// Memory grew with every job that had ever ended.
+TEST(JobManagerTest, WhatHasEndedIsInTheJournalAlone) {
+  Journal journal;
+  JobManager jobs({}, Succeeds(), &journal);
+  std::vector<std::string> ids;
+  for (int i = 0; i < 20; ++i) ids.push_back(jobs.Create(Named("x"))->id);
+  ASSERT_THAT(jobs.Cancel(ids.back()), IsOk());
+  const auto watched = jobs.Find(ids[0]).value();
+  const std::weak_ptr<JobStateMachine> unwatched = jobs.Find(ids[1]).value();
+  jobs.Start();
+  for (const std::string& id : ids) EXPECT_TRUE(IsFinal(WaitForEnd(jobs, id).state));
+  jobs.Shutdown();
+  EXPECT_TRUE(jobs.ListUnfinished().empty());
+  EXPECT_TRUE(unwatched.expired());
+  EXPECT_EQ(watched->snapshot().info.state, JobState::kSucceeded);  // whoever holds it saw its end
+  const int num_reads = journal.num_reads();
+  EXPECT_EQ(jobs.Get(ids[3])->result_id, "model of x");
+  EXPECT_EQ(journal.num_reads(), num_reads + 1);
+  EXPECT_THAT(jobs.Cancel(ids[3]), HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("")));
+}
+
+// Of two calls that cancel one job, the second made it final before that was saved.
+TEST(JobManagerTest, TwoCallsCancelAJobOnce) {
+  SlowJournal journal;
+  JobManager jobs({}, Succeeds(), &journal);
+  const std::string id = jobs.Create(Named("x"))->id;
+  journal.Block();
+  std::thread first([&] { EXPECT_THAT(jobs.Cancel(id), IsOk()); });
+  journal.WaitForASave();
+  std::thread second([&] {
+    EXPECT_THAT(jobs.Cancel(id),
+                HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("cancelled")));
+  });
+  EXPECT_EQ(jobs.Get(id)->state, JobState::kQueued);
+  journal.Unblock();
+  first.join();
+  second.join();
+  EXPECT_EQ(journal.at(id).info.state, JobState::kCancelled);
 }
 
 TEST(JobManagerTest, RefusesWhenFullOrNotSaved) {
   Journal journal;
-  JobManager jobs({.max_queued = 2}, Succeeds(), journal.save());
+  JobManager jobs({.max_queued = 2}, Succeeds(), &journal);
   ASSERT_TRUE(jobs.Create(Named("a")).ok());
   journal.Fail(true);
   EXPECT_THAT(jobs.Create(Named("b")),
@@ -271,7 +296,7 @@ TEST(JobManagerTest, RefusesWhenFullOrNotSaved) {
   ASSERT_TRUE(jobs.Create(Named("b")).ok());
   EXPECT_THAT(jobs.Create(Named("c")),
               HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("limit is 2")));
-  EXPECT_EQ(jobs.List().size(), 2u);
+  EXPECT_EQ(jobs.ListUnfinished().size(), 2u);
 }
 
 }  // namespace

@@ -17,9 +17,10 @@ JobQueue::Job JobNamed(const std::string& id) {
 std::vector<std::string> TakeAll(JobQueue* queue) {
   std::vector<std::string> ids;
   while (!queue->empty()) {
-    const std::string next = queue->next()->id();
-    ids.push_back(queue->Take()->id());
-    EXPECT_EQ(ids.back(), next);
+    const JobQueue::Job next = queue->Next();
+    ids.push_back(next->id());
+    queue->Take(next);
+    queue->Take(next);  // what does not wait is left alone
   }
   return ids;
 }
@@ -42,6 +43,18 @@ TEST(JobQueueTest, ClientsTakeTurnsHoweverManyJobsTheyHave) {
   queue.Add(JobNamed("a5"), "a");
   queue.Add(JobNamed("c2"), "c");
   EXPECT_THAT(TakeAll(&queue), ElementsAre("c2", "a5"));
+}
+
+TEST(JobQueueTest, JobsThatMayNotRunKeepTheirPlaceAndTheirTurn) {
+  JobQueue queue;
+  for (const char* id : {"a1", "b1", "a2"}) queue.Add(JobNamed(id), std::string(1, id[0]));
+  const auto not_a = [](const JobStateMachine& job) { return job.id()[0] != 'a'; };
+  const JobQueue::Job next = queue.Next(not_a);
+  EXPECT_EQ(next->id(), "b1");
+  queue.Take(next);
+  EXPECT_EQ(queue.Next(not_a), nullptr);
+  EXPECT_THAT(TakeAll(&queue), ElementsAre("a1", "a2"));
+  EXPECT_EQ(queue.Next(), nullptr);
 }
 
 TEST(JobQueueTest, WhatIsPutBackIsTheFirstOfItsClient) {

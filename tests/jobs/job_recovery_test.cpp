@@ -18,7 +18,7 @@ TEST(JobRecoveryTest, ShutdownQueuesWhatWasRunning) {
   Running running;
   std::string id;
   {
-    JobManager jobs({}, NeverEnds(&running), journal.save());
+    JobManager jobs({}, NeverEnds(&running), &journal);
     jobs.Start();
     id = jobs.Create(Named("x"))->id;
     ASSERT_TRUE(running.WaitForEntered(1));
@@ -31,7 +31,7 @@ TEST(JobRecoveryTest, ShutdownQueuesWhatWasRunning) {
   EXPECT_EQ(journal.at(id).info.state, JobState::kQueued);
   EXPECT_EQ(journal.at(id).attempts, 0);
 
-  JobManager jobs({}, Succeeds(), journal.save());
+  JobManager jobs({}, Succeeds(), &journal);
   jobs.Restore({journal.at(id)});
   jobs.Start();
   EXPECT_EQ(WaitForEnd(jobs, id).state, JobState::kSucceeded);
@@ -48,15 +48,16 @@ TEST(JobRecoveryTest, ACrashedJobRunsAgainThreeTimes) {
   JobInfo done = crashed;
   done.id = "job-done";
   done.state = JobState::kSucceeded;
-  JobManager hopeless_jobs({}, Succeeds(), journal.save());
-  hopeless_jobs.Restore({{hopeless, 3}, {done, 1}});
+  ASSERT_THAT(journal.Save(done, 1), IsOk());
+  JobManager hopeless_jobs({}, Succeeds(), &journal);
+  hopeless_jobs.Restore({{hopeless, 3}});
   EXPECT_EQ(hopeless_jobs.Get("job-done")->state, JobState::kSucceeded);
   EXPECT_EQ(hopeless_jobs.Get("job-hopeless")->state, JobState::kFailed);
   EXPECT_THAT(hopeless_jobs.Get("job-hopeless")->error,
               HasStatus(absl::StatusCode::kAborted, HasSubstr("3 times")));
   EXPECT_EQ(journal.at("job-hopeless").info.state, JobState::kFailed);
-  JobManager jobs({}, Succeeds(), journal.save());
-  jobs.Restore({{crashed, 2}, {done, 1}});
+  JobManager jobs({}, Succeeds(), &journal);
+  jobs.Restore({{crashed, 2}});
   EXPECT_EQ(jobs.Get("job-crashed")->state, JobState::kQueued);
   EXPECT_EQ(jobs.Get("job-crashed")->fraction, 0);
   jobs.Start();
@@ -71,10 +72,26 @@ JobInfo WasRunning(const std::string& id) {
   return info;
 }
 
+TEST(JobRecoveryTest, AHopelessJobThatCannotBeSavedIsSeenAndCanBeDeleted) {
+  Journal journal;
+  JobInfo hopeless = Named("x");
+  hopeless.id = "job-hopeless";
+  hopeless.state = JobState::kRunning;
+  ASSERT_THAT(journal.Save(hopeless, 3), IsOk());
+  journal.Fail(true);
+  JobManager jobs({}, Succeeds(), &journal);
+  jobs.Restore({{hopeless, 3}});
+  EXPECT_EQ(jobs.Get("job-hopeless")->state, JobState::kFailed);
+  EXPECT_TRUE(jobs.ListUnfinished().empty());
+  journal.Fail(false);
+  EXPECT_THAT(jobs.Delete("job-hopeless"), IsOk());
+  EXPECT_EQ(journal.size(), 0u);
+}
+
 // Whoever ran beside the job that took the server down was blamed with it.
 TEST(JobRecoveryTest, JobsThatRanBesideOthersAreNotBlamed) {
   Journal journal;
-  JobManager jobs({}, Succeeds(), journal.save());
+  JobManager jobs({}, Succeeds(), &journal);
   jobs.Restore({{WasRunning("a"), 3}, {WasRunning("b"), 1}});
   EXPECT_EQ(journal.at("a").info.state, JobState::kQueued);
   EXPECT_EQ(journal.at("a").attempts, 2);
@@ -84,14 +101,15 @@ TEST(JobRecoveryTest, JobsThatRanBesideOthersAreNotBlamed) {
 TEST(JobRecoveryTest, SuspectsRunAlone) {
   Journal journal;
   Running running;
-  JobManager jobs({.num_workers = 3}, NeverEnds(&running), journal.save());
+  JobManager jobs({.num_workers = 3}, NeverEnds(&running), &journal);
   jobs.Restore({{WasRunning("a"), 1}, {WasRunning("b"), 1}});
   for (int i = 0; i < 2; ++i) ASSERT_TRUE(jobs.Create(Named("new")).ok());
   jobs.Start();
   for (const char* suspect : {"a", "b"}) {
     ASSERT_TRUE(running.WaitForEntered(suspect[0] - 'a' + 1));
     int num_running = 0;
-    for (const JobInfo& info : jobs.List()) num_running += info.state == JobState::kRunning;
+    for (const JobInfo& info : jobs.ListUnfinished())
+      num_running += info.state == JobState::kRunning;
     EXPECT_EQ(num_running, 1);
     EXPECT_EQ(jobs.Get(suspect)->state, JobState::kRunning);
     EXPECT_THAT(jobs.Cancel(suspect), IsOk());
@@ -118,7 +136,7 @@ TEST(JobRecoveryTest, NobodySeesAnEndThatIsNotSaved) {
         journal.Fail(true);
         return absl::FailedPreconditionError("no rig fits");
       },
-      journal.save());
+      &journal);
   const std::string id = jobs.Create(Named("x"))->id;
   jobs.Start();
   const JobInfo warned = WaitForWarning(jobs, id);
@@ -138,7 +156,7 @@ TEST(JobRecoveryTest, AnEndThatCannotBeSavedDoesNotHoldUpAShutdown) {
         journal.Fail(true);
         return JobOutcome{"model", {}};
       },
-      journal.save());
+      &journal);
   const std::string id = jobs.Create(Named("x"))->id;
   jobs.Start();
   WaitForWarning(jobs, id);
@@ -155,7 +173,7 @@ TEST(JobRecoveryTest, ARepeatedRequestMakesNoSecondJob) {
   draft.request_id = "once";
   std::string id;
   {
-    JobManager jobs({}, Succeeds(), journal.save());
+    JobManager jobs({}, Succeeds(), &journal);
     id = jobs.Create(draft)->id;
     EXPECT_EQ(jobs.Create(draft)->id, id);
     JobInfo other = draft;
@@ -163,9 +181,9 @@ TEST(JobRecoveryTest, ARepeatedRequestMakesNoSecondJob) {
     EXPECT_THAT(jobs.Create(other), HasStatus(absl::StatusCode::kAlreadyExists, HasSubstr(id)));
     other.request_id = "another";
     EXPECT_NE(jobs.Create(other)->id, id);
-    EXPECT_EQ(jobs.List().size(), 2u);
+    EXPECT_EQ(jobs.ListUnfinished().size(), 2u);
   }
-  JobManager jobs({.max_queued = 1}, Succeeds(), journal.save());
+  JobManager jobs({.max_queued = 1}, Succeeds(), &journal);
   jobs.Restore({journal.at(id)});
   EXPECT_EQ(jobs.Create(draft)->id, id);  // also after a restart, and with a full queue
   jobs.Start();
@@ -175,7 +193,7 @@ TEST(JobRecoveryTest, ARepeatedRequestMakesNoSecondJob) {
 
 TEST(JobRecoveryTest, ACancellationThatIsNotSavedIsRefused) {
   Journal journal;
-  JobManager jobs({}, Succeeds(), journal.save());
+  JobManager jobs({}, Succeeds(), &journal);
   const std::string id = jobs.Create(Named("x"))->id;
   journal.Fail(true);
   EXPECT_THAT(jobs.Cancel(id), HasStatus(absl::StatusCode::kResourceExhausted, HasSubstr("disk")));

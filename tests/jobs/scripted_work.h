@@ -7,29 +7,42 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "pleat/jobs/job_manager.h"
 
 namespace pleat {
 
-// A store that remembers the newest save of every job.
-class Journal {
+// A journal in memory that remembers the newest save of every job, and may fail.
+class Journal : public JobJournal {
  public:
-  SaveJob save() {
-    return [this](const JobInfo& info, int attempts) {
-      std::lock_guard lock(mutex_);
-      if (fail_) return absl::ResourceExhaustedError("disk full");
-      saved_[info.id] = {info, attempts};
-      return absl::OkStatus();
-    };
+  absl::Status Save(const JobInfo& info, int attempts) override {
+    std::lock_guard lock(mutex_);
+    if (fail_) return absl::ResourceExhaustedError("disk full");
+    if (!saved_.contains(info.id)) order_.push_back(info.id);
+    saved_[info.id] = {info, attempts};
+    return absl::OkStatus();
   }
-  EraseJob erase() {
-    return [this](const JobInfo& info) {
-      std::lock_guard lock(mutex_);
-      if (fail_) return absl::ResourceExhaustedError("disk full");
-      saved_.erase(info.id);
-      return absl::OkStatus();
-    };
+  absl::Status Erase(const JobInfo& info) override {
+    std::lock_guard lock(mutex_);
+    if (fail_) return absl::ResourceExhaustedError("disk full");
+    saved_.erase(info.id);
+    return absl::OkStatus();
+  }
+  absl::StatusOr<StoredJob> Read(const std::string& project, const std::string& id) override {
+    std::lock_guard lock(mutex_);
+    ++num_reads_;
+    const auto it = saved_.find(id);
+    if (it != saved_.end() && it->second.info.project == project) return it->second;
+    return absl::NotFoundError("no job '" + id + "'");
+  }
+  absl::StatusOr<StoredJob> FindRequest(const std::string& project,
+                                        const std::string& request_id) override {
+    std::lock_guard lock(mutex_);
+    for (const auto& [id, job] : saved_) {
+      if (job.info.project == project && job.info.request_id == request_id) return job;
+    }
+    return absl::NotFoundError("no such request");
   }
   StoredJob at(const std::string& id) {
     std::lock_guard lock(mutex_);
@@ -43,11 +56,26 @@ class Journal {
     std::lock_guard lock(mutex_);
     return saved_.size();
   }
+  int num_reads() {
+    std::lock_guard lock(mutex_);
+    return num_reads_;
+  }
+  // The names of the saved jobs, in the order of their first save.
+  std::vector<std::string> names() {
+    std::lock_guard lock(mutex_);
+    std::vector<std::string> names;
+    for (const std::string& id : order_) {
+      if (saved_.contains(id)) names.push_back(saved_[id].info.name);
+    }
+    return names;
+  }
 
  private:
   std::mutex mutex_;
-  std::map<std::string, StoredJob> saved_;
+  std::map<std::string, StoredJob> saved_;  // by id; guarded by mutex_, as is all below
+  std::vector<std::string> order_;
   bool fail_ = false;
+  int num_reads_ = 0;
 };
 
 inline JobInfo WaitForEnd(JobManager& jobs, const std::string& id) {

@@ -35,7 +35,7 @@ class JobPagesTest : public testing::Test {
         JobRunner(&folder_.files(), &folder_.sequences(), TrainCharacter, 1), pool_.get());
   }
   std::string Create() { return jobs_->CreateTraining({.sequence_ids = {sequence_id_}})->id; }
-  uint64_t num_steps() { return folder_.files().store().catalog().num_page_steps(); }
+  uint64_t num_steps() { return folder_.files().store().catalog().num_read_steps(); }
 
   DataFolder folder_;
   std::string sequence_id_;

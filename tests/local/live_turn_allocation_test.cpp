@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "local_pose_stream.h"
-#include "pleat/local/frame_quota.h"
 #include "pleat/local/pose_batcher.h"
 #include "pleat/local/pose_session.h"
+#include "pleat/local/project_quota.h"
 #include "support/allocation_counter.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
@@ -85,7 +85,8 @@ class Client final : public LiveListener {
   uint64_t num_received_ = 0;
   int num_keyframes_ = 0;
   std::counting_semaphore<> done_{0};
-  FrameQuota quota_{1e9, kDefaultProject};  // a limit that is there costs no memory either
+  ProjectQuota quota_{ProjectQuota::OfFrames(kDefaultProject,
+                                             1e9)};  // a limit that is there costs no memory either
   LocalPoseStream stream_;
 };
 

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "data_folder.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/formats/rig_file.h"
 #include "support/fake_training.h"
 #include "support/status_matchers.h"
@@ -173,6 +174,24 @@ TEST_F(LocalJobsTest, WhatCannotSucceedIsRefusedBeforeThereIsAJob) {
               HasStatus(absl::StatusCode::kInvalidArgument, _));
   EXPECT_TRUE(jobs_->List()->empty());
   EXPECT_TRUE(folder_.files().store().catalog().List(EntryKind::kRig)->empty());
+}
+
+TEST_F(LocalJobsTest, AProjectThatHasUsedUpItsProcessorTimeIsToldWhenToComeAgain) {
+  ProjectQuota quota(ProjectQuota::OfJobTime(kDefaultProject, 3600), [] { return 0.; });
+  LocalJobs jobs(&folder_.files(), &folder_.sequences(),
+                 JobRunner(&folder_.files(), &folder_.sequences(), training_.function(), 1),
+                 pool_.get(), &quota);
+  EXPECT_THAT(jobs.CreateTraining({.sequence_ids = {a_}}), IsOk());
+  quota.Charge(3660);
+  for (const absl::Status& status : {jobs.CreateTraining({.sequence_ids = {a_}}).status(),
+                                     jobs.CreateCompression({a_, {}}).status()}) {
+    const auto refusal = LimitRefusalOf(status);
+    ASSERT_TRUE(refusal) << status;
+    EXPECT_EQ(refusal->subject, "project:default");
+    EXPECT_EQ(refusal->limit, "--project-job-cpu-seconds-per-hour");
+    EXPECT_EQ(refusal->retry_after, absl::Seconds(61));
+  }
+  EXPECT_EQ(jobs.List()->size(), 1u);
 }
 
 // Counts what a listener hears, and lets a test wait for it.

@@ -5,10 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "data_folder.h"
+#include "job_rows.h"
 #include "pleat/base/sha256.h"
 #include "pleat/store/records.h"
 #include "support/fake_training.h"
@@ -22,50 +25,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const absl::Time kNow = absl::FromUnixSeconds(1'800'000'000);
-
-EndedJob JobThatEnded(const std::string& id, absl::Duration ago) {
-  return {.id = id, .name = "walk", .ended = kNow - ago};
-}
-
-std::vector<std::string> ChosenIds(const std::vector<EndedJob>& jobs, const RetentionRules& rules) {
-  std::vector<std::string> ids;
-  for (const JobToRemove& it : ChooseJobsToRemove(jobs, rules, kNow)) ids.push_back(it.job.id);
-  return ids;
-}
-
-TEST(RetentionOfJobs, NothingGoesWithoutARule) {
-  EXPECT_THAT(ChosenIds({JobThatEnded("a", absl::Hours(1'000'000)), {.id = "b"}}, {}), IsEmpty());
-}
-
-TEST(RetentionOfJobs, TheNewestStayByTheirEndAndNotByTheirCreation) {
-  const std::vector<EndedJob> jobs = {JobThatEnded("a", absl::Hours(1)),
-                                      JobThatEnded("b", absl::Hours(3)),
-                                      {.id = "old"},  // of a version that wrote no times
-                                      JobThatEnded("c", absl::Hours(2))};
-  EXPECT_THAT(ChosenIds(jobs, {.max_ended_jobs = 2}), ElementsAre("old", "b"));
-  EXPECT_THAT(ChosenIds(jobs, {.max_ended_jobs = 4}), IsEmpty());
-  EXPECT_THAT(ChooseJobsToRemove(jobs, {.max_ended_jobs = 3}, kNow).at(0).why,
-              HasSubstr("newest 3"));
-}
-
-TEST(RetentionOfJobs, AJobGoesWhenItIsOlderThanTheAge) {
-  const RetentionRules rules{.max_job_age = absl::Hours(2)};
-  const std::vector<EndedJob> jobs = {JobThatEnded("a", absl::Hours(2) + absl::Seconds(1)),
-                                      JobThatEnded("b", absl::Hours(2)),
-                                      {.id = "old"}};
-  EXPECT_THAT(ChosenIds(jobs, rules), ElementsAre("a"));
-  EXPECT_THAT(ChooseJobsToRemove(jobs, rules, kNow).at(0).why, HasSubstr("more than 2h ago"));
-}
-
-TEST(RetentionOfJobs, EachRuleRemovesWhatItNames) {
-  const RetentionRules rules{.max_ended_jobs = 2, .max_job_age = absl::Hours(2)};
-  EXPECT_THAT(ChosenIds({JobThatEnded("a", absl::Hours(1)), JobThatEnded("b", absl::Minutes(3)),
-                         JobThatEnded("c", absl::Minutes(2)), JobThatEnded("d", absl::Hours(9))},
-                        rules),
-              ElementsAre("d", "a"));
-}
-
 class RetentionTest : public testing::Test {
  protected:
   RetentionTest() { folder_.Open(); }
@@ -73,7 +32,6 @@ class RetentionTest : public testing::Test {
     removed_.clear();
     return RunRetention(
         {.files = &folder_.files(),
-         .jobs = JobsInRows(&folder_.files()),
          .on_model_removed = [this](const std::string& id) { models_removed_.push_back(id); },
          .on_removed = [this](const std::string& text) { removed_.push_back(text); }},
         rules);
@@ -94,7 +52,27 @@ class RetentionTest : public testing::Test {
     job.state = state;
     if (!sequence_id.empty()) job.sequence_ids = {sequence_id};
     if (IsFinal(state)) job.ended = folder_.now();
-    EXPECT_THAT(folder_.files().catalog().Put(EntryKind::kJob, {id, EncodeRecord(job)}), IsOk());
+    PutJob(job);
+  }
+  void PutJob(const JobInfo& job) {
+    EXPECT_THAT(folder_.files().store().catalog().Put(EntryKind::kJob, JobEntry(job, 1)), IsOk());
+  }
+  // A job of the project that ended so long ago; none: it does not know when.
+  void AddEndedJob(const std::string& id, std::optional<absl::Duration> ago,
+                   const std::string& project = kDefaultProject) {
+    JobInfo job;
+    job.id = id;
+    job.state = JobState::kSucceeded;
+    job.project = project;
+    if (ago) job.ended = folder_.now() - *ago;
+    PutJob(job);
+  }
+  // The ids of the jobs that are left, of all projects.
+  std::vector<std::string> JobIds() {
+    std::vector<std::string> ids;
+    const auto entries = folder_.files().store().catalog().List(EntryKind::kJob);
+    for (const CatalogEntry& entry : *entries) ids.push_back(entry.id);
+    return ids;
   }
   bool Has(const std::string& id) { return folder_.sequences().Get(id).ok(); }
 
@@ -163,6 +141,83 @@ TEST_F(RetentionTest, JobsGoByTheirRulesAndTheirSequencesStay) {
   EXPECT_EQ(Run({.max_job_age = absl::Minutes(59)}), 1u);
   EXPECT_THAT(removed_, ElementsAre(HasSubstr("job-2")));
   EXPECT_EQ(folder_.files().store().catalog().List(EntryKind::kJob)->size(), 1u);
+  EXPECT_TRUE(Has(id));
+}
+
+TEST_F(RetentionTest, NoJobGoesWithoutARule) {
+  AddEndedJob("a", absl::Hours(1'000'000));
+  AddEndedJob("b", std::nullopt);
+  EXPECT_EQ(Run(), 0u);
+}
+
+TEST_F(RetentionTest, TheNewestStayByTheirEndAndNotByTheirCreation) {
+  AddEndedJob("a", absl::Hours(1));
+  AddEndedJob("b", absl::Hours(3));
+  AddEndedJob("old", std::nullopt);  // of a version that wrote no times
+  AddEndedJob("c", absl::Hours(2));
+  EXPECT_EQ(Run({.max_ended_jobs = 4}), 0u);
+  EXPECT_EQ(Run({.max_ended_jobs = 3}), 1u);
+  EXPECT_THAT(removed_, ElementsAre(AllOf(HasSubstr("old"), HasSubstr("newest 3"))));
+  EXPECT_EQ(Run({.max_ended_jobs = 2}), 1u);
+  EXPECT_THAT(JobIds(), ElementsAre("a", "c"));
+}
+
+TEST_F(RetentionTest, AJobGoesWhenItIsOlderThanTheAge) {
+  AddEndedJob("a", absl::Hours(2) + absl::Seconds(1));
+  AddEndedJob("b", absl::Hours(2));
+  AddEndedJob("old", std::nullopt);
+  EXPECT_EQ(Run({.max_job_age = absl::Hours(2)}), 1u);
+  EXPECT_THAT(removed_, ElementsAre(AllOf(HasSubstr("'a'"), HasSubstr("more than 2h ago"))));
+}
+
+TEST_F(RetentionTest, EachRuleRemovesTheJobsThatItNames) {
+  AddEndedJob("a", absl::Hours(1));
+  AddEndedJob("b", absl::Minutes(3));
+  AddEndedJob("c", absl::Minutes(2));
+  AddEndedJob("d", absl::Hours(9));
+  EXPECT_EQ(Run({.max_ended_jobs = 2, .max_job_age = absl::Hours(2)}), 2u);
+  EXPECT_THAT(removed_, ElementsAre(AllOf(HasSubstr("'d'"), HasSubstr("ago")),
+                                    AllOf(HasSubstr("'a'"), HasSubstr("newest 2"))));
+}
+
+TEST_F(RetentionTest, EachProjectKeepsItsNewestJobs) {
+  for (const char* id : {"r1", "r2", "r3"}) AddEndedJob(id, absl::Hours(1), "robots");
+  AddEndedJob("d1", absl::Hours(9));
+  EXPECT_EQ(Run({.max_ended_jobs = 1}), 2u);
+  EXPECT_THAT(JobIds(), ElementsAre("r3", "d1"));
+}
+
+TEST_F(RetentionTest, MoreJobsThanAreInMemoryTogetherGoInOneRun) {
+  std::vector<CatalogEntry> rows;
+  JobInfo job;
+  job.state = JobState::kFailed;
+  job.ended = folder_.now();
+  for (int i = 0; i < 2500; ++i) {
+    job.id = absl::StrCat("job-", i);
+    rows.push_back(JobEntry(job, 1));
+  }
+  ASSERT_THAT(folder_.files().store().catalog().PutAll(EntryKind::kJob, rows), IsOk());
+  EXPECT_EQ(Run({.max_ended_jobs = 2490}), 10u);
+  EXPECT_EQ(Run(), 0u);
+  folder_.Pass(absl::Hours(2));
+  EXPECT_EQ(Run({.max_ended_jobs = 1400, .max_job_age = absl::Hours(9)}), 1090u);
+}
+
+// Rows of older versions say what they are in their record alone.
+TEST_F(RetentionTest, JobsOfOlderVersionsAreKnownByTheirRecords) {
+  const std::string id = Upload("a", absl::Hours(1));
+  JobInfo job;
+  job.id = "job-1";
+  job.state = JobState::kRunning;
+  job.sequence_ids = {id};
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kJob, {"job-1", EncodeRecord(job)}), IsOk());
+  job.id = "job-2";
+  job.state = JobState::kFailed;
+  ASSERT_THAT(folder_.files().catalog().Put(EntryKind::kJob, {"job-2", EncodeRecord(job)}), IsOk());
+  AddEndedJob("new", absl::Hours(0));
+  folder_.Pass(absl::Hours(2));
+  EXPECT_EQ(Run({.max_ended_jobs = 1}), 1u);
+  EXPECT_THAT(JobIds(), ElementsAre("job-1", "new"));
   EXPECT_TRUE(Has(id));
 }
 

@@ -23,7 +23,6 @@ TEST(SweeperTest, ItsThreadRunsRetentionAgainAndAgainAndEnds) {
   std::promise<std::string> removed;
   std::once_flag once;
   const RetentionTarget target{.files = &folder.files(),
-                               .jobs = JobsInRows(&folder.files()),
                                .on_removed = [&](const std::string& sentence) {
                                  std::call_once(once, [&] { removed.set_value(sentence); });
                                }};

@@ -52,9 +52,9 @@ TEST(CatalogPage, APageCostsTheSameWhereverItIsAndWhateverElseIsThere) {
   TemporaryFolder folder;
   PLEAT_ASSERT_OK_AND_ASSIGN(const auto catalog, Catalog::Open(folder.File("c.db")));
   const auto steps_of = [&](EntryKind kind, int64_t after, size_t num_expected) {
-    const uint64_t before = catalog->num_page_steps();
+    const uint64_t before = catalog->num_read_steps();
     EXPECT_EQ(catalog->ListPage(kind, after, 10)->size(), num_expected);
-    return catalog->num_page_steps() - before;
+    return catalog->num_read_steps() - before;
   };
   for (int i = 0; i < 10; ++i) {
     ASSERT_THAT(catalog->Put(EntryKind::kModel, {"m" + std::to_string(i), ""}), IsOk());

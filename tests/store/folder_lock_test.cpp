@@ -15,20 +15,20 @@ using ::testing::HasSubstr;
 
 TEST(FolderLockTest, HasOneHolderAtATime) {
   TemporaryFolder folder;
-  std::optional<FolderLock> lock(FolderLock::Take(folder.path()).value());
-  EXPECT_THAT(FolderLock::Take(folder.path()).status(),
+  std::optional<FileLock> lock(LockFolder(folder.path()).value());
+  EXPECT_THAT(LockFolder(folder.path()).status(),
               HasStatus(absl::StatusCode::kFailedPrecondition, HasSubstr("in use")));
-  const FolderLock moved = *std::move(lock);
+  const FileLock moved = *std::move(lock);
   lock.reset();  // it holds nothing any more
-  EXPECT_FALSE(FolderLock::Take(folder.path()).ok());
+  EXPECT_FALSE(LockFolder(folder.path()).ok());
 }
 
 TEST(FolderLockTest, EndsWithItsHolder) {
   TemporaryFolder folder;
   for (int round = 0; round < 3; ++round) {
-    EXPECT_TRUE(FolderLock::Take(folder.path()).ok());
+    EXPECT_TRUE(LockFolder(folder.path()).ok());
   }
-  EXPECT_FALSE(FolderLock::Take(folder.File("missing")).ok());
+  EXPECT_FALSE(LockFolder(folder.File("missing")).ok());
 }
 
 }  // namespace

@@ -237,6 +237,14 @@ TEST(RecordsTest, EveryGoalAndStateComesBack) {
   ExpectSame(DecodeCompressedSequenceRecord(EncodeRecord(uploaded)).value(), uploaded);
 }
 
+TEST(RecordsTest, ACheckpointNamesItsJob) {
+  EXPECT_EQ(DecodeCheckpointRecord(EncodeRecord(CheckpointInfo{"job-7"}))->job_id, "job-7");
+  for (const std::string& id : {std::string(), std::string(65, 'a')}) {
+    EXPECT_THAT(DecodeCheckpointRecord(EncodeRecord(CheckpointInfo{id})),
+                HasStatus(absl::StatusCode::kDataLoss, testing::HasSubstr("job_id")));
+  }
+}
+
 TEST(RecordsTest, EveryTrainOptionHasAFieldOfItsName) {
   std::set<std::string> names;
   const TrainOptions defaults;
@@ -318,7 +326,8 @@ TEST(RecordsTest, RandomBytesNeverCrashTheReader) {
     bytes.resize(random.UniformInt(static_cast<int>(bytes.size()) + 1));
     for (const absl::Status& status :
          {DecodeJobRecord(bytes).status(), DecodeModelRecord(bytes).status(),
-          DecodeSequenceRecord(bytes).status(), DecodeCompressedSequenceRecord(bytes).status()}) {
+          DecodeSequenceRecord(bytes).status(), DecodeCompressedSequenceRecord(bytes).status(),
+          DecodeCheckpointRecord(bytes).status()}) {
       EXPECT_TRUE(status.ok() || status.code() == absl::StatusCode::kDataLoss) << status;
     }
   }

@@ -16,7 +16,7 @@
 #include "cli/verbs/verbs.h"
 #include "pleat/base/status.h"
 #include "pleat/local/describe_file.h"
-#include "pleat/local/retention.h"
+#include "pleat/local/retention_flags.h"
 #include "pleat/local/scrubber.h"
 #include "pleat/store/store_backup.h"
 #include "pleat/store/store_check.h"
@@ -30,8 +30,7 @@ using nlohmann::ordered_json;
 struct StoreVerbOptions {
   std::string action, folder, target;
   bool fast = false;
-  RetentionRules retention;
-  double job_days = 0, upload_hours = 7 * 24;
+  RetentionFlags retention;
 };
 
 ordered_json ProblemsJson(const std::vector<StoreProblem>& problems) {
@@ -193,32 +192,23 @@ absl::Status RunScrub(const StoreVerbOptions& options, const Session& session,
 
 // What a server's retention does every minute.
 absl::Status RunSweep(const StoreVerbOptions& options, const Session& session) {
-  RetentionRules rules = options.retention;
-  rules.max_upload_age = absl::Hours(options.upload_hours);
-  if (options.job_days > 0) rules.max_job_age = absl::Hours(24 * options.job_days);
   std::vector<std::string> removed, problems;
   PLEAT_ASSIGN_OR_RETURN(std::unique_ptr<Store> store, OpenStore(options.folder, &problems));
   StoredFiles files(std::move(store), {});
-  RunRetention({.files = &files,
-                .jobs = JobsInRows(&files),
-                .on_removed = [&](const std::string& text) { removed.push_back(text); }},
-               rules);
+  RunRetention(
+      {.files = &files, .on_removed = [&](const std::string& text) { removed.push_back(text); }},
+      RulesOf(options.retention));
   return PrintSentences(options, session, removed, problems);
 }
 
 void AddSweepFlags(CLI::App* verb, StoreVerbOptions* options) {
-  verb->add_option("--keep-jobs", options->retention.max_ended_jobs,
-                   "sweep: jobs that have ended and stay, the newest; 0 = all")
-      ->check(CLI::Range(int64_t{0}, int64_t{1'000'000'000}))
-      ->capture_default_str();
-  verb->add_option("--keep-jobs-days", options->job_days,
-                   "sweep: days that a job stays after its end; 0 = for ever")
-      ->check(CLI::Range(0., 36'500.))
-      ->capture_default_str();
-  verb->add_option("--keep-uploads-hours", options->upload_hours,
-                   "sweep: hours that what has arrived of an upload stays after its last byte")
-      ->check(CLI::Range(0., 876'000.))
-      ->capture_default_str();
+  VisitRetentionFlags(
+      options->retention, 0,
+      [verb](const char* flag, auto& value, const char* help, double least, double most) {
+        verb->add_option(flag, value, absl::StrCat("sweep: ", help))
+            ->check(CLI::Range(least, most))
+            ->capture_default_str();
+      });
 }
 
 absl::Status RunStore(const StoreVerbOptions& options, const Session& session) {

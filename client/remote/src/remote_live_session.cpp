@@ -38,6 +38,7 @@
 #include "pleat/base/status.h"
 #include "pleat/service/limits.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
+#include "pleat/wire/limit_messages.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
 
@@ -212,8 +213,10 @@ class RemoteLiveSession final : public LiveSession {
       frame->draco.clear();
       frame->positions.resize(3, 0);
       if (response.rejection().code() == 0) return BrokenSession("a rejection without an error");
-      return absl::Status(static_cast<absl::StatusCode>(response.rejection().code()),
-                          response.rejection().message());
+      return WithLimitDetails(
+          absl::Status(static_cast<absl::StatusCode>(response.rejection().code()),
+                       response.rejection().message()),
+          response.rejection().details());
     }
     frame->number = response.frame().number();
     frame->confidence = response.frame().confidence();

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "pleat/base/processor_time.h"
+
 namespace pleat {
 
 void ParallelFor(int num_items, int num_threads, const std::function<void(int)>& body) {
@@ -33,7 +35,13 @@ void ParallelFor(int num_items, int num_threads, const std::function<void(int)>&
     }
   };
   std::vector<std::thread> threads;
-  for (int i = 1; i < num_threads; ++i) threads.emplace_back(work);
+  ProcessorTimeMeter* const meter = ProcessorTimeMeter::OfThisThread();
+  for (int i = 1; i < num_threads; ++i) {
+    threads.emplace_back([&work, meter] {
+      const ProcessorTimeMeter::Scope counted(meter);
+      work();
+    });
+  }
   work();
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);

@@ -1,16 +1,12 @@
 // The format: docs/formats/token_file.md.
 #include "pleat/identity/token_file.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/file.h"
+#include "pleat/base/file_lock.h"
 #include "pleat/base/status.h"
 
 namespace pleat {
@@ -64,30 +60,6 @@ absl::StatusOr<Token> ReadToken(const ordered_json& object) {
   return token;
 }
 
-// The lock on a file beside the tokens, because the file of the tokens itself is replaced.
-class TokenLock {
- public:
-  static absl::StatusOr<TokenLock> Take(const std::string& path) {
-    const int fd = open((path + ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    if (fd < 0) return ErrnoStatus(errno, absl::StrCat("cannot open '", path, ".lock'"));
-    TokenLock lock(fd);
-    while (flock(fd, LOCK_EX) != 0) {
-      if (errno != EINTR) {
-        return ErrnoStatus(errno, absl::StrCat("cannot lock '", path, ".lock'"));
-      }
-    }
-    return lock;
-  }
-  TokenLock(TokenLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  ~TokenLock() {
-    if (fd_ >= 0) close(fd_);
-  }
-
- private:
-  explicit TokenLock(int fd) : fd_(fd) {}
-  int fd_;
-};
-
 }  // namespace
 
 absl::StatusOr<std::vector<Token>> ParseTokens(std::string_view json) {
@@ -134,7 +106,8 @@ absl::StatusOr<std::vector<Token>> ReadTokens(const std::string& path) {
 
 absl::Status ChangeTokens(const std::string& path,
                           absl::FunctionRef<absl::Status(std::vector<Token>*)> change) {
-  PLEAT_ASSIGN_OR_RETURN(const TokenLock lock, TokenLock::Take(path));
+  // On a file beside the tokens, because the file of the tokens itself is replaced.
+  PLEAT_ASSIGN_OR_RETURN(const FileLock lock, FileLock::Wait(path + ".lock", 0600));
   PLEAT_ASSIGN_OR_RETURN(std::vector<Token> tokens, ReadTokens(path));
   PLEAT_RETURN_IF_ERROR(change(&tokens));
   return WriteFile(path, FormatTokens(tokens), 0600);

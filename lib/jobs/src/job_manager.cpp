@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "job_clocks.h"
 #include "pleat/base/limit_refusal.h"
 #include "pleat/base/random_id.h"
 #include "pleat/base/status.h"
@@ -17,43 +18,12 @@ namespace {
 // Jobs take seconds to minutes, so places in the queue become free at that pace.
 constexpr absl::Duration kRetryAfter = absl::Seconds(10);
 
-// Two projects may choose the same request id, and neither must notice.
-std::string RequestKey(const JobInfo& info) {
-  return absl::StrCat(info.project, "\n", info.request_id);
-}
-
 std::string MakeJobId() { return "job-" + RandomHexId(2); }
-
-// How long a job is in each of its stages.
-class StageClock {
- public:
-  explicit StageClock(const JobManagerOptions& options) : options_(options) {}
-  ~StageClock() { Enter(""); }
-
-  void Enter(const std::string& stage) {
-    if (!options_.on_stage) return;
-    std::lock_guard lock(mutex_);
-    if (stage == stage_) return;
-    const double now = options_.clock();
-    if (!stage_.empty()) options_.on_stage(stage_, now - since_);
-    stage_ = stage;
-    since_ = now;
-  }
-
- private:
-  const JobManagerOptions& options_;
-  std::mutex mutex_;
-  std::string stage_;  // guarded by mutex_, as is the next; empty before the first
-  double since_ = 0;
-};
 
 }  // namespace
 
-JobManager::JobManager(JobManagerOptions options, RunJob run, SaveJob save, EraseJob erase)
-    : options_(std::move(options)),
-      run_(std::move(run)),
-      save_(std::move(save)),
-      erase_(std::move(erase)) {}
+JobManager::JobManager(JobManagerOptions options, RunJob run, JobJournal* journal)
+    : options_(std::move(options)), run_(std::move(run)), journal_(journal) {}
 
 JobManager::~JobManager() { Shutdown(); }
 
@@ -89,7 +59,7 @@ void JobManager::RestoreRunning(JobSnapshot snapshot, bool ran_alone) {
             " times while this job was running alone; it may need more memory than there is")),
         options_.wall_clock());
   }
-  Save(job.get());
+  if (Save(job.get()) && is_hopeless) return;
   std::lock_guard lock(mutex_);
   if (!is_hopeless) suspects_.insert(job->id());
   Register(std::move(job));
@@ -99,7 +69,6 @@ void JobManager::Register(std::shared_ptr<JobStateMachine> job) {
   const JobInfo info = job->snapshot().info;
   const uint64_t number = next_number_++;
   order_.emplace(number, info.id);
-  if (!info.request_id.empty()) ids_by_request_.emplace(RequestKey(info), info.id);
   if (info.state == JobState::kQueued) queue_.Add(job, info.client);
   jobs_.emplace(info.id, Registered{std::move(job), number});
 }
@@ -110,18 +79,25 @@ void JobManager::Start() {
   }
 }
 
-absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::FindRequest(
-    const JobInfo& draft) const {
-  const auto id = ids_by_request_.find(RequestKey(draft));
-  if (id == ids_by_request_.end()) return nullptr;
-  const std::shared_ptr<JobStateMachine>& job = jobs_.at(id->second).job;
-  const JobInfo info = job->snapshot().info;
+// Every job is in the journal before it can be seen, so the journal alone knows all requests.
+absl::StatusOr<std::optional<JobInfo>> JobManager::FindRequest(const JobInfo& draft) const {
+  if (draft.request_id.empty()) return std::nullopt;
+  const absl::StatusOr<StoredJob> stored = journal_->FindRequest(draft.project, draft.request_id);
+  if (absl::IsNotFound(stored.status())) return std::nullopt;
+  PLEAT_RETURN_IF_ERROR(stored.status());
+  const JobInfo& info = stored->info;
   if (info.sequence_ids != draft.sequence_ids || info.options.index() != draft.options.index()) {
     return absl::AlreadyExistsError(absl::StrCat("the request_id of this call made job '", info.id,
                                                  "', which works on something else; choose request "
                                                  "ids at random"));
   }
-  return job;
+  if (const auto job = FindUnfinished(info.id, info.project)) return job->snapshot().info;
+  if (IsFinal(info.state)) return info;
+  // It has ended in this moment, and may be deleted already.
+  absl::StatusOr<StoredJob> ended = journal_->Read(info.project, info.id);
+  if (absl::IsNotFound(ended.status())) return std::nullopt;
+  PLEAT_RETURN_IF_ERROR(ended.status());
+  return std::move(ended->info);
 }
 
 absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
@@ -130,16 +106,16 @@ absl::StatusOr<JobInfo> JobManager::Create(JobInfo draft) {
   draft.created = options_.wall_clock();
   auto job = std::make_shared<JobStateMachine>(draft, 0, options_.clock);
   std::lock_guard creating(create_mutex_);
+  if (shutting_down()) return absl::UnavailableError("the server is shutting down");
+  PLEAT_ASSIGN_OR_RETURN(std::optional<JobInfo> known, FindRequest(draft));
+  if (known) return *std::move(known);
   {
     std::lock_guard lock(mutex_);
-    if (shutting_down()) return absl::UnavailableError("the server is shutting down");
-    PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> known, FindRequest(draft));
-    if (known != nullptr) return known->snapshot().info;
     PLEAT_RETURN_IF_ERROR(CheckQueue(draft));
   }
   // Saved first: a job that was accepted is never lost. Saving waits for the disk, so those who ask
   // for jobs must not wait for it.
-  PLEAT_RETURN_IF_ERROR(save_(draft, 0));
+  PLEAT_RETURN_IF_ERROR(journal_->Save(draft, 0));
   {
     std::lock_guard lock(mutex_);
     Register(std::move(job));
@@ -174,76 +150,93 @@ absl::Status JobManager::CheckQueue(const JobInfo& draft) const {
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::Find(const std::string& id) const {
+std::shared_ptr<JobStateMachine> JobManager::FindUnfinished(const std::string& id,
+                                                            const std::string& project) const {
   std::lock_guard lock(mutex_);
   const auto it = jobs_.find(id);
-  if (it == jobs_.end()) return absl::NotFoundError(absl::StrCat("no job '", id, "'"));
-  return it->second.job;
+  return it != jobs_.end() && it->second.job->project() == project ? it->second.job : nullptr;
 }
 
-absl::StatusOr<JobInfo> JobManager::Get(const std::string& id) const {
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
+absl::StatusOr<std::shared_ptr<JobStateMachine>> JobManager::Find(
+    const std::string& id, const std::string& project) const {
+  for (const bool is_last : {false, true}) {
+    if (std::shared_ptr<JobStateMachine> job = FindUnfinished(id, project)) return job;
+    PLEAT_ASSIGN_OR_RETURN(StoredJob stored, journal_->Read(project, id));
+    if (IsFinal(stored.info.state) || is_last) {
+      return std::make_shared<JobStateMachine>(std::move(stored.info), stored.attempts,
+                                               options_.clock);
+    }
+    // It is saved and not yet known: whoever creates it is about to make it known.
+    std::lock_guard created(create_mutex_);
+  }
+  return absl::InternalError("unreachable");
+}
+
+absl::StatusOr<JobInfo> JobManager::Get(const std::string& id, const std::string& project) const {
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id, project));
   return job->snapshot().info;
 }
 
-void JobManager::Visit(const std::function<void(const JobInfo&)>& visit) const {
-  std::lock_guard lock(mutex_);
-  for (const auto& [number, id] : order_) visit(jobs_.at(id).job->snapshot().info);
-}
-
-std::vector<JobInfo> JobManager::List() const {
+std::vector<JobInfo> JobManager::ListUnfinished() const {
   std::vector<JobInfo> jobs;
-  Visit([&](const JobInfo& job) { jobs.push_back(job); });
+  std::lock_guard lock(mutex_);
+  for (const auto& [number, id] : order_) {
+    JobInfo info = jobs_.at(id).job->snapshot().info;
+    if (!IsFinal(info.state)) jobs.push_back(std::move(info));
+  }
   return jobs;
 }
 
-size_t JobManager::CountInState(JobState state) const {
-  std::lock_guard lock(mutex_);
-  return static_cast<size_t>(std::ranges::count_if(
-      jobs_, [state](const auto& entry) { return entry.second.job->state() == state; }));
-}
-
-absl::Status JobManager::Cancel(const std::string& id) {
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
-  bool was_waiting = false;
-  {
-    std::lock_guard lock(mutex_);
-    was_waiting = queue_.Remove(job);
-  }
+absl::Status JobManager::Cancel(const std::string& id, const std::string& project) {
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id, project));
   const absl::Time now = options_.wall_clock();
-  if (!was_waiting) return job->RequestCancel(now);  // its worker saves how it ends
+  {
+    std::unique_lock lock(mutex_);
+    while (!queue_.Remove(job)) {
+      // A worker has it, and saves how it ends; or it has ended.
+      if (job->state() != JobState::kQueued) return job->RequestCancel(now);
+      if (shutting_down() || !jobs_.contains(id)) {
+        return absl::UnavailableError(
+            absl::StrCat("job '", id, "' waits for the next start of the server"));
+      }
+      changed_.wait(lock);  // another call has it, and cancels it or gives it back
+    }
+  }
   const JobSnapshot snapshot = job->snapshot();
   JobStateMachine draft(snapshot.info, snapshot.attempts, options_.clock);
   absl::Status status = draft.RequestCancel(now);
-  if (status.ok()) status = save_(draft.snapshot().info, snapshot.attempts);
-  if (!status.ok()) {
-    {
-      std::lock_guard lock(mutex_);
-      queue_.AddFirst(job, snapshot.info.client);
-    }
-    changed_.notify_all();
-    return status;
+  if (status.ok()) status = journal_->Save(draft.snapshot().info, snapshot.attempts);
+  if (status.ok()) {
+    status = job->RequestCancel(now);
+    Forget(*job);
+  } else {
+    std::lock_guard lock(mutex_);
+    queue_.AddFirst(job, snapshot.info.client);
   }
-  return job->RequestCancel(now);
+  changed_.notify_all();
+  return status;
 }
 
-absl::Status JobManager::Delete(const std::string& id) {
-  std::lock_guard erasing(erase_mutex_);
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
+absl::Status JobManager::Delete(const std::string& id, const std::string& project) {
+  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id, project));
   const JobInfo info = job->snapshot().info;
   if (!IsFinal(info.state)) {
     return absl::FailedPreconditionError(
         absl::StrCat("job '", id, "' is ", JobStateName(info.state),
                      "; only jobs that have ended are deleted, so cancel it first"));
   }
-  PLEAT_RETURN_IF_ERROR(erase_(info));
+  // Nothing saves a job that was seen to have ended, so nothing brings it back.
+  PLEAT_RETURN_IF_ERROR(journal_->Erase(info));
+  Forget(*job);
+  return absl::OkStatus();
+}
+
+void JobManager::Forget(const JobStateMachine& job) {
   std::lock_guard lock(mutex_);
-  const auto registered = jobs_.find(id);
+  const auto registered = jobs_.find(job.id());
+  if (registered == jobs_.end()) return;
   order_.erase(registered->second.number);
   jobs_.erase(registered);
-  const auto request = ids_by_request_.find(RequestKey(info));
-  if (request != ids_by_request_.end() && request->second == id) ids_by_request_.erase(request);
-  return absl::OkStatus();
 }
 
 void JobManager::Shutdown() {
@@ -264,30 +257,49 @@ void JobManager::Shutdown() {
   for (const auto& job : waiting) job->Wake();
 }
 
-bool JobManager::MayStartNext() const {
-  if (queue_.empty() || runs_suspect_) return false;
-  return num_running_ == 0 || !suspects_.contains(queue_.next()->id());
+JobManager::NextJob JobManager::FindNext() {
+  NextJob next;
+  if (runs_suspect_) return next;
+  // Jobs of projects that wait are passed over, and the others go on.
+  std::map<std::string, absl::Duration> waiting_times;
+  next.job = queue_.Next([&](const JobStateMachine& job) {
+    if (!options_.waiting_time) return true;
+    const auto [it, is_new] = waiting_times.emplace(job.project(), absl::ZeroDuration());
+    if (is_new) it->second = options_.waiting_time(job.project());
+    if (it->second > absl::ZeroDuration()) next.wait = std::min(next.wait, it->second);
+    return it->second <= absl::ZeroDuration();
+  });
+  // A suspect waits until it is alone, and nothing starts before it.
+  if (next.job != nullptr && num_running_ > 0 && suspects_.contains(next.job->id())) return {};
+  return next;
 }
 
 std::shared_ptr<JobStateMachine> JobManager::TakeNext() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return shutting_down() || MayStartNext(); });
+  NextJob next;
+  while (!shutting_down()) {
+    next = FindNext();
+    if (next.job != nullptr) break;
+    if (next.wait == absl::InfiniteDuration()) {
+      changed_.wait(lock);
+    } else {
+      changed_.wait_for(lock, absl::ToChronoNanoseconds(next.wait));
+    }
+  }
   if (shutting_down()) return nullptr;
-  std::shared_ptr<JobStateMachine> job = queue_.Take();
+  queue_.Take(next.job);
+  // Here, so that a job that is off the queue and queued belongs to a call that cancels it.
+  next.job->Start(options_.wall_clock());
   ++num_running_;
-  runs_suspect_ = suspects_.erase(job->id()) > 0;
-  return job;
+  runs_suspect_ = suspects_.erase(next.job->id()) > 0;
+  return next.job;
 }
 
 void JobManager::Work() {
   if (options_.in_idle_time) RunInIdleTime();
   while (const std::shared_ptr<JobStateMachine> job = TakeNext()) {
-    if (job->Start(options_.wall_clock())) {
-      Save(job.get());
-      RunOne(job.get());
-    } else {
-      SaveUnlessDeleted(job.get());  // cancelled in this moment
-    }
+    Save(job.get());
+    RunOne(job.get());
     {
       std::lock_guard lock(mutex_);
       --num_running_;
@@ -299,9 +311,11 @@ void JobManager::Work() {
 
 void JobManager::RunOne(JobStateMachine* job) {
   StageClock stages(options_);
+  JobTime time(options_, job->project());
   const Progress progress(
-      [job, &stages](const ProgressUpdate& update) {
+      [job, &stages, &time](const ProgressUpdate& update) {
         stages.Enter(update.stage);
+        time.Tell();
         job->Report(update);
       },
       [this, job] { return shutting_down() || job->cancel_requested(); });
@@ -325,8 +339,8 @@ void JobManager::RunOne(JobStateMachine* job) {
   } else if (job->cancel_requested()) {
     End(job, [&](JobStateMachine* it) { return it->Cancelled(now); });
   } else {
-    job->Requeue();          // the server shuts down; the next process goes on
-    SaveUnlessDeleted(job);  // it waits again, so it can be cancelled and deleted
+    job->Requeue();  // the server shuts down; the next process goes on
+    Save(job);
   }
 }
 
@@ -336,6 +350,7 @@ void JobManager::End(JobStateMachine* job, const EndJob& end) {
   if (!end(&draft)) return;
   if (SaveUntilDone(job, draft.snapshot())) {
     end(job);
+    Forget(*job);
   } else {
     job->Requeue();  // the store still says that it runs, so the next process runs it again
   }
@@ -343,7 +358,7 @@ void JobManager::End(JobStateMachine* job, const EndJob& end) {
 
 bool JobManager::SaveUntilDone(JobStateMachine* job, const JobSnapshot& ended) {
   for (bool is_first = true;; is_first = false) {
-    const absl::Status status = save_(ended.info, ended.attempts);
+    const absl::Status status = journal_->Save(ended.info, ended.attempts);
     if (status.ok()) return true;
     if (is_first) {
       job->AddWarning(absl::StrCat("how the job ended cannot be saved yet: ",
@@ -355,17 +370,14 @@ bool JobManager::SaveUntilDone(JobStateMachine* job, const JobSnapshot& ended) {
   }
 }
 
-void JobManager::SaveUnlessDeleted(JobStateMachine* job) {
-  std::lock_guard erasing(erase_mutex_);
-  if (Find(job->id()).ok()) Save(job);
-}
-
-void JobManager::Save(JobStateMachine* job) {
+bool JobManager::Save(JobStateMachine* job) {
   const JobSnapshot snapshot = job->snapshot();
-  if (absl::Status status = save_(snapshot.info, snapshot.attempts); !status.ok()) {
+  const absl::Status status = journal_->Save(snapshot.info, snapshot.attempts);
+  if (!status.ok()) {
     job->AddWarning(absl::StrCat("the state of the job could not be saved: ",
                                  absl::string_view(status.message())));
   }
+  return status.ok();
 }
 
 }  // namespace pleat

@@ -39,26 +39,25 @@ std::vector<JobQueue::Job> JobQueue::jobs() const {
   return jobs;
 }
 
-size_t JobQueue::Next() const {
-  size_t best = 0;
+JobQueue::Job JobQueue::Next(const MayRun& may_run) const {
+  Job best;
   uint64_t best_turn = UINT64_MAX;
-  for (size_t i = 0; i < waiting_.size(); ++i) {
-    const auto turn = last_turns_.find(waiting_[i].client);
+  for (const Waiting& waiting : waiting_) {
+    const auto turn = last_turns_.find(waiting.client);
     const uint64_t last = turn == last_turns_.end() ? 0 : turn->second;
-    if (last >= best_turn) continue;
-    best = i;
+    if (last >= best_turn || (may_run && !may_run(*waiting.job))) continue;
+    best = waiting.job;
     best_turn = last;
   }
   return best;
 }
 
-JobQueue::Job JobQueue::Take() {
-  const auto place = waiting_.begin() + static_cast<std::ptrdiff_t>(Next());
-  Waiting taken = std::move(*place);
-  waiting_.erase(place);
+void JobQueue::Take(const Job& job) {
+  const auto place = std::ranges::find(waiting_, job, &Waiting::job);
+  if (place == waiting_.end()) return;
   if (last_turns_.size() >= kMaxRememberedClients) last_turns_.clear();
-  last_turns_[taken.client] = ++num_turns_;
-  return std::move(taken.job);
+  last_turns_[place->client] = ++num_turns_;
+  waiting_.erase(place);
 }
 
 }  // namespace pleat

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "infos.h"
+#include "pleat/formats/checkpoint_file.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/sequence_file.h"
 #include "pleat/store/records.h"
@@ -24,7 +25,12 @@ absl::StatusOr<FileDescription> DescribeStoredFile(const std::string& id,
     return FileDescription{EntryKind::kCompressedSequence,
                            EncodeRecord(MakeCompressedSequenceInfo(*decoder, id, bytes.size()))};
   }
-  return absl::InvalidArgumentError("neither a sequence nor a model nor a compressed sequence");
+  if (const absl::StatusOr<CheckpointFile> checkpoint = DecodeCheckpoint(bytes); checkpoint.ok()) {
+    return FileDescription{EntryKind::kCheckpoint,
+                           EncodeRecord(CheckpointInfo{.job_id = checkpoint->job_id})};
+  }
+  return absl::InvalidArgumentError(
+      "neither a sequence nor a model nor a compressed sequence nor a checkpoint");
 }
 
 }  // namespace pleat

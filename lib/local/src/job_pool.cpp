@@ -5,37 +5,29 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "job_rows.h"
 #include "pleat/base/status.h"
 #include "pleat/store/records.h"
-#include "stored_infos.h"
 
 namespace pleat {
 
 JobPool::JobPool(StoredFiles* files, RunnerOf runner_of, const JobPoolOptions& options)
     : files_(files),
       runner_of_(std::move(runner_of)),
+      journal_(std::make_unique<JobRows>(files, options.on_state)),
       manager_(
           JobManagerOptions{.num_workers = options.num_workers,
                             .max_queued_per_client = options.max_queued_per_client,
                             .max_queued_per_project = options.max_queued_per_project,
                             .in_idle_time = options.in_idle_time,
                             .on_stage = options.on_stage,
+                            .on_processor_time = options.on_processor_time,
+                            .waiting_time = options.waiting_time,
                             .wall_clock = files->clock()},
           [this](const JobInfo& job, const Progress& progress) {
             return runner_of_(job.project).Run(job, progress);
           },
-          [this, on_state = options.on_state](const JobInfo& info, int attempts) {
-            CatalogEntry entry{.id = info.id, .record = EncodeRecord(info), .attempts = attempts};
-            entry.project = info.project;
-            const absl::Status status = files_->store().catalog().Put(EntryKind::kJob, entry);
-            if (status.ok() && on_state) on_state(info);
-            return status;
-          },
-          [this](const JobInfo& info) {
-            const absl::Status status =
-                files_->store().catalog().Delete({EntryKind::kJob, info.project}, info.id);
-            return absl::IsNotFound(status) ? absl::OkStatus() : status;
-          }) {}
+          journal_.get()) {}
 
 absl::Status JobPool::Start() {
   PLEAT_RETURN_IF_ERROR(Restore());
@@ -44,53 +36,55 @@ absl::Status JobPool::Start() {
 }
 
 absl::Status JobPool::Restore() {
-  Store& store = files_->store();
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries,
-                         store.catalog().List(EntryKind::kJob));
-  // The rigs of jobs are deleted here and nowhere else: those that no unfinished job needs any
-  // more, and those whose job was never created because the process ended in between.
-  std::vector<StoredJob> jobs;
-  std::set<std::pair<std::string, std::string>> needed_rigs;  // project and id
-  bool all_rows_are_read = true;
-  for (const CatalogEntry& entry : entries) {
-    absl::StatusOr<JobInfo> info = InfoOf<JobInfo>(entry);
-    if (!info.ok()) {
-      files_->ReportBadRow(EntryKind::kJob, entry.id, info.status());
-      all_rows_are_read = false;
-      continue;
-    }
-    if (!IsFinal(info->state)) needed_rigs.emplace(info->project, info->rig_id);
-    jobs.push_back({*std::move(info), entry.attempts});
-  }
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> rigs,
-                         store.catalog().List(EntryKind::kRig));
-  for (const CatalogEntry& rig : rigs) {
-    // A job whose row cannot be read may need any of them.
-    if (needed_rigs.contains({rig.project, rig.id}) || !all_rows_are_read) continue;
-    if (const absl::Status status = store.Delete({EntryKind::kRig, rig.project}, rig.id);
-        !status.ok()) {
-      store.Report(absl::StrCat("the rig '", rig.id, "' of an ended job cannot be removed: ",
-                                std::string(status.message())));
-    }
-  }
-  manager_.Restore(std::move(jobs));
+  PLEAT_ASSIGN_OR_RETURN(UnfinishedJobs unfinished, ReadUnfinishedJobs(files_));
+  // A job whose row cannot be read may need any of the files.
+  if (unfinished.all_rows_are_read) PLEAT_RETURN_IF_ERROR(RemoveFilesOfEndedJobs(unfinished));
+  manager_.Restore(std::move(unfinished.jobs));
   return absl::OkStatus();
 }
 
-JobsOfRetention JobPool::retention() {
-  return {.ended = [this]() -> absl::StatusOr<std::vector<EndedJob>> {
-            std::vector<EndedJob> ended;
-            manager_.Visit([&](const JobInfo& job) {
-              if (IsFinal(job.state)) ended.push_back({job.id, job.name, job.ended, job.project});
-            });
-            return ended;
-          },
-          .remove = [this](const EndedJob& job) { return manager_.Delete(job.id); },
-          .sequences_in_use = [this]() -> absl::StatusOr<std::set<SequenceOfProject>> {
-            std::set<SequenceOfProject> in_use;
-            manager_.Visit([&](const JobInfo& job) { AddSequencesInUse(job, &in_use); });
-            return in_use;
-          }};
+absl::Status JobPool::RemoveFilesOfEndedJobs(const UnfinishedJobs& unfinished) {
+  using FileOfProject = std::pair<std::string, std::string>;
+  std::set<FileOfProject> needed_rigs, unfinished_ids;
+  for (const StoredJob& job : unfinished.jobs) {
+    needed_rigs.emplace(job.info.project, job.info.rig_id);
+    unfinished_ids.emplace(job.info.project, job.info.id);
+  }
+  Store& store = files_->store();
+  const auto remove = [&store](EntryKind kind, const CatalogEntry& entry) {
+    const absl::Status status = store.Delete({kind, entry.project}, entry.id);
+    if (status.ok()) return;
+    store.Report(
+        absl::StrCat("the ", EntryKindName(kind), " '", entry.id,
+                     "' of an ended job cannot be removed: ", std::string(status.message())));
+  };
+  // Rigs are deleted here and nowhere else: those that no unfinished job needs any more, and those
+  // whose job was never created because the process ended in between.
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> rigs,
+                         store.catalog().List(EntryKind::kRig));
+  for (const CatalogEntry& rig : rigs) {
+    if (!needed_rigs.contains({rig.project, rig.id})) remove(EntryKind::kRig, rig);
+  }
+  // Checkpoints go with the end of their job, unless the process ended in between.
+  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> checkpoints,
+                         store.catalog().List(EntryKind::kCheckpoint));
+  for (const CatalogEntry& entry : checkpoints) {
+    const absl::StatusOr<CheckpointInfo> info = DecodeCheckpointRecord(entry.record);
+    if (!info.ok() || !unfinished_ids.contains({entry.project, info->job_id})) {
+      remove(EntryKind::kCheckpoint, entry);
+    }
+  }
+  return absl::OkStatus();
+}
+
+size_t JobPool::CountInState(JobState state) const {
+  const auto counts = files_->store().catalog().CountJobs();
+  if (!counts.ok()) return 0;
+  size_t num = 0;
+  for (const Catalog::JobCount& count : *counts) {
+    if (count.state == JobStateName(state)) num += static_cast<size_t>(count.num);
+  }
+  return num;
 }
 
 }  // namespace pleat

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "infos.h"
+#include "job_checkpoints.h"
 #include "pleat/base/sha256.h"
 #include "pleat/base/status.h"
 #include "pleat/character/train_with_rig.h"
@@ -67,13 +68,30 @@ absl::StatusOr<JobOutcome> JobRunner::Run(const JobInfo& job, const Progress& pr
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> JobRunner::TrainModel(
     const std::vector<MeshSequence>& clips, const std::string& rig_id, const TrainOptions& options,
-    const Progress& progress) const {
-  const TrainResources resources{.num_threads = num_threads_};
+    const TrainResources& resources, const Progress& progress) const {
   if (rig_id.empty()) return train_(clips, options, resources, nullptr, progress);
   PLEAT_ASSIGN_OR_RETURN(const std::string text, files_->Read(rig_id));
   PLEAT_ASSIGN_OR_RETURN(const RigFile file, DecodeUserRig(text));
   PLEAT_ASSIGN_OR_RETURN(const UserRig rig, ResolveRig(file, clips[0]));
   return TrainCharacterWithRig(clips, rig, options, resources, nullptr, progress);
+}
+
+absl::StatusOr<std::shared_ptr<const CharacterModel>> JobRunner::TrainFromCheckpoint(
+    const std::vector<MeshSequence>& clips, const JobInfo& job, const TrainOptions& options,
+    const Progress& progress) const {
+  JobCheckpoints checkpoints(files_, job);
+  const std::optional<TrainingCheckpoint> checkpoint = checkpoints.Load();
+  TrainResources resources;
+  resources.num_threads = num_threads_;
+  resources.on_checkpoint = [&](const TrainingCheckpoint& done) { checkpoints.Save(done); };
+  if (checkpoint) {
+    resources.resume = &*checkpoint;
+    auto model = TrainModel(clips, job.rig_id, options, resources, progress);
+    if (model.ok() || absl::IsCancelled(model.status())) return model;
+    checkpoints.Discard(model.status());
+    resources.resume = nullptr;
+  }
+  return TrainModel(clips, job.rig_id, options, resources, progress);
 }
 
 absl::StatusOr<JobOutcome> JobRunner::Train(const JobInfo& job, const TrainOptions& options,
@@ -86,8 +104,9 @@ absl::StatusOr<JobOutcome> JobRunner::Train(const JobInfo& job, const TrainOptio
     PLEAT_RETURN_IF_ERROR(
         reading.Report(static_cast<double>(clips.size()) / job.sequence_ids.size()));
   }
-  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
-                         TrainModel(clips, job.rig_id, options, progress.Stage("train", .02, .98)));
+  PLEAT_ASSIGN_OR_RETURN(
+      std::shared_ptr<const CharacterModel> model,
+      TrainFromCheckpoint(clips, job, options, progress.Stage("train", .02, .98)));
   if (model->name() != job.name) {
     CharacterModel::Parts parts = model->parts();
     parts.name = job.name;

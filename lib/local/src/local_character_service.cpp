@@ -22,7 +22,6 @@ absl::StatusOr<std::unique_ptr<LocalCharacterService>> LocalCharacterService::Op
     ModelCache* const models = &service->model_cache_;
     service->sweeper_ = std::make_unique<Sweeper>(
         RetentionTarget{.files = &service->default_->files(),
-                        .jobs = service->jobs_->retention(),
                         .on_model_removed = [models](const std::string& id) { models->Erase(id); },
                         .on_removed = options.on_removed},
         options.retention, options.sweep_seconds);
@@ -53,7 +52,15 @@ LocalCharacterService::LocalCharacterService(const LocalServiceOptions& options,
                      .max_queued_per_project = options.project.max_queued_jobs,
                      .in_idle_time = options.jobs_in_idle_time,
                      .on_state = options.on_job_state,
-                     .on_stage = options.on_job_stage});
+                     .on_stage = options.on_job_stage,
+                     .on_processor_time =
+                         [this](const std::string& project, double seconds) {
+                           OfProject(project).job_time().Charge(seconds);
+                         },
+                     .waiting_time =
+                         [this](const std::string& project) {
+                           return OfProject(project).job_time().TimeUntilFree();
+                         }});
   default_ = &OfProject(kDefaultProject);
 }
 
@@ -75,6 +82,31 @@ LocalProject& LocalCharacterService::OfProject(const std::string& name) {
                             .num_threads_per_job = options_.num_threads_per_job});
   }
   return *project;
+}
+
+std::vector<ProjectUse> LocalCharacterService::ProjectUses() {
+  std::map<std::string, ProjectUse> uses;
+  if (const auto bytes = store_->catalog().ListProjectBytes(); bytes.ok()) {
+    for (const auto& [project, stored] : *bytes) uses[project].stored_bytes = stored;
+  }
+  if (const auto counts = store_->catalog().CountJobs(); counts.ok()) {
+    for (const Catalog::JobCount& count : *counts) {
+      uses[count.project].jobs[count.state] = static_cast<size_t>(count.num);
+    }
+  }
+  {
+    std::lock_guard lock(projects_mutex_);
+    for (const auto& [name, project] : projects_) {
+      uses[name].frames = project->frames().used();
+      uses[name].job_cpu_seconds = project->job_time().used();
+    }
+  }
+  std::vector<ProjectUse> list;
+  for (auto& [name, use] : uses) {
+    use.project = name;
+    list.push_back(std::move(use));
+  }
+  return list;
 }
 
 double LocalCharacterService::FreeDiskBytes() const {

@@ -52,6 +52,11 @@ class LocalSubscription final : public JobSubscription {
 
 }  // namespace
 
+absl::Status LocalJobs::CheckProject() {
+  PLEAT_RETURN_IF_ERROR(files_->ReserveRoom(1).status());  // for the result
+  return job_time_ == nullptr ? absl::OkStatus() : job_time_->Take(0);
+}
+
 absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request) {
   PLEAT_RETURN_IF_ERROR(request.rig.empty() ? ValidateTrainOptions(request.options)
                                             : CheckOptionsWithRig(request.options));
@@ -60,7 +65,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateTraining(const TrainingRequest& request
     return absl::InvalidArgumentError(absl::StrCat(
         "a training job needs 1 to ", files_->limits().max_clips, " sequences, not ", num_clips));
   }
-  PLEAT_RETURN_IF_ERROR(files_->ReserveRoom(1).status());  // for the result
+  PLEAT_RETURN_IF_ERROR(CheckProject());
   JobInfo draft;
   draft.project = files_->project();
   std::vector<SequenceInfo> clips;
@@ -89,7 +94,7 @@ absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& r
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(request.options));
   PLEAT_ASSIGN_OR_RETURN(SequenceInfo info, sequences_->Get(request.sequence_id));
   PLEAT_RETURN_IF_ERROR(runner_.CheckMemory(request.options, {info}));
-  PLEAT_RETURN_IF_ERROR(files_->ReserveRoom(1).status());  // for the result
+  PLEAT_RETURN_IF_ERROR(CheckProject());
   JobInfo draft;
   draft.project = files_->project();
   draft.sequence_ids = {request.sequence_id};
@@ -101,39 +106,32 @@ absl::StatusOr<JobInfo> LocalJobs::CreateCompression(const CompressionRequest& r
   return pool_->manager().Create(std::move(draft));
 }
 
-absl::StatusOr<std::shared_ptr<JobStateMachine>> LocalJobs::Find(const std::string& id) const {
-  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job, pool_->manager().Find(id));
-  if (job->snapshot().info.project == files_->project()) return job;
-  return absl::NotFoundError(absl::StrCat("no job '", id, "'"));  // the manager's words
-}
-
 absl::StatusOr<JobInfo> LocalJobs::Get(const std::string& id) {
-  PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<JobStateMachine> job, Find(id));
-  return job->snapshot().info;
+  return pool_->manager().Get(id, files_->project());
 }
 
 absl::StatusOr<Page<JobInfo>> LocalJobs::ListPage(const PageRequest& request) {
   PLEAT_ASSIGN_OR_RETURN(Page<JobInfo> page, ListStoredPage<JobInfo>(files_, request));
-  // The rows give the order; how far a job is, the manager knows better.
+  // The rows give the order; how far a job is that has not ended, the manager knows better.
   for (JobInfo& info : page.items) {
+    if (IsFinal(info.state)) continue;
     if (absl::StatusOr<JobInfo> now = Get(info.id); now.ok()) info = *std::move(now);
   }
   return page;
 }
 
 absl::Status LocalJobs::Cancel(const std::string& id) {
-  PLEAT_RETURN_IF_ERROR(Find(id).status());
-  return pool_->manager().Cancel(id);
+  return pool_->manager().Cancel(id, files_->project());
 }
 
 absl::Status LocalJobs::Delete(const std::string& id) {
-  PLEAT_RETURN_IF_ERROR(Find(id).status());
-  return pool_->manager().Delete(id);
+  return pool_->manager().Delete(id, files_->project());
 }
 
 absl::StatusOr<std::unique_ptr<JobSubscription>> LocalJobs::Subscribe(
     const std::string& id, std::function<void()> listener) {
-  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job, Find(id));
+  PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<JobStateMachine> job,
+                         pool_->manager().Find(id, files_->project()));
   return std::make_unique<LocalSubscription>(&pool_->manager(), std::move(job),
                                              std::move(listener));
 }

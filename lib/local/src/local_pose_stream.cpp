@@ -36,7 +36,7 @@
 namespace pleat {
 
 LocalPoseStream::LocalPoseStream(std::unique_ptr<LocalPoseSession> session, const LiveRules& rules,
-                                 FrameQuota* frames, PoseBatcher* batcher, LiveListener* listener)
+                                 ProjectQuota* frames, PoseBatcher* batcher, LiveListener* listener)
     : frames_(frames),
       batcher_(batcher),
       listener_(listener),

@@ -6,10 +6,10 @@
 #include <mutex>
 #include <vector>
 
-#include "pleat/local/frame_quota.h"
 #include "pleat/local/live_queue.h"
 #include "pleat/local/pose_batcher.h"
 #include "pleat/local/pose_session.h"
+#include "pleat/local/project_quota.h"
 #include "pleat/service/pose_service.h"
 
 namespace pleat {
@@ -20,7 +20,7 @@ class LocalPoseStream final : public PoseStream, private PoseWork {
  public:
   // frames: what each pose that is evaluated is charged to; null: nothing.
   LocalPoseStream(std::unique_ptr<LocalPoseSession> session, const LiveRules& rules,
-                  FrameQuota* frames, PoseBatcher* batcher, LiveListener* listener);
+                  ProjectQuota* frames, PoseBatcher* batcher, LiveListener* listener);
 
   const StreamHeader& header() const override { return session_->header(); }
   bool HasRoom() const override;
@@ -38,7 +38,7 @@ class LocalPoseStream final : public PoseStream, private PoseWork {
   // Fills reply_.frame, or says why it cannot.
   absl::Status Encode(const PoseQuery& query, double evaluate_us);
 
-  FrameQuota* const frames_;
+  ProjectQuota* const frames_;
   PoseBatcher* const batcher_;
   LiveListener* const listener_;
   // Everything up to start_ belongs to the one answer that is under way and needs no lock. Apart

@@ -8,7 +8,8 @@ LocalProject::LocalProject(const SharedByProjects& shared, const LocalProjectOpt
               .share_content = options.project.share_content,
               .max_bytes = options.project.max_bytes,
               .upload_memory = &shared.memory->uploads}),
-      frames_(options.project.frames_per_second, options.name),
+      frames_(ProjectQuota::OfFrames(options.name, options.project.frames_per_second)),
+      job_time_(ProjectQuota::OfJobTime(options.name, options.project.job_cpu_seconds_per_hour)),
       sequences_(&files_),
       models_(&files_, shared.model_cache),
       compressed_sequences_(&files_, &shared.memory->decoders, &frames_),
@@ -16,6 +17,6 @@ LocalProject::LocalProject(const SharedByProjects& shared, const LocalProjectOpt
       jobs_(&files_, &sequences_,
             JobRunner(&files_, &sequences_, options.train, options.num_threads_per_job,
                       &shared.memory->jobs),
-            shared.jobs) {}
+            shared.jobs, &job_time_) {}
 
 }  // namespace pleat

@@ -1,15 +1,32 @@
 #include "pleat/local/retention.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "job_rows.h"
 #include "pleat/base/status.h"
 #include "stored_infos.h"
 
 namespace pleat {
 namespace {
+
+// Jobs that are in memory together while they are removed.
+constexpr int64_t kJobsTogether = 1000;
+
+using SequenceOfProject = std::pair<std::string, std::string>;  // project and id
+
+std::set<SequenceOfProject> SequencesInUse(const UnfinishedJobs& unfinished) {
+  std::set<SequenceOfProject> in_use;
+  for (const StoredJob& job : unfinished.jobs) {
+    for (const std::string& id : job.info.sequence_ids) in_use.emplace(job.info.project, id);
+  }
+  return in_use;
+}
 
 // One run over everything that may have to go.
 class RetentionPass {
@@ -21,28 +38,74 @@ class RetentionPass {
     RemoveJobs();
     RemoveExpired<ModelInfo>({});
     RemoveExpired<CompressedSequenceInfo>({});
-    if (const auto in_use = target_.jobs.sequences_in_use(); in_use.ok()) {
-      RemoveExpired<SequenceInfo>(*in_use);
+    if (const auto unfinished = ReadUnfinishedJobs(target_.files); !unfinished.ok()) {
+      Report("the sequences that jobs work on", unfinished.status());
     } else {
-      Report("the sequences that jobs work on", in_use.status());
+      RemoveExpired<SequenceInfo>(SequencesInUse(*unfinished));
     }
     RemoveUploads();
     return num_removed_;
   }
 
  private:
+  // By age first, then those that are too many still, of each project the ones that ended first.
   void RemoveJobs() {
-    absl::StatusOr<std::vector<EndedJob>> jobs = target_.jobs.ended();
-    if (!jobs.ok()) return Report("the jobs that have ended", jobs.status());
-    for (const JobToRemove& it : ChooseJobsToRemove(*std::move(jobs), rules_, now_)) {
-      const std::string what = absl::StrCat("the job '", it.job.id, "' ('", it.job.name, "')");
-      const absl::Status status = target_.jobs.remove(it.job);
-      if (status.ok()) {
-        Removed(what, it.why);
-      } else if (!absl::IsNotFound(status)) {  // somebody else deleted it
-        Report(what, status);
+    if (const auto noted = ReadUnfinishedJobs(target_.files); !noted.ok()) {
+      return Report("jobs", noted.status());
+    }
+    const auto counts = target_.files->store().catalog().CountJobs();
+    if (!counts.ok()) return Report("jobs", counts.status());
+    std::map<std::string, int64_t> num_ended;  // by project
+    for (const Catalog::JobCount& count : *counts) {
+      for (const JobState state : {JobState::kSucceeded, JobState::kFailed, JobState::kCancelled}) {
+        if (count.state == JobStateName(state)) num_ended[count.project] += count.num;
       }
     }
+    for (auto& [project, num] : num_ended) {
+      if (rules_.max_job_age < absl::InfiniteDuration()) {
+        num -= RemoveEndedJobs(
+            project, {.from = 1, .before = absl::ToUnixMillis(now_ - rules_.max_job_age)}, num,
+            absl::StrCat("it ended more than ", absl::FormatDuration(rules_.max_job_age), " ago"));
+      }
+      if (rules_.max_ended_jobs > 0) {
+        RemoveEndedJobs(
+            project, {}, num - rules_.max_ended_jobs,
+            absl::StrCat("only the newest ", rules_.max_ended_jobs, " that have ended stay"));
+      }
+    }
+  }
+
+  struct TimeRange {
+    int64_t from = 0, before = INT64_MAX;  // milliseconds since 1970; 0: not known
+  };
+  // Removes at most `max_jobs` of those that ended in the range, and returns how many are gone.
+  int64_t RemoveEndedJobs(const std::string& project, const TimeRange& range, int64_t max_jobs,
+                          const std::string& why) {
+    int64_t num_gone = 0;
+    while (num_gone < max_jobs) {
+      const int num = static_cast<int>(std::min(max_jobs - num_gone, kJobsTogether));
+      const auto entries =
+          target_.files->store().catalog().ListEndedJobs(project, range.from, range.before, num);
+      if (!entries.ok()) Report("jobs", entries.status());
+      if (!entries.ok() || entries->empty()) break;
+      for (const CatalogEntry& entry : *entries) {
+        if (!RemoveJob(entry, why)) return num_gone;  // the next run goes on
+        ++num_gone;
+      }
+    }
+    return num_gone;
+  }
+
+  bool RemoveJob(const CatalogEntry& entry, const std::string& why) {
+    const absl::StatusOr<JobInfo> job = InfoOf<JobInfo>(entry);
+    const std::string what = absl::StrCat("the job '", entry.id, "'",
+                                          job.ok() ? absl::StrCat(" ('", job->name, "')") : "");
+    const absl::Status status =
+        target_.files->store().catalog().Delete({EntryKind::kJob, entry.project}, entry.id);
+    if (status.ok()) Removed(what, why);
+    if (status.ok() || absl::IsNotFound(status)) return true;  // or somebody else deleted it
+    Report(what, status);
+    return false;
   }
 
   template <typename Info>
@@ -103,74 +166,7 @@ class RetentionPass {
   size_t num_removed_ = 0;
 };
 
-// All rows of jobs that can be read, of all projects.
-absl::StatusOr<std::vector<JobInfo>> ReadJobs(StoredFiles* files) {
-  PLEAT_ASSIGN_OR_RETURN(const std::vector<CatalogEntry> entries,
-                         files->store().catalog().List(EntryKind::kJob));
-  std::vector<JobInfo> jobs;
-  for (const CatalogEntry& entry : entries) {
-    absl::StatusOr<JobInfo> job = InfoOf<JobInfo>(entry);
-    if (job.ok()) {
-      jobs.push_back(*std::move(job));
-    } else {
-      files->ReportBadRow(EntryKind::kJob, entry.id, job.status());
-    }
-  }
-  return jobs;
-}
-
 }  // namespace
-
-std::vector<JobToRemove> ChooseJobsToRemove(std::vector<EndedJob> jobs, const RetentionRules& rules,
-                                            absl::Time now) {
-  std::ranges::stable_sort(
-      jobs, {}, [](const EndedJob& job) { return job.ended.value_or(absl::InfinitePast()); });
-  std::map<std::string, int64_t> num_too_many;  // by project
-  for (const EndedJob& job : jobs) ++num_too_many[job.project];
-  for (auto& [project, num] : num_too_many) {
-    num = rules.max_ended_jobs == 0 ? 0 : num - rules.max_ended_jobs;
-  }
-  std::vector<JobToRemove> chosen;
-  for (EndedJob& job : jobs) {
-    const bool is_one_too_many = num_too_many[job.project]-- > 0;  // the oldest come first
-    const bool is_old = job.ended && now - *job.ended > rules.max_job_age;
-    if (is_old) {
-      chosen.push_back(
-          {std::move(job),
-           absl::StrCat("it ended more than ", absl::FormatDuration(rules.max_job_age), " ago")});
-    } else if (is_one_too_many) {
-      chosen.push_back({std::move(job), absl::StrCat("only the newest ", rules.max_ended_jobs,
-                                                     " that have ended stay")});
-    }
-  }
-  return chosen;
-}
-
-void AddSequencesInUse(const JobInfo& job, std::set<SequenceOfProject>* in_use) {
-  if (IsFinal(job.state)) return;
-  for (const std::string& id : job.sequence_ids) in_use->emplace(job.project, id);
-}
-
-JobsOfRetention JobsInRows(StoredFiles* files) {
-  return {.ended = [files]() -> absl::StatusOr<std::vector<EndedJob>> {
-            PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> jobs, ReadJobs(files));
-            std::vector<EndedJob> ended;
-            for (const JobInfo& job : jobs) {
-              if (IsFinal(job.state)) ended.push_back({job.id, job.name, job.ended, job.project});
-            }
-            return ended;
-          },
-          .remove =
-              [files](const EndedJob& job) {
-                return files->store().catalog().Delete({EntryKind::kJob, job.project}, job.id);
-              },
-          .sequences_in_use = [files]() -> absl::StatusOr<std::set<SequenceOfProject>> {
-            PLEAT_ASSIGN_OR_RETURN(const std::vector<JobInfo> jobs, ReadJobs(files));
-            std::set<SequenceOfProject> in_use;
-            for (const JobInfo& job : jobs) AddSequencesInUse(job, &in_use);
-            return in_use;
-          }};
-}
 
 size_t RunRetention(const RetentionTarget& target, const RetentionRules& rules) {
   return RetentionPass(target, rules).Run();

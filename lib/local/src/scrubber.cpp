@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/stop_signal.h"
 #include "pleat/base/thread_priority.h"
-#include "stop_signal.h"
 
 namespace pleat {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "pleat/base/stop_signal.h"
 #include "pleat/base/thread_priority.h"
-#include "stop_signal.h"
 
 namespace pleat {
 

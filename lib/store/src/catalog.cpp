@@ -4,15 +4,14 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "catalog_rows.h"
 #include "catalog_schema.h"
 #include "database.h"
 #include "pleat/base/status.h"
 #include "sync_hook_vfs.h"
 
 namespace pleat {
-namespace {
 
-// The rows of a statement of Catalog::Select.
 absl::StatusOr<std::vector<CatalogEntry>> ReadEntries(Statement* statement) {
   std::vector<CatalogEntry> entries;
   while (true) {
@@ -26,15 +25,16 @@ absl::StatusOr<std::vector<CatalogEntry>> ReadEntries(Statement* statement) {
                        .pinned = statement->Int(5) != 0,
                        .position = statement->Int64(6),
                        .project = statement->Bytes(7),
-                       .file_bytes = static_cast<uint64_t>(statement->Int64(8))});
+                       .file_bytes = static_cast<uint64_t>(statement->Int64(8)),
+                       .job = {.state = statement->Bytes(9),
+                               .ended_unix_ms = statement->Int64(10),
+                               .request_id = statement->Bytes(11)}});
   }
 }
 
 absl::Status NotThere(EntryKind kind, const std::string& id) {
   return absl::NotFoundError(absl::StrCat("no ", EntryKindName(kind), " '", id, "'"));
 }
-
-}  // namespace
 
 const char* EntryKindName(EntryKind kind) {
   switch (kind) {
@@ -48,6 +48,8 @@ const char* EntryKindName(EntryKind kind) {
       return "job";
     case EntryKind::kRig:
       return "rig";
+    case EntryKind::kCheckpoint:
+      return "checkpoint";
   }
   return "unknown";
 }
@@ -89,6 +91,7 @@ absl::StatusOr<std::unique_ptr<Catalog>> Catalog::OpenReadOnly(const std::string
   catalog->has_properties_ = version >= 2;
   catalog->has_lives_ = version >= 3;
   catalog->has_projects_ = version >= 4;
+  catalog->has_job_columns_ = version >= 5;
   PLEAT_ASSIGN_OR_RETURN(catalog->reader_, Database::Open(path, Database::Access::kReadOnly));
   return catalog;
 }
@@ -143,11 +146,29 @@ absl::Status Catalog::SetStoreId(const std::string& id) {
 
 absl::Status Catalog::Put(EntryKind kind, const CatalogEntry& entry) {
   std::lock_guard lock(writer_->mutex());
+  return PutRow(kind, entry);
+}
+
+absl::Status Catalog::PutAll(EntryKind kind, const std::vector<CatalogEntry>& entries) {
+  std::lock_guard lock(writer_->mutex());
+  PLEAT_RETURN_IF_ERROR(writer_->Execute("BEGIN"));
+  absl::Status status;
+  for (const CatalogEntry& entry : entries) {
+    status = PutRow(kind, entry);
+    if (!status.ok()) break;
+  }
+  if (status.ok()) status = writer_->Execute("COMMIT");
+  if (!status.ok()) writer_->Execute("ROLLBACK").IgnoreError();
+  return status;
+}
+
+absl::Status Catalog::PutRow(EntryKind kind, const CatalogEntry& entry) {
   Statement statement(writer_.get(),
                       "INSERT INTO entries (kind, id, record, attempts, created_ms, expires_ms,"
-                      " project, file_bytes) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)"
+                      " project, file_bytes, job_state, ended_ms, request_id)"
+                      " VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11)"
                       " ON CONFLICT (project, kind, id) DO UPDATE SET record=?3, attempts=?4,"
-                      " file_bytes=?8, expires_ms="
+                      " file_bytes=?8, job_state=?9, ended_ms=?10, request_id=?11, expires_ms="
                       "CASE WHEN expires_ms=0 OR ?6=0 THEN 0"
                       " WHEN expires_ms<?6 THEN ?6 ELSE expires_ms END");
   statement.Bind(1, EntryKindName(kind));
@@ -158,14 +179,18 @@ absl::Status Catalog::Put(EntryKind kind, const CatalogEntry& entry) {
   statement.Bind(6, entry.expires_unix_ms);
   statement.Bind(7, entry.project);
   statement.Bind(8, static_cast<int64_t>(entry.file_bytes));
+  statement.Bind(9, entry.job.state);
+  statement.Bind(10, entry.job.ended_unix_ms);
+  statement.Bind(11, entry.job.request_id);
   return statement.Step("write").status();
 }
 
 std::string Catalog::Select(const char* conditions) const {
   return absl::StrCat("SELECT id, record, attempts, ",
                       has_lives_ ? "created_ms, expires_ms, pinned" : "0, 0, 0", ", position, ",
-                      has_projects_ ? "project, file_bytes" : "'default', 0", " FROM entries ",
-                      conditions);
+                      has_projects_ ? "project, file_bytes" : "'default', 0",
+                      has_job_columns_ ? ", job_state, ended_ms, request_id" : ", '', 0, ''",
+                      " FROM entries ", conditions);
 }
 
 absl::StatusOr<CatalogEntry> Catalog::Get(const ProjectKind& kind, const std::string& id) {
@@ -183,8 +208,9 @@ absl::StatusOr<CatalogEntry> Catalog::Get(const ProjectKind& kind, const std::st
 
 absl::StatusOr<CatalogEntry> Catalog::GetInAnyProject(EntryKind kind, const std::string& id) {
   std::lock_guard lock(reader_->mutex());
-  Statement statement(reader_.get(),
-                      Select("WHERE id=?2 AND kind=?1 ORDER BY position LIMIT 1").c_str());
+  Statement statement(
+      reader_.get(),
+      Select("WHERE id=?2 AND kind=?1 AND kind <> 'job' ORDER BY position LIMIT 1").c_str());
   statement.Bind(1, EntryKindName(kind));
   statement.Bind(2, id);
   PLEAT_ASSIGN_OR_RETURN(std::vector<CatalogEntry> found, ReadEntries(&statement));
@@ -194,7 +220,12 @@ absl::StatusOr<CatalogEntry> Catalog::GetInAnyProject(EntryKind kind, const std:
 
 absl::StatusOr<std::vector<CatalogEntry>> Catalog::List(EntryKind kind) {
   std::lock_guard lock(reader_->mutex());
-  Statement statement(reader_.get(), Select("WHERE kind=?1 ORDER BY position").c_str());
+  // Files have an index of their own, which knows of no jobs.
+  Statement statement(
+      reader_.get(),
+      Select(kind == EntryKind::kJob ? "WHERE kind=?1 ORDER BY position"
+                                     : "WHERE kind=?1 AND kind <> 'job' ORDER BY position")
+          .c_str());
   statement.Bind(1, EntryKindName(kind));
   return ReadEntries(&statement);
 }
@@ -211,11 +242,10 @@ absl::StatusOr<std::vector<CatalogEntry>> Catalog::ListPage(const ProjectKind& k
   statement.Bind(2, after_position);
   statement.Bind(3, max_entries);
   statement.Bind(4, kind.project);
-  PLEAT_ASSIGN_OR_RETURN(std::vector<CatalogEntry> entries, ReadEntries(&statement));
-  num_page_steps_.fetch_add(static_cast<uint64_t>(statement.num_steps()),
-                            std::memory_order_relaxed);
-  return entries;
+  return ReadEntries(&statement);
 }
+
+uint64_t Catalog::num_read_steps() const { return reader_->num_steps(); }
 
 absl::StatusOr<uint64_t> Catalog::ProjectBytes(const std::string& project) {
   if (!has_projects_) return 0;
@@ -224,6 +254,18 @@ absl::StatusOr<uint64_t> Catalog::ProjectBytes(const std::string& project) {
   statement.Bind(1, project);
   PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
   return found ? static_cast<uint64_t>(statement.Int64(0)) : 0;
+}
+
+absl::StatusOr<std::vector<std::pair<std::string, uint64_t>>> Catalog::ListProjectBytes() {
+  std::vector<std::pair<std::string, uint64_t>> projects;
+  if (!has_projects_) return projects;
+  std::lock_guard lock(reader_->mutex());
+  Statement statement(reader_.get(), "SELECT name, file_bytes FROM projects ORDER BY name");
+  while (true) {
+    PLEAT_ASSIGN_OR_RETURN(const bool found, statement.Step("read"));
+    if (!found) return projects;
+    projects.emplace_back(statement.Bytes(0), static_cast<uint64_t>(statement.Int64(1)));
+  }
 }
 
 absl::Status Catalog::NoteFileSize(const std::string& id, uint64_t file_bytes) {

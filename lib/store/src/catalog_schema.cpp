@@ -8,7 +8,7 @@ namespace {
 
 // Version 1 had no tables but `entries`. Version 2 had neither the indexes nor the times of
 // `entries`. Version 3 knew no projects: (kind, id) alone was unique, which SQLite can only change
-// by making the table anew.
+// by making the table anew. Version 4 knew of jobs only what their records say.
 //
 // From an empty file, version 1 or version 2 to version 3.
 constexpr char kSchemaOf3[] =
@@ -23,7 +23,7 @@ constexpr char kSchemaOf3[] =
     "ALTER TABLE entries ADD COLUMN expires_ms INTEGER NOT NULL DEFAULT 0;"
     "ALTER TABLE entries ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0;";
 
-// From version 3 on. The order of rows, their positions and the next position stay.
+// From version 3. The order of rows, their positions and the next position stay.
 //
 // The triggers keep `removals` and `projects` right whatever changes the rows: an entry that goes
 // leaves the id of its file in `removals` in the same commit, and one that comes takes the id back.
@@ -68,12 +68,44 @@ constexpr char kSchemaOf4[] =
     " BEGIN UPDATE projects SET file_bytes = file_bytes + NEW.file_bytes - OLD.file_bytes"
     " WHERE name = NEW.project; END;";
 
+// From version 4. What is asked of jobs without reading them all: those that have not ended, the
+// one of a request, those that ended first, and how many there are. Rows of older versions have no
+// state until whoever can read their records notes it. The index of files holds no jobs, so that
+// looking through all files costs what the files cost.
+constexpr char kSchemaOf5[] =
+    "ALTER TABLE entries ADD COLUMN job_state TEXT NOT NULL DEFAULT '';"
+    "ALTER TABLE entries ADD COLUMN ended_ms INTEGER NOT NULL DEFAULT 0;"
+    "ALTER TABLE entries ADD COLUMN request_id TEXT NOT NULL DEFAULT '';"
+    "DROP INDEX entries_by_id;"
+    "CREATE INDEX files_by_id ON entries (id) WHERE kind <> 'job';"
+    "CREATE INDEX files_in_order ON entries (kind, position) WHERE kind <> 'job';"
+    "CREATE INDEX jobs_by_state ON entries (job_state, position) WHERE kind = 'job';"
+    "CREATE INDEX jobs_by_request ON entries (project, request_id) WHERE request_id <> '';"
+    "CREATE INDEX jobs_by_end ON entries (project, ended_ms, position)"
+    " WHERE job_state IN ('succeeded', 'failed', 'cancelled');"
+    "CREATE TABLE job_counts (project TEXT, state TEXT, num INTEGER NOT NULL,"
+    " PRIMARY KEY (project, state)) WITHOUT ROWID;"
+    "INSERT INTO job_counts SELECT project, job_state, COUNT(*) FROM entries WHERE kind = 'job'"
+    " GROUP BY project, job_state;"
+    "CREATE TRIGGER job_added AFTER INSERT ON entries WHEN NEW.kind = 'job'"
+    " BEGIN INSERT INTO job_counts VALUES (NEW.project, NEW.job_state, 1)"
+    " ON CONFLICT (project, state) DO UPDATE SET num = num + 1; END;"
+    "CREATE TRIGGER job_removed AFTER DELETE ON entries WHEN OLD.kind = 'job'"
+    " BEGIN UPDATE job_counts SET num = num - 1"
+    " WHERE project = OLD.project AND state = OLD.job_state; END;"
+    "CREATE TRIGGER job_changed AFTER UPDATE OF job_state ON entries"
+    " WHEN NEW.kind = 'job' AND NEW.job_state <> OLD.job_state"
+    " BEGIN UPDATE job_counts SET num = num - 1"
+    " WHERE project = OLD.project AND state = OLD.job_state;"
+    " INSERT INTO job_counts VALUES (NEW.project, NEW.job_state, 1)"
+    " ON CONFLICT (project, state) DO UPDATE SET num = num + 1; END;";
+
 }  // namespace
 
 std::string SchemaUpgrade(int version) {
-  return absl::StrCat("BEGIN;", version < 3 ? kSchemaOf3 : "", kSchemaOf4,
-                      "INSERT OR IGNORE INTO properties VALUES ('secret', '", RandomHexId(8),
-                      "'); PRAGMA user_version=", kCatalogVersion, "; COMMIT");
+  return absl::StrCat("BEGIN;", version < 3 ? kSchemaOf3 : "", version < 4 ? kSchemaOf4 : "",
+                      kSchemaOf5, "INSERT OR IGNORE INTO properties VALUES ('secret', '",
+                      RandomHexId(8), "'); PRAGMA user_version=", kCatalogVersion, "; COMMIT");
 }
 
 }  // namespace pleat

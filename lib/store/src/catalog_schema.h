@@ -5,7 +5,7 @@
 
 namespace pleat {
 
-inline constexpr int kCatalogVersion = 4;
+inline constexpr int kCatalogVersion = 5;
 
 // The statements that bring a catalog of `version`, 0 for an empty file, to kCatalogVersion, as one
 // transaction.

@@ -48,8 +48,16 @@ absl::Status Database::Execute(const std::string& sql) {
 }
 
 Statement::Statement(Database* database, const char* sql)
-    : database_(database->handle()),
+    : owner_(database),
+      database_(database->handle()),
       code_(sqlite3_prepare_v2(database_, sql, -1, &statement_, nullptr)) {}
+
+Statement::~Statement() {
+  if (statement_ == nullptr) return;
+  const int steps = sqlite3_stmt_status(statement_, SQLITE_STMTSTATUS_VM_STEP, 0);
+  owner_->num_steps_.fetch_add(static_cast<uint64_t>(steps), std::memory_order_relaxed);
+  sqlite3_finalize(statement_);
+}
 
 void Statement::Bind(int index, const std::string& text) {
   if (code_ != SQLITE_OK) return;

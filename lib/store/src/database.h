@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -38,11 +39,18 @@ class Database {
   // Runs statements that give no rows.
   absl::Status Execute(const std::string& sql);
 
+  // The steps that SQLite's machine has taken for all statements that are over: what they cost,
+  // without a clock.
+  uint64_t num_steps() const { return num_steps_.load(std::memory_order_relaxed); }
+
  private:
   explicit Database(sqlite3* database) : database_(database) {}
 
+  friend class Statement;
+
   std::mutex mutex_;
   sqlite3* database_;
+  std::atomic<uint64_t> num_steps_ = 0;
 };
 
 // One prepared statement with its bound values. The first call that fails, be it preparing or
@@ -50,7 +58,7 @@ class Database {
 class Statement {
  public:
   Statement(Database* database, const char* sql);
-  ~Statement() { sqlite3_finalize(statement_); }
+  ~Statement();
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
@@ -66,10 +74,8 @@ class Statement {
   int Int(int column) { return sqlite3_column_int(statement_, column); }
   int64_t Int64(int column) { return sqlite3_column_int64(statement_, column); }
 
-  // The steps that SQLite's machine has taken for this statement: what it costs, without a clock.
-  int num_steps() const { return sqlite3_stmt_status(statement_, SQLITE_STMTSTATUS_VM_STEP, 0); }
-
  private:
+  Database* const owner_;
   sqlite3* database_;
   sqlite3_stmt* statement_ = nullptr;
   int code_;

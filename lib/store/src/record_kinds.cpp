@@ -16,6 +16,8 @@ absl::Status CheckRecord(EntryKind kind, const std::string& record) {
       return DecodeJobRecord(record).status();
     case EntryKind::kRig:
       return absl::OkStatus();
+    case EntryKind::kCheckpoint:
+      return DecodeCheckpointRecord(record).status();
   }
   return absl::InternalError("an unknown kind of entry");
 }

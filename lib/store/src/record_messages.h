@@ -8,6 +8,7 @@
 #include "pleat/service/job_service.h"
 #include "pleat/service/model_service.h"
 #include "pleat/service/sequence_service.h"
+#include "pleat/store/records.h"
 #include "pleat/store/v1/records.pb.h"
 
 namespace pleat {
@@ -43,5 +44,8 @@ absl::StatusOr<ModelInfo> FromRecord(const store::v1::Model& message);
 
 store::v1::Job ToRecord(const JobInfo& info);
 absl::StatusOr<JobInfo> FromRecord(const store::v1::Job& message);
+
+store::v1::Checkpoint ToRecord(const CheckpointInfo& info);
+absl::StatusOr<CheckpointInfo> FromRecord(const store::v1::Checkpoint& message);
 
 }  // namespace pleat

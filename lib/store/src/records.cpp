@@ -182,10 +182,13 @@ absl::StatusOr<JobState> StateFromRecord(store::v1::JobState state) {
       absl::StrCat("state is ", static_cast<int>(state), ", which is unknown"));
 }
 
+absl::Status CheckJobId(const std::string& id, absl::string_view field) {
+  if (!id.empty() && id.size() <= kContentIdLength) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(field, " must have 1 to 64 bytes"));
+}
+
 absl::Status CheckJob(const store::v1::Job& message) {
-  if (message.id().empty() || message.id().size() > kContentIdLength) {
-    return absl::InvalidArgumentError("id must have 1 to 64 bytes");
-  }
+  PLEAT_RETURN_IF_ERROR(CheckJobId(message.id(), "id"));
   if (!(message.fraction() >= 0 && message.fraction() <= 1)) {  // written so that a NaN fails
     return absl::InvalidArgumentError(
         absl::StrCat("fraction is ", message.fraction(), ", not 0 to 1"));
@@ -272,6 +275,17 @@ absl::StatusOr<JobInfo> FromRecord(const store::v1::Job& message) {
   return info;
 }
 
+store::v1::Checkpoint ToRecord(const CheckpointInfo& info) {
+  store::v1::Checkpoint message;
+  message.set_job_id(info.job_id);
+  return message;
+}
+
+absl::StatusOr<CheckpointInfo> FromRecord(const store::v1::Checkpoint& message) {
+  PLEAT_RETURN_IF_ERROR(CheckJobId(message.job_id(), "job_id"));
+  return CheckpointInfo{.job_id = message.job_id()};
+}
+
 // --- bytes ---
 
 namespace {
@@ -309,6 +323,7 @@ std::string EncodeRecord(const SequenceInfo& info) { return Serialize(ToRecord(i
 std::string EncodeRecord(const JobInfo& info) { return Serialize(ToRecord(info)); }
 std::string EncodeRecord(const ModelInfo& info) { return Serialize(ToRecord(info)); }
 std::string EncodeRecord(const CompressedSequenceInfo& info) { return Serialize(ToRecord(info)); }
+std::string EncodeRecord(const CheckpointInfo& info) { return Serialize(ToRecord(info)); }
 
 absl::StatusOr<SequenceInfo> DecodeSequenceRecord(const std::string& bytes) {
   return Parse<store::v1::Sequence>(bytes, "sequence");
@@ -321,6 +336,9 @@ absl::StatusOr<ModelInfo> DecodeModelRecord(const std::string& bytes) {
 }
 absl::StatusOr<CompressedSequenceInfo> DecodeCompressedSequenceRecord(const std::string& bytes) {
   return Parse<store::v1::CompressedSequence>(bytes, "compressed sequence");
+}
+absl::StatusOr<CheckpointInfo> DecodeCheckpointRecord(const std::string& bytes) {
+  return Parse<store::v1::Checkpoint>(bytes, "checkpoint");
 }
 
 }  // namespace pleat

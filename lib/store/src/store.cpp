@@ -62,8 +62,8 @@ absl::StatusOr<std::unique_ptr<Store>> Store::Open(const StoreOptions& options) 
     return ErrnoStatus(error.value(), absl::StrCat("cannot create '", data_dir, "'"));
   }
   std::unique_ptr<Store> store(new Store(options));
-  PLEAT_ASSIGN_OR_RETURN(FolderLock lock, FolderLock::Take(data_dir));
-  store->lock_ = std::make_unique<FolderLock>(std::move(lock));
+  PLEAT_ASSIGN_OR_RETURN(FileLock lock, LockFolder(data_dir));
+  store->lock_ = std::make_unique<FileLock>(std::move(lock));
   PLEAT_ASSIGN_OR_RETURN(
       BlobStore blobs,
       BlobStore::Open(data_dir + "/blobs", options.reserve_bytes, options.before_sync));

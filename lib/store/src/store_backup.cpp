@@ -46,7 +46,7 @@ class StoreCopier {
   absl::StatusOr<StoreCopy> Run(const Progress& progress) {
     PLEAT_ASSIGN_OR_RETURN(source_, Catalog::OpenReadOnly(CatalogPath(from_)));
     PLEAT_RETURN_IF_ERROR(Prepare());
-    PLEAT_ASSIGN_OR_RETURN(const FolderLock lock, FolderLock::Take(to_));
+    PLEAT_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(to_));
     PLEAT_ASSIGN_OR_RETURN(BlobStore to_blobs, BlobStore::Open(to_ + "/blobs", 0));
     PLEAT_RETURN_IF_ERROR(WriteBlobsId(to_blobs.folder(), store_id_));
     const std::string snapshot_path = CatalogPath(to_) + ".new";

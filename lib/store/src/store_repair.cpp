@@ -36,7 +36,7 @@ class StoreRepairer {
       return absl::NotFoundError(
           absl::StrCat("'", data_dir_, "' has no folder 'blobs': it is no data folder"));
     }
-    PLEAT_ASSIGN_OR_RETURN(const FolderLock lock, FolderLock::Take(data_dir_));
+    PLEAT_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(data_dir_));
     PLEAT_RETURN_IF_ERROR(OpenCatalog());
     PLEAT_ASSIGN_OR_RETURN(BlobStore blobs, BlobStore::Open(data_dir_ + "/blobs", 0));
     blobs_ = std::make_unique<BlobStore>(std::move(blobs));

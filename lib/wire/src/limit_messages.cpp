@@ -23,35 +23,43 @@ absl::Duration DelayOf(const google::rpc::RetryInfo& info) {
 
 }  // namespace
 
-std::string LimitDetailsOf(const absl::Status& status) {
+void AddLimitDetails(const absl::Status& status, DetailList* details) {
   const std::optional<LimitRefusal> refusal = LimitRefusalOf(status);
-  if (!refusal) return "";
-  google::rpc::Status message;
-  message.set_code(static_cast<int>(status.code()));
-  message.set_message(ToValidUtf8(std::string(status.message())));
+  if (!refusal) return;
   google::rpc::QuotaFailure failure;
   google::rpc::QuotaFailure::Violation* violation = failure.add_violations();
   violation->set_subject(refusal->subject);
   violation->set_description(refusal->limit);
-  message.add_details()->PackFrom(failure);
+  details->Add()->PackFrom(failure);
   if (refusal->retry_after) {
     google::rpc::RetryInfo info;
     const int64_t milliseconds = absl::ToInt64Milliseconds(*refusal->retry_after);
     info.mutable_retry_delay()->set_seconds(milliseconds / 1000);
     info.mutable_retry_delay()->set_nanos(static_cast<int32_t>(milliseconds % 1000) * 1'000'000);
-    message.add_details()->PackFrom(info);
+    details->Add()->PackFrom(info);
   }
+}
+
+std::string LimitDetailsOf(const absl::Status& status) {
+  google::rpc::Status message;
+  AddLimitDetails(status, message.mutable_details());
+  if (message.details().empty()) return "";
+  message.set_code(static_cast<int>(status.code()));
+  message.set_message(ToValidUtf8(std::string(status.message())));
   return message.SerializeAsString();
 }
 
 absl::Status WithLimitDetails(const absl::Status& status, const std::string& details) {
   google::rpc::Status message;
-  if (!absl::IsResourceExhausted(status) || details.empty() || !message.ParseFromString(details)) {
-    return status;
-  }
+  if (details.empty() || !message.ParseFromString(details)) return status;
+  return WithLimitDetails(status, message.details());
+}
+
+absl::Status WithLimitDetails(const absl::Status& status, const DetailList& details) {
+  if (!absl::IsResourceExhausted(status)) return status;
   LimitRefusal refusal;
   bool is_refusal = false;
-  for (const google::protobuf::Any& detail : message.details()) {
+  for (const google::protobuf::Any& detail : details) {
     google::rpc::QuotaFailure failure;
     google::rpc::RetryInfo info;
     if (detail.UnpackTo(&failure) && failure.violations_size() > 0) {

@@ -5,8 +5,10 @@
 #include <string>
 
 #include "named_ids.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/observe/request_scope.h"
 #include "pleat/reactors/admission.h"
+#include "pleat/wire/limit_messages.h"
 #include "trace_context.h"
 
 namespace pleat {
@@ -35,9 +37,11 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
     if (listener_ != nullptr) listener_->on_start(facts_.method);
   }
   ~ListeningInterceptor() override {
+    facts_.project = running_->ProjectOf(*call_);
     entry_.reset();
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-    const RequestScope scope(facts_.request_id);
+    const RequestTag request{.id = facts_.request_id, .project = facts_.project};
+    const RequestScope scope(request);
     if (listener_ != nullptr) listener_->on_end(facts_, status_, elapsed.count());
   }
 
@@ -49,7 +53,7 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
       NoteRequest(methods->GetRecvMessage());
     }
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
-      status_ = methods->GetSendStatus().error_code();
+      NoteStatus(methods->GetSendStatus());
     }
     methods->Proceed();
   }
@@ -70,6 +74,14 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
       facts_.trace_id = TraceIdOf({trace->second.data(), trace->second.size()});
     }
     entry_.emplace(running_, origin, facts_.request_id, facts_.is_stream, call_);
+  }
+
+  void NoteStatus(const grpc::Status& status) {
+    status_ = status.error_code();
+    if (status_ != grpc::StatusCode::RESOURCE_EXHAUSTED) return;
+    const auto refusal =
+        LimitRefusalOf(WithLimitDetails(absl::ResourceExhaustedError(""), status.error_details()));
+    if (refusal) facts_.limit = refusal->limit;
   }
 
   // The first message says what the call is about; later ones are data or poses.

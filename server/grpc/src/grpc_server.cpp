@@ -219,6 +219,7 @@ class GrpcServerImpl final : public GrpcServer {
     std::unique_ptr<HandlerContext>& context = contexts_[project];
     if (context == nullptr) {
       context = std::make_unique<HandlerContext>(context_);  // with the same calls and threads
+      context->project = project;
       SetServices(of_project(project), context.get());
     }
     return context.get();

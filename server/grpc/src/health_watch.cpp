@@ -23,21 +23,14 @@ HealthWatch::HealthWatch(grpc::HealthCheckServiceInterface* health,
 }
 
 HealthWatch::~HealthWatch() {
-  {
-    std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  changed_.notify_all();
+  stop_.Set();
   if (thread_.joinable()) thread_.join();
 }
 
 void HealthWatch::Run() {
-  std::unique_lock lock(mutex_);
-  while (!changed_.wait_for(lock, period_, [this] { return stop_; })) {
-    lock.unlock();  // a disk in trouble may take long to answer
-    const absl::Status status = probe_();
-    lock.lock();
-    if (!stop_) Show(status);
+  while (stop_.Pause(period_)) {
+    const absl::Status status = probe_();  // a disk in trouble may take long to answer
+    if (!stop_.is_set()) Show(status);
   }
 }
 

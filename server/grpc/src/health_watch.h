@@ -4,12 +4,11 @@
 #include <grpcpp/health_check_service_interface.h>
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <thread>
 
 #include "absl/status/status.h"
+#include "pleat/base/stop_signal.h"
 
 namespace pleat {
 
@@ -37,9 +36,7 @@ class HealthWatch {
   const std::function<absl::Status()> probe_;
   const std::chrono::milliseconds period_;
   bool can_store_ = true;  // of the thread
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool stop_ = false;  // guarded by mutex_
+  StopSignal stop_;
   std::thread thread_;
 };
 

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <thread>
 
+#include "pleat/base/stop_signal.h"
 #include "pleat/identity/token_registry.h"
 #include "pleat/reactors/running_calls.h"
 
@@ -23,14 +22,7 @@ class RevocationWatch {
   RevocationWatch& operator=(const RevocationWatch&) = delete;
 
  private:
-  void Run();
-
-  TokenRegistry* const tokens_;
-  RunningCalls* const calls_;
-  const std::chrono::milliseconds period_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool stop_ = false;  // guarded by mutex_
+  StopSignal stop_;
   std::thread thread_;
 };
 

@@ -153,7 +153,7 @@ class LiveReactor final
       if (cancelled_) {
         Keep(absl::CancelledError("the client is gone"));
       } else {
-        const RequestScope scope(request_id());
+        const RequestScope scope(request());
         LogFailure("LiveSession", status_);
       }
       const grpc::Status status = ToGrpcStatus(status_);

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
 #include "pleat/reactors/grpc_status.h"
+#include "pleat/wire/limit_messages.h"
 #include "pleat/wire/skeleton_messages.h"
 #include "pleat/wire/stream_messages.h"
 
@@ -83,6 +84,7 @@ v1::PoseRejection RejectionOf(uint64_t number, const absl::Status& status) {
   message.set_number(number);
   message.set_code(static_cast<int>(status.code()));
   message.set_message(ToGrpcStatus(status).error_message());
+  AddLimitDetails(status, message.mutable_details());
   return message;
 }
 

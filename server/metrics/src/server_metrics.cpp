@@ -34,44 +34,47 @@ std::string MethodLabel(const std::string& method) {
                                                                                    : "other";
 }
 
-// Gauges that ask for their values in the moment of a scrape.
-class ReadGauges final : public prometheus::Collectable {
+using Samples = std::function<std::vector<ServerMetrics::Sample>()>;
+
+// Metrics that are asked for their values in the moment of a scrape.
+class ReadMetrics final : public prometheus::Collectable {
  public:
-  void Add(const std::string& name, const std::string& help, const ServerMetrics::Labels& labels,
-           std::function<double()> read) {
+  void Add(const std::string& name, const std::string& help, bool is_counter, Samples read) {
     std::lock_guard lock(mutex_);
     Family& family = families_[name];
     if (family.help.empty()) family.help = help;
-    family.gauges.push_back({labels, std::move(read)});
+    family.is_counter = is_counter;
+    family.reads.push_back(std::move(read));
   }
 
   std::vector<prometheus::MetricFamily> Collect() const override {
     std::lock_guard lock(mutex_);
     std::vector<prometheus::MetricFamily> result;
-    for (const auto& [name, family] : families_) {
-      prometheus::MetricFamily out;
-      out.name = name;
-      out.help = family.help;
-      out.type = prometheus::MetricType::Gauge;
-      for (const Gauge& gauge : family.gauges) {
-        prometheus::ClientMetric metric;
-        for (const auto& [label, value] : gauge.labels) metric.label.push_back({label, value});
-        metric.gauge.value = gauge.read();
-        out.metric.push_back(std::move(metric));
-      }
-      result.push_back(std::move(out));
-    }
+    for (const auto& [name, family] : families_) result.push_back(family.Read(name));
     return result;
   }
 
  private:
-  struct Gauge {
-    ServerMetrics::Labels labels;
-    std::function<double()> read;
-  };
   struct Family {
     std::string help;
-    std::vector<Gauge> gauges;
+    bool is_counter = false;
+    std::vector<Samples> reads;
+
+    prometheus::MetricFamily Read(const std::string& name) const {
+      prometheus::MetricFamily out;
+      out.name = name;
+      out.help = help;
+      out.type = is_counter ? prometheus::MetricType::Counter : prometheus::MetricType::Gauge;
+      for (const Samples& read : reads) {
+        for (const ServerMetrics::Sample& sample : read()) {
+          prometheus::ClientMetric metric;
+          for (const auto& [label, value] : sample.labels) metric.label.push_back({label, value});
+          (is_counter ? metric.counter.value : metric.gauge.value) = sample.value;
+          out.metric.push_back(std::move(metric));
+        }
+      }
+      return out;
+    }
   };
   mutable std::mutex mutex_;
   std::map<std::string, Family> families_;  // guarded by mutex_
@@ -82,7 +85,7 @@ class ReadGauges final : public prometheus::Collectable {
 class ServerMetrics::Impl {
  public:
   const std::shared_ptr<prometheus::Registry> registry = std::make_shared<prometheus::Registry>();
-  const std::shared_ptr<ReadGauges> gauges = std::make_shared<ReadGauges>();
+  const std::shared_ptr<ReadMetrics> read_metrics = std::make_shared<ReadMetrics>();
   prometheus::Family<prometheus::Counter>& calls =
       prometheus::BuildCounter()
           .Name("pleat_rpcs_total")
@@ -107,10 +110,34 @@ class ServerMetrics::Impl {
           .Name("pleat_job_stage_seconds")
           .Help("How long jobs were in each of their stages")
           .Register(*registry);
+  prometheus::Family<prometheus::Counter>& project_calls =
+      prometheus::BuildCounter()
+          .Name("pleat_project_rpcs_total")
+          .Help("Calls that have ended, by project")
+          .Register(*registry);
+  prometheus::Family<prometheus::Counter>& refusals =
+      prometheus::BuildCounter()
+          .Name("pleat_refused_rpcs_total")
+          .Help("Calls that were refused for a limit, by limit")
+          .Register(*registry);
   std::unique_ptr<prometheus::Exposer> exposer;  // ends first: it reads the others
 };
 
-ServerMetrics::ServerMetrics() : impl_(std::make_unique<Impl>()) {}
+// What is counted is there with 0 from the start, because a rate needs a value before the first
+// event.
+ServerMetrics::ServerMetrics() : impl_(std::make_unique<Impl>()) {
+  for (const char* step : {"query", "encode", "send"}) {
+    impl_->frame_seconds.Add({{"step", step}}, kSeconds);
+  }
+  for (const char* stage :
+       {"read", "rig", "fit", "refine", "detail", "learn", "measure", "compress", "store"}) {
+    impl_->stage_seconds.Add({{"stage", stage}}, kStageSeconds);
+  }
+  for (const char* limit : {"--memory-bytes", "--request-bytes", "--max-open-streams",
+                            "--max-streams-per-client", "--max-queued-jobs-per-client"}) {
+    impl_->refusals.Add({{"limit", limit}});
+  }
+}
 ServerMetrics::~ServerMetrics() = default;
 
 void ServerMetrics::CallStarted(const std::string& method) {
@@ -125,6 +152,14 @@ void ServerMetrics::CallEnded(const std::string& method, const std::string& stat
   impl_->seconds.Add({{"method", label}}, kSeconds).Observe(seconds);
 }
 
+void ServerMetrics::CallOfProject(const std::string& project) {
+  impl_->project_calls.Add({{"project", project_labels_.LabelOf(project)}}).Increment();
+}
+
+void ServerMetrics::CallRefused(const std::string& limit) {
+  impl_->refusals.Add({{"limit", limit}}).Increment();
+}
+
 void ServerMetrics::FrameStep(const std::string& step, double seconds) {
   impl_->frame_seconds.Add({{"step", step}}, kSeconds).Observe(seconds);
 }
@@ -135,12 +170,19 @@ void ServerMetrics::JobStage(const std::string& stage, double seconds) {
 
 void ServerMetrics::AddGauge(const std::string& name, const std::string& help, const Labels& labels,
                              std::function<double()> read) {
-  impl_->gauges->Add(name, help, labels, std::move(read));
+  AddSeries(name, help, /*is_counter=*/false, [labels, read = std::move(read)] {
+    return std::vector<Sample>{{labels, read()}};
+  });
+}
+
+void ServerMetrics::AddSeries(const std::string& name, const std::string& help, bool is_counter,
+                              std::function<std::vector<Sample>()> read) {
+  impl_->read_metrics->Add(name, help, is_counter, std::move(read));
 }
 
 std::string ServerMetrics::Text() const {
   std::vector<prometheus::MetricFamily> families = impl_->registry->Collect();
-  for (prometheus::MetricFamily& family : impl_->gauges->Collect()) {
+  for (prometheus::MetricFamily& family : impl_->read_metrics->Collect()) {
     families.push_back(std::move(family));
   }
   return prometheus::TextSerializer().Serialize(families);
@@ -154,7 +196,7 @@ absl::Status ServerMetrics::Serve(const std::string& address) {
         absl::StrCat("cannot answer metrics at '", address, "': the address is wrong or in use"));
   }
   impl_->exposer->RegisterCollectable(impl_->registry);
-  impl_->exposer->RegisterCollectable(impl_->gauges);
+  impl_->exposer->RegisterCollectable(impl_->read_metrics);
   return absl::OkStatus();
 }
 

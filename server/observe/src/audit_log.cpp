@@ -25,6 +25,7 @@ std::string Line(const AuditEntry& entry, int64_t unix_ms) {
   ordered_json line{{"time", TimeText(unix_ms)}, {"rpc", entry.rpc}, {"peer", entry.peer}};
   if (!entry.token_id.empty()) line["token"] = entry.token_id;
   if (!entry.token_name.empty()) line["name"] = entry.token_name;
+  if (!entry.project.empty()) line["project"] = entry.project;
   if (!entry.ids.empty()) line["ids"] = entry.ids;
   if (!entry.trace_id.empty()) line["trace"] = entry.trace_id;
   if (!entry.request_id.empty()) line["request"] = entry.request_id;

@@ -23,9 +23,11 @@ class TextMessage final : public spdlog::custom_flag_formatter {
               spdlog::memory_buf_t& out) override {
     const std::string text = EscapeControls({message.payload.data(), message.payload.size()});
     out.append(text.data(), text.data() + text.size());
-    const std::string& request = CurrentRequestId();
-    if (request.empty()) return;
-    const std::string mark = absl::StrCat(" [request ", request, "]");
+    const RequestTag& request = CurrentRequest();
+    if (request.id.empty()) return;
+    const std::string mark =
+        absl::StrCat(" [request ", request.id, request.project.empty() ? "" : ", project ",
+                     request.project, "]");
     out.append(mark.data(), mark.data() + mark.size());
   }
   std::unique_ptr<custom_flag_formatter> clone() const override {
@@ -33,14 +35,17 @@ class TextMessage final : public spdlog::custom_flag_formatter {
   }
 };
 
-// A member of a JSON object, with the comma before it, when the thread works for a request. Ids
-// have no character that JSON escapes (RequestIdOr).
+// Members of a JSON object, with commas before them, when the thread works for a request. Ids and
+// names of projects have no character that JSON escapes (RequestIdOr, CheckProjectName).
 class JsonRequest final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg&, const std::tm&, spdlog::memory_buf_t& out) override {
-    const std::string& request = CurrentRequestId();
-    if (request.empty()) return;
-    const std::string member = absl::StrCat(",\"request\":\"", request, "\"");
+    const RequestTag& request = CurrentRequest();
+    if (request.id.empty()) return;
+    std::string member = absl::StrCat(",\"request\":\"", request.id, "\"");
+    if (!request.project.empty()) {
+      absl::StrAppend(&member, ",\"project\":\"", request.project, "\"");
+    }
     out.append(member.data(), member.data() + member.size());
   }
   std::unique_ptr<custom_flag_formatter> clone() const override {

@@ -11,17 +11,17 @@ namespace {
 
 constexpr size_t kMaxIdBytes = 64;
 
-const std::string kNone;
-thread_local const std::string* current_id = &kNone;
+const RequestTag kNone;
+thread_local const RequestTag* current_request = &kNone;
 
 }  // namespace
 
-const std::string& CurrentRequestId() { return *current_id; }
+const RequestTag& CurrentRequest() { return *current_request; }
 
-RequestScope::RequestScope(const std::string& request_id)
-    : outer_(std::exchange(current_id, &request_id)) {}
+RequestScope::RequestScope(const RequestTag& request)
+    : outer_(std::exchange(current_request, &request)) {}
 
-RequestScope::~RequestScope() { current_id = outer_; }
+RequestScope::~RequestScope() { current_request = outer_; }
 
 std::string RequestIdOr(const std::string& chosen) {
   const bool is_good = !chosen.empty() && chosen.size() <= kMaxIdBytes &&

@@ -62,8 +62,10 @@ std::string ShownToken(const grpc::ServerContextBase& call) {
   return std::string(value);
 }
 
-absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
-                                      const char* rpc) {
+namespace {
+
+absl::StatusOr<HandlerContext*> FindContext(HandlerContext* context,
+                                            const grpc::ServerContextBase& call, const char* rpc) {
   ServerCalls& calls = *context->calls;
   if (calls.tokens == nullptr || !calls.tokens->required()) return context;
   const RpcRule* rule = FindRpcRule(rpc);
@@ -75,6 +77,15 @@ absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::Serve
                                                     ScopeName(rule->scope)));
   }
   return calls.of_project ? calls.of_project(token.project) : context;
+}
+
+}  // namespace
+
+absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
+                                      const char* rpc) {
+  PLEAT_ASSIGN_OR_RETURN(HandlerContext* const admitted, FindContext(context, call, rpc));
+  context->calls->running_calls.NoteProject(call, admitted->project);
+  return admitted;
 }
 
 absl::StatusOr<HandlerContext*> AdmitStream(HandlerContext* context,

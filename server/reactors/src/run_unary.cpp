@@ -112,12 +112,13 @@ void LogFailure(const char* rpc, const absl::Status& status) {
 }
 
 grpc::ServerUnaryReactor* RunUnary(const UnaryCall& call, UnaryHandler handler) {
-  const std::string request_id = call.context->calls->running_calls.RequestIdOf(*call.call);
-  const RequestScope scope(request_id);
+  RequestTag request{.id = call.context->calls->running_calls.RequestIdOf(*call.call)};
+  const RequestScope scope(request);
   const uint64_t flow =
       std::hash<std::string>()(call.call->peer()) | 1;  // one per connection, never 0
-  return StartReactor<UnaryReactor>(call, Admit(call.context, *call.call, call.rpc), flow,
-                                    std::move(handler));
+  absl::StatusOr<HandlerContext*> admitted = Admit(call.context, *call.call, call.rpc);
+  if (admitted.ok()) request.project = (*admitted)->project;
+  return StartReactor<UnaryReactor>(call, std::move(admitted), flow, std::move(handler));
 }
 
 }  // namespace pleat

@@ -59,6 +59,18 @@ std::string RunningCalls::RequestIdOf(const grpc::ServerContextBase& context) {
   return call == by_context_.end() ? std::string() : call->second->request_id;
 }
 
+void RunningCalls::NoteProject(const grpc::ServerContextBase& context, const std::string& project) {
+  std::lock_guard lock(mutex_);
+  const auto call = by_context_.find(&context);
+  if (call != by_context_.end()) call->second->project = project;
+}
+
+std::string RunningCalls::ProjectOf(const grpc::ServerContextBase& context) {
+  std::lock_guard lock(mutex_);
+  const auto call = by_context_.find(&context);
+  return call == by_context_.end() ? std::string() : call->second->project;
+}
+
 int RunningCalls::NumStreams(const std::string& client) {
   std::lock_guard lock(mutex_);
   const auto streams = streams_.find(client);

@@ -11,8 +11,10 @@
 
 #include "client/remote/scripted_server.h"
 #include "client/remote/tetrahedron_stream.h"
+#include "pleat/base/limit_refusal.h"
 #include "pleat/remote/live_session.h"
 #include "pleat/service/limits.h"
+#include "pleat/wire/limit_messages.h"
 #include "support/status_matchers.h"
 
 namespace pleat {
@@ -58,6 +60,10 @@ class LiveSessionScriptTest : public testing::Test {
     response.mutable_rejection()->set_number(number);
     response.mutable_rejection()->set_code(code);
     response.mutable_rejection()->set_message("a joint is missing");
+    AddLimitDetails(
+        RefuseForLimit(
+            {.limit = "--project-frames-per-second", .retry_after = absl::Milliseconds(40)}, ""),
+        response.mutable_rejection()->mutable_details());
     stream->Write(response);
   }
   // To the client's last word.
@@ -166,6 +172,22 @@ TEST_F(LiveSessionScriptTest, ErrorsOfOnePoseLeaveTheSessionAlive) {
   EXPECT_FALSE(session->ended());
   session->SendDone();
   ExpectEnd(*session, absl::StatusCode::kOutOfRange);
+}
+
+TEST_F(LiveSessionScriptTest, ARefusedPoseSaysWhenToComeAgain) {
+  Serve({[](LiveStream* stream) {
+    ReadPoses(stream, 1);
+    Reject(stream, 0, 8);
+    return End(stream);
+  }});
+  PLEAT_ASSERT_OK_AND_ASSIGN(const auto session, Open());
+  SendPoses(*session, 1);
+  session->SendDone();
+  LiveFrame frame;
+  const absl::Status status = session->Receive(&frame);
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted);
+  ASSERT_TRUE(LimitRefusalOf(status));
+  EXPECT_EQ(LimitRefusalOf(status)->retry_after, absl::Milliseconds(40));
 }
 
 TEST_F(LiveSessionScriptTest, NoMorePosesAreSupersededThanWereSent) {

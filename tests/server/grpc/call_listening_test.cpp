@@ -1,7 +1,9 @@
 #include "call_listening.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pleat/base/limit_refusal.h"
 #include "pleat/observe/request_scope.h"
 #include "pleat/v1/job_service.grpc.pb.h"
 #include "pleat/v1/model_service.grpc.pb.h"
@@ -94,6 +96,59 @@ TEST_F(CallListeningTest, AnAuditedCallTellsWhatItIsAbout) {
   EXPECT_TRUE(end.facts.audited);
   EXPECT_EQ(end.facts.ids, std::vector<std::string>{kId});
   EXPECT_FALSE(end.facts.peer.empty());
+}
+
+TEST_F(CallListeningTest, ACallTellsItsProjectOnceItWasLetIn) {
+  TestTokens tokens;
+  const NewToken robot = tokens.Add("R2", "read", "robots");
+  std::vector<std::string> in_handler;
+  MockServer server({.call_listener = heard_.listener(),
+                     .tokens = tokens.registry(),
+                     .of_project = [&](auto&&) { return &mock_.service; }});
+  EXPECT_CALL(mock_.service.mock_models, Get(kId)).WillOnce([&](auto&&...) {
+    in_handler.push_back(CurrentRequest().project);
+    return absl::NotFoundError("none");
+  });
+  EXPECT_CALL(mock_.service.mock_jobs, Subscribe).WillOnce([&](auto&&...) {
+    in_handler.push_back(CurrentRequest().project);
+    return absl::NotFoundError("none");
+  });
+  v1::GetModelRequest request;
+  v1::GetModelResponse response;
+  request.set_id(kId);
+  const auto models = v1::ModelService::NewStub(server.channel);
+  grpc::ClientContext known, unknown, watching;
+  known.AddMetadata("authorization", "Bearer " + robot.text);
+  EXPECT_FALSE(models->GetModel(&known, request, &response).ok());
+  EXPECT_EQ(heard_.WaitForEnd().facts.project, "robots");
+  // Whoever shows the id of a token and not its secret is nobody.
+  unknown.AddMetadata("authorization",
+                      "Bearer pleat_" + robot.token.id + "_" + std::string(64, '0'));
+  EXPECT_FALSE(models->GetModel(&unknown, request, &response).ok());
+  EXPECT_EQ(heard_.WaitForEnd().facts.project, "");
+  watching.AddMetadata("authorization", "Bearer " + robot.text);
+  const auto watch =
+      v1::JobService::NewStub(server.channel)->WatchJob(&watching, v1::WatchJobRequest());
+  v1::WatchJobResponse update;
+  EXPECT_FALSE(watch->Read(&update));
+  EXPECT_FALSE(watch->Finish().ok());
+  EXPECT_EQ(heard_.WaitForEnd().facts.project, "robots");
+  EXPECT_THAT(in_handler, testing::ElementsAre("robots", "robots"));
+}
+
+TEST_F(CallListeningTest, ARefusedCallTellsTheLimit) {
+  EXPECT_CALL(mock_.service.mock_models, Get(kId))
+      .WillOnce(testing::Return(RefuseForLimit({.limit = "--request-bytes"}, "too much")))
+      .WillOnce(testing::Return(absl::ResourceExhaustedError("for another reason")));
+  v1::GetModelRequest request;
+  v1::GetModelResponse response;
+  request.set_id(kId);
+  const auto stub = v1::ModelService::NewStub(mock_.channel);
+  for (const char* limit : {"--request-bytes", ""}) {
+    grpc::ClientContext context;
+    EXPECT_FALSE(stub->GetModel(&context, request, &response).ok());
+    EXPECT_EQ(heard_.WaitForEnd().facts.limit, limit);
+  }
 }
 
 TEST_F(CallListeningTest, AnUnauditedCallTellsNoIds) {

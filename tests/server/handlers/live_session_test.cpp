@@ -1,7 +1,9 @@
 #include <deque>
 #include <mutex>
 
+#include "pleat/base/limit_refusal.h"
 #include "pleat/v1/pose_service.grpc.pb.h"
+#include "pleat/wire/limit_messages.h"
 #include "server/handlers/mock_server.h"
 
 namespace pleat {
@@ -9,6 +11,8 @@ namespace {
 
 using ::testing::_;
 using ::testing::HasSubstr;
+
+constexpr uint64_t kRefused = 429;  // the pose that a quota refuses
 
 // Answers every pose at once, on the caller's thread pool, with its number as the frame. A pose
 // that could not be read is rejected.
@@ -38,7 +42,12 @@ class EchoStream final : public PoseStream {
       {
         std::lock_guard lock(mutex_);
         reply.number = poses_.front().number;
-        if (poses_.front().status.ok()) {
+        if (reply.number == kRefused) {
+          reply.frame = RefuseForLimit({.subject = "project:robots",
+                                        .limit = "--project-frames-per-second",
+                                        .retry_after = absl::Milliseconds(40)},
+                                       "too many frames");
+        } else if (poses_.front().status.ok()) {
           reply.frame = EncodedFrame{.draco = std::to_string(reply.number), .evaluate_us = 7};
         } else {
           reply.frame = poses_.front().status;
@@ -127,6 +136,20 @@ TEST_F(LiveSessionHandlerTest, APoseThatCannotBeShownIsAnAnswer) {
   EXPECT_EQ(responses_[1].rejection().number(), 10u);
   EXPECT_EQ(responses_[1].rejection().code(), 3);
   EXPECT_EQ(responses_[1].report().evaluate_us(), 0u);
+  EXPECT_EQ(responses_[2].frame().number(), 11u);
+}
+
+TEST_F(LiveSessionHandlerTest, APoseThatAQuotaRefusesSaysWhenToComeAgain) {
+  ExpectStream();
+  EXPECT_TRUE(Exchange({Start(), PoseMessage(kRefused), PoseMessage(11)}).ok());
+  ASSERT_EQ(responses_.size(), 3u);
+  const v1::PoseRejection& rejection = responses_[1].rejection();
+  EXPECT_EQ(rejection.code(), 8);
+  const auto refusal = LimitRefusalOf(
+      WithLimitDetails(absl::ResourceExhaustedError(rejection.message()), rejection.details()));
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->limit, "--project-frames-per-second");
+  EXPECT_EQ(refusal->retry_after, absl::Milliseconds(40));
   EXPECT_EQ(responses_[2].frame().number(), 11u);
 }
 

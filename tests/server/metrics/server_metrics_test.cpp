@@ -103,6 +103,35 @@ TEST(ServerMetricsTest, StepsAndStagesAreSummed) {
   EXPECT_THAT(text, HasSubstr(R"(pleat_frame_seconds_sum{step="query"} 0.001)"));
 }
 
+TEST(ServerMetricsTest, WhatIsCountedIsThereFromTheStart) {
+  const std::string text = ServerMetrics().Text();
+  EXPECT_THAT(text, HasSubstr(R"(pleat_frame_seconds_count{step="send"} 0)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_job_stage_seconds_count{stage="learn"} 0)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_refused_rpcs_total{limit="--memory-bytes"} 0)"));
+}
+
+TEST(ServerMetricsTest, CallsOfProjectsAndRefusalsAreCounted) {
+  ServerMetrics metrics;
+  metrics.CallOfProject("robots");
+  metrics.CallOfProject("robots");
+  metrics.CallOfProject("");  // not let in
+  metrics.CallRefused("--project-bytes");
+  const std::string text = metrics.Text();
+  EXPECT_THAT(text, HasSubstr(R"(pleat_project_rpcs_total{project="robots"} 2)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_project_rpcs_total{project="none"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(pleat_refused_rpcs_total{limit="--project-bytes"} 1)"));
+}
+
+TEST(ServerMetricsTest, ASeriesHasAsManyValuesAsItsReaderGives) {
+  ServerMetrics metrics;
+  std::vector<ServerMetrics::Sample> samples = {{{{"project", "a"}}, 1}, {{{"project", "b"}}, 2}};
+  metrics.AddSeries("pleat_x_total", "x", /*is_counter=*/true, [&] { return samples; });
+  EXPECT_THAT(metrics.Text(), HasSubstr("# TYPE pleat_x_total counter"));
+  EXPECT_THAT(metrics.Text(), HasSubstr(R"(pleat_x_total{project="b"} 2)"));
+  samples.pop_back();
+  EXPECT_THAT(metrics.Text(), Not(HasSubstr(R"(project="b")")));
+}
+
 TEST(ServerMetricsTest, AnAddressThatIsWrongIsSaid) {
   ServerMetrics metrics;
   EXPECT_THAT(metrics.Serve("nonsense"),

@@ -83,16 +83,20 @@ TEST_F(LoggingTest, WhatProtocolBuffersSayIsADebugLine) {
 TEST_F(LoggingTest, ALineNamesTheRequestThatItIsAbout) {
   const auto log = [] {
     spdlog::info("before");
-    const std::string id = "r-1";
-    const RequestScope scope(id);
+    RequestTag request{.id = "r-1"};
+    const RequestScope scope(request);
     spdlog::info("inside");
+    request.project = "robots";  // the caller was let in
+    spdlog::info("admitted");
   };
   const std::string text = Captured({}, log);
   EXPECT_THAT(text, HasSubstr("before\n"));
   EXPECT_THAT(text, HasSubstr("inside [request r-1]\n"));
+  EXPECT_THAT(text, HasSubstr("admitted [request r-1, project robots]\n"));
   const std::string json = Captured({.json = true}, log);
   EXPECT_THAT(json, HasSubstr(R"("message":"before"})"));
   EXPECT_THAT(json, HasSubstr(R"("message":"inside","request":"r-1"})"));
+  EXPECT_THAT(json, HasSubstr(R"("message":"admitted","request":"r-1","project":"robots"})"));
 }
 
 }  // namespace

@@ -11,11 +11,12 @@ namespace {
 TEST(RequestScopeTest, ScopesNestAndBelongToTheirThread) {
   EXPECT_EQ(CurrentRequestId(), "");
   {
-    const std::string a = "a", b = "b";
+    const RequestTag a{.id = "a"}, b{.id = "b", .project = "robots"};
     const RequestScope outer(a);
     {
       const RequestScope inner(b);
       EXPECT_EQ(CurrentRequestId(), "b");
+      EXPECT_EQ(CurrentRequest().project, "robots");
     }
     EXPECT_EQ(CurrentRequestId(), "a");
     std::thread([] { EXPECT_EQ(CurrentRequestId(), ""); }).join();

@@ -2,6 +2,7 @@
 // ARCHITECTURE.md).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
 #include "pleat/character/train_options.h"
+#include "pleat/character/training_checkpoint.h"
 #include "pleat/mesh/mesh_sequence.h"
 
 namespace pleat {
@@ -20,6 +22,11 @@ struct TrainResources {
   // True: the caller has looked for frames that jump and the clips have none (FindFrameJumps), so
   // that they are not looked for again.
   bool clips_are_known_without_jumps = false;
+  // Where another process that trained the same came to. Null: the training begins anew. One that
+  // does not fit the clips is kInvalidArgument (CheckTrainingCheckpoint).
+  const TrainingCheckpoint* resume = nullptr;
+  // Receives what is finished after each stage that takes long, from the thread that computes.
+  std::function<void(const TrainingCheckpoint& checkpoint)> on_checkpoint{};
 };
 
 // What a training run reports beside the model. The record of the model holds the rest.

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -30,16 +31,17 @@ class JobQueue {
   int NumOfProject(const std::string& project) const;
   std::vector<Job> jobs() const;  // in the order in which they came
 
-  // The queue must not be empty.
-  const Job& next() const { return waiting_[Next()].job; }
-  Job Take();
+  using MayRun = std::function<bool(const JobStateMachine& job)>;
+  // The job whose turn it is among those that may run; null when there is none. Empty: all may.
+  Job Next(const MayRun& may_run = {}) const;
+  // Takes the turn of its client for a job that waits.
+  void Take(const Job& job);
 
  private:
   struct Waiting {
     Job job;
     std::string client;
   };
-  size_t Next() const;
 
   std::deque<Waiting> waiting_;
   std::map<std::string, uint64_t> last_turns_;  // by client; those without one are not there

@@ -43,7 +43,9 @@ class JobStateMachine {
 
   JobSnapshot snapshot() const;
   JobState state() const;
-  const std::string& id() const { return state_.info.id; }  // never changes
+  // Neither ever changes.
+  const std::string& id() const { return state_.info.id; }
+  const std::string& project() const { return state_.info.project; }
 
   // Each returns false, and does nothing, when the job is not in the state that it starts from.
   // now: the time of day, which the job keeps as that of its start or end.

@@ -1,15 +1,18 @@
 // The jobs of all projects of this process: one queue, one set of workers, rows in the catalog.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "pleat/jobs/job_manager.h"
 #include "pleat/local/job_runner.h"
-#include "pleat/local/retention.h"
 #include "pleat/local/stored_files.h"
 
 namespace pleat {
+
+struct UnfinishedJobs;  // src/job_rows.h
 
 struct JobPoolOptions {
   int num_workers = 1;              // jobs that run at the same time
@@ -18,8 +21,10 @@ struct JobPoolOptions {
   bool in_idle_time = false;
   // Receives a job whenever a new state of it has been saved, from any thread. May be empty.
   std::function<void(const JobInfo& job)> on_state{};
-  std::function<void(const std::string& stage, double seconds)>
-      on_stage{};  // see JobManagerOptions
+  // See JobManagerOptions for these.
+  std::function<void(const std::string& stage, double seconds)> on_stage{};
+  std::function<void(const std::string& project, double seconds)> on_processor_time{};
+  std::function<absl::Duration(const std::string& project)> waiting_time{};
 };
 
 // Knows no projects but by the name that each job carries; LocalJobs shows a project its own.
@@ -34,9 +39,8 @@ class JobPool {
   JobPool(StoredFiles* files, RunnerOf runner_of, const JobPoolOptions& options);
 
   JobManager& manager() { return manager_; }
-  // For retention; this object must outlive it.
-  JobsOfRetention retention();
-  size_t CountInState(JobState state) const { return manager_.CountInState(state); }
+  // Of all projects, as the rows say. 0 when the catalog cannot be read.
+  size_t CountInState(JobState state) const;
 
   // Takes over the jobs of the process before and starts the workers. Call once.
   absl::Status Start();
@@ -44,11 +48,14 @@ class JobPool {
   void Shutdown() { manager_.Shutdown(); }
 
  private:
-  // Hands the stored jobs to the manager, and deletes the rigs that no unfinished job needs.
+  // Hands the stored jobs that have not ended to the manager, and deletes the rigs and checkpoints
+  // that none of them needs.
   absl::Status Restore();
+  absl::Status RemoveFilesOfEndedJobs(const UnfinishedJobs& unfinished);
 
   StoredFiles* const files_;
   const RunnerOf runner_of_;
+  const std::unique_ptr<JobJournal> journal_;
   JobManager manager_;
 };
 

@@ -36,8 +36,9 @@ class JobRunner {
         num_threads_(num_threads),
         memory_(memory) {}
 
-  // Does the work of the job and stores its result. Returns the errors of reading, training or
-  // compressing, and kCancelled when `progress` was cancelled.
+  // Does the work of the job and stores its result. A training goes on where another process that
+  // ran the same job came to (job_checkpoints.h), with the same result. Returns the errors of
+  // reading, training or compressing, and kCancelled when `progress` was cancelled.
   absl::StatusOr<JobOutcome> Run(const JobInfo& job, const Progress& progress) const;
   // kResourceExhausted when a job on these sequences needs more memory than all jobs may ever have.
   absl::Status CheckMemory(const JobOptions& options, const std::vector<SequenceInfo>& clips) const;
@@ -47,7 +48,10 @@ class JobRunner {
  private:
   absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainModel(
       const std::vector<MeshSequence>& clips, const std::string& rig_id,
-      const TrainOptions& options, const Progress& progress) const;
+      const TrainOptions& options, const TrainResources& resources, const Progress& progress) const;
+  absl::StatusOr<std::shared_ptr<const CharacterModel>> TrainFromCheckpoint(
+      const std::vector<MeshSequence>& clips, const JobInfo& job, const TrainOptions& options,
+      const Progress& progress) const;
   // Waits for the memory of the job.
   absl::StatusOr<Reservation> TakeMemory(const JobInfo& job, const Progress& progress) const;
   absl::StatusOr<JobOutcome> Train(const JobInfo& job, const TrainOptions& options,

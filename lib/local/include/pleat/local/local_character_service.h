@@ -44,6 +44,16 @@ struct LocalServiceOptions {
   std::function<void(const std::string& sentence)> on_removed{};
 };
 
+// What one project has and has used.
+struct ProjectUse {
+  std::string project{};
+  uint64_t stored_bytes = 0;
+  std::map<std::string, size_t> jobs{};  // by JobStateName
+  // Since the start of the process:
+  double frames = 0;           // evaluated and decoded
+  double job_cpu_seconds = 0;  // processor time of its jobs
+};
+
 // Owns the data folder, the five services over it for each project, and their threads. As a
 // CharacterService it is that of the default project. Thread-safe.
 class LocalCharacterService final : public CharacterService {
@@ -72,6 +82,9 @@ class LocalCharacterService final : public CharacterService {
 
   // The ids of entries whose file was gone when the data folder was opened.
   const std::vector<std::string>& missing_files() const { return store_->missing_files(); }
+
+  // Of every project that has or had something, or was asked for since the start; by name.
+  std::vector<ProjectUse> ProjectUses();
 
   // For an operator. Free bytes of the disk: -1 when it does not answer.
   double FreeDiskBytes() const;

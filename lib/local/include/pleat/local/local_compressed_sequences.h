@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pleat/base/memory_budget.h"
-#include "pleat/local/frame_quota.h"
+#include "pleat/local/project_quota.h"
 #include "pleat/local/stored_files.h"
 #include "pleat/sequence_codec/sequence_decoder.h"
 #include "pleat/service/compressed_sequence_service.h"
@@ -19,7 +19,7 @@ class LocalCompressedSequences final : public CompressedSequenceService {
  public:
   // memory: of all decoders together; it must outlive the sessions. frames: what decoding is
   // charged to; null: nothing.
-  LocalCompressedSequences(StoredFiles* files, MemoryBudget* memory, FrameQuota* frames = nullptr)
+  LocalCompressedSequences(StoredFiles* files, MemoryBudget* memory, ProjectQuota* frames = nullptr)
       : files_(files), memory_(memory), frames_(frames) {}
 
   using CompressedSequenceService::BeginUpload;
@@ -48,7 +48,7 @@ class LocalCompressedSequences final : public CompressedSequenceService {
 
   StoredFiles* const files_;
   MemoryBudget* const memory_;
-  FrameQuota* const frames_;
+  ProjectQuota* const frames_;
 };
 
 }  // namespace pleat

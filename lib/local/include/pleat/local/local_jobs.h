@@ -9,6 +9,7 @@
 #include "pleat/local/job_pool.h"
 #include "pleat/local/job_runner.h"
 #include "pleat/local/local_sequences.h"
+#include "pleat/local/project_quota.h"
 #include "pleat/local/stored_files.h"
 #include "pleat/service/job_service.h"
 
@@ -18,8 +19,14 @@ namespace pleat {
 // outlive it.
 class LocalJobs final : public JobService {
  public:
-  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, JobPool* pool)
-      : files_(files), sequences_(sequences), runner_(std::move(runner)), pool_(pool) {}
+  // job_time: what the jobs of the project may use; null: no limit.
+  LocalJobs(StoredFiles* files, LocalSequences* sequences, JobRunner runner, JobPool* pool,
+            ProjectQuota* job_time = nullptr)
+      : files_(files),
+        sequences_(sequences),
+        runner_(std::move(runner)),
+        pool_(pool),
+        job_time_(job_time) {}
 
   const JobRunner& runner() const { return runner_; }
 
@@ -33,13 +40,14 @@ class LocalJobs final : public JobService {
       const std::string& id, std::function<void()> listener) override;
 
  private:
-  // kNotFound for a job that the project does not have.
-  absl::StatusOr<std::shared_ptr<JobStateMachine>> Find(const std::string& id) const;
+  // Refuses a job for which the project has no room or no processor time left.
+  absl::Status CheckProject();
 
   StoredFiles* const files_;
   LocalSequences* const sequences_;
   const JobRunner runner_;
   JobPool* const pool_;
+  ProjectQuota* const job_time_;
 };
 
 }  // namespace pleat

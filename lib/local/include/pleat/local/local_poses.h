@@ -8,9 +8,9 @@
 
 #include "pleat/base/executor.h"
 #include "pleat/local/encoder_pool.h"
-#include "pleat/local/frame_quota.h"
 #include "pleat/local/local_models.h"
 #include "pleat/local/pose_batcher.h"
+#include "pleat/local/project_quota.h"
 #include "pleat/service/pose_service.h"
 
 namespace pleat {
@@ -48,7 +48,7 @@ class LocalPoses final : public PoseService {
   // max_frames: of one clip. frames: what frames are charged to, which must outlive the streams;
   // null: nothing.
   LocalPoses(LocalModels* models, PoseEngine* engine, int64_t max_frames,
-             FrameQuota* frames = nullptr)
+             ProjectQuota* frames = nullptr)
       : models_(models), engine_(engine), max_frames_(max_frames), frames_(frames) {}
 
   absl::Status EvaluateClip(
@@ -77,7 +77,7 @@ class LocalPoses final : public PoseService {
   LocalModels* const models_;
   PoseEngine* const engine_;
   const int64_t max_frames_;
-  FrameQuota* const frames_;
+  ProjectQuota* const frames_;
 };
 
 }  // namespace pleat

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "pleat/local/frame_quota.h"
 #include "pleat/local/job_pool.h"
 #include "pleat/local/local_compressed_sequences.h"
 #include "pleat/local/local_jobs.h"
@@ -12,6 +11,7 @@
 #include "pleat/local/local_poses.h"
 #include "pleat/local/local_sequences.h"
 #include "pleat/local/memory_owners.h"
+#include "pleat/local/project_quota.h"
 #include "pleat/service/character_service.h"
 
 namespace pleat {
@@ -21,9 +21,10 @@ struct ProjectLimits {
   // Whether an upload ends at once when another project has the same content. Whoever knows the
   // SHA-256 of a file can then take it over.
   bool share_content = false;
-  uint64_t max_bytes = 0;        // of stored files; 0: no limit
-  int max_queued_jobs = 0;       // that wait; 0: no limit
-  double frames_per_second = 0;  // evaluated and decoded ones together; 0: no limit
+  uint64_t max_bytes = 0;               // of stored files; 0: no limit
+  int max_queued_jobs = 0;              // that wait; 0: no limit
+  double frames_per_second = 0;         // evaluated and decoded ones together; 0: no limit
+  double job_cpu_seconds_per_hour = 0;  // processor time of its jobs; 0: no limit
 };
 
 // What all projects of a process share: none of it can be reached with an id alone. All of it must
@@ -58,10 +59,12 @@ class LocalProject final : public CharacterService {
 
   StoredFiles& files() { return files_; }
   const JobRunner& runner() const { return jobs_.runner(); }
+  const ProjectQuota& frames() const { return frames_; }
+  ProjectQuota& job_time() { return job_time_; }
 
  private:
   StoredFiles files_;
-  FrameQuota frames_;
+  ProjectQuota frames_, job_time_;
   LocalSequences sequences_;
   LocalModels models_;
   LocalCompressedSequences compressed_sequences_;

@@ -1,7 +1,6 @@
 // What exists, as rows of a SQLite database.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,19 +18,27 @@ namespace pleat {
 class Database;
 class SyncHookVfs;
 
-enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig };
-inline constexpr EntryKind kEntryKinds[] = {EntryKind::kSequence, EntryKind::kModel,
-                                            EntryKind::kCompressedSequence, EntryKind::kJob,
-                                            EntryKind::kRig};
+enum class EntryKind { kSequence, kModel, kCompressedSequence, kJob, kRig, kCheckpoint };
+inline constexpr EntryKind kEntryKinds[] = {
+    EntryKind::kSequence, EntryKind::kModel, EntryKind::kCompressedSequence,
+    EntryKind::kJob,      EntryKind::kRig,   EntryKind::kCheckpoint};
 // Those that are a file and a row; jobs are rows alone.
 inline constexpr EntryKind kFileKinds[] = {EntryKind::kSequence, EntryKind::kModel,
-                                           EntryKind::kCompressedSequence, EntryKind::kRig};
+                                           EntryKind::kCompressedSequence, EntryKind::kRig,
+                                           EntryKind::kCheckpoint};
 const char* EntryKindName(EntryKind kind);  // "compressed sequence"
 
 // Where the catalog of a data folder is, and the endings of the files that SQLite keeps for it: the
 // database comes last.
 std::string CatalogPath(const std::string& data_dir);
 inline constexpr const char* kCatalogSuffixes[] = {"-wal", "-shm", ""};
+
+// What is asked about jobs without reading their records.
+struct JobColumns {
+  std::string state{};        // JobStateName; empty: not noted, as in rows of older versions
+  int64_t ended_unix_ms = 0;  // 0: has not ended, or not known
+  std::string request_id{};   // of the call that made it; empty: none
+};
 
 struct CatalogEntry {
   std::string id{};
@@ -43,6 +50,7 @@ struct CatalogEntry {
   int64_t position = 0;         // in the order of all entries, from 1; the catalog sets it
   std::string project = kDefaultProject;  // who sees it
   uint64_t file_bytes = 0;                // of its file; jobs have none
+  JobColumns job{};
 };
 
 // What one project may see of a kind: an entry is found by project, kind and id, so the same
@@ -62,7 +70,8 @@ struct ProjectKind {
 //    holds. `properties` holds the id of the store, `removals` the files that are to be removed.
 //  - An entry is (project, kind, id). Its position, the order in which entries were added, never
 //    changes.
-//  - `projects` holds the sum of the file sizes of each project, in the same commit as the entries.
+//  - `projects` holds the sum of the file sizes of each project, and `job_counts` the number of its
+//    jobs by state, in the same commit as the entries.
 //  - A call that changes something returns after its commit has been synced (synchronous=FULL):
 //    what was reported survives a power cut. A crash before that loses the whole change, never a
 //    part.
@@ -91,9 +100,11 @@ class Catalog {
   // Adds the entry or replaces the one with the same id. That one keeps its place in the order, its
   // time of creation, and the longer of the two lives.
   absl::Status Put(EntryKind kind, const CatalogEntry& entry);
+  // The same for many, in one commit: all of them or none.
+  absl::Status PutAll(EntryKind kind, const std::vector<CatalogEntry>& entries);
   // kNotFound, in the same words, for an id that nobody has and for one of another project.
   absl::StatusOr<CatalogEntry> Get(const ProjectKind& kind, const std::string& id);
-  // The oldest entry of this kind and id in any project; kNotFound.
+  // The oldest file of this kind and id in any project; kNotFound.
   absl::StatusOr<CatalogEntry> GetInAnyProject(EntryKind kind, const std::string& id);
   absl::StatusOr<std::vector<CatalogEntry>> List(EntryKind kind);  // of all projects, oldest first
   // The `max_entries` oldest entries behind `after_position`, which 0 puts before all. The cost
@@ -102,12 +113,37 @@ class Catalog {
                                                      int64_t after_position, int max_entries);
   // The file sizes of a project together, at constant cost.
   absl::StatusOr<uint64_t> ProjectBytes(const std::string& project);
+  // The same for every project that ever had an entry, by name.
+  absl::StatusOr<std::vector<std::pair<std::string, uint64_t>>> ListProjectBytes();
   // Notes the size of a file whose entries do not know it: rows of older versions.
   absl::Status NoteFileSize(const std::string& id, uint64_t file_bytes);
   // The ids of files whose size is not noted.
   absl::StatusOr<std::vector<std::string>> FilesWithoutSize();
-  // The steps that SQLite's machine has taken for all pages so far.
-  uint64_t num_page_steps() const { return num_page_steps_.load(std::memory_order_relaxed); }
+
+  // Jobs (catalog_jobs.cpp). What each of these costs depends on what it returns, and not on how
+  // many jobs have ended.
+  //
+  // Those of all projects that wait or run, oldest first.
+  absl::StatusOr<std::vector<CatalogEntry>> ListUnfinishedJobs();
+  // The oldest ones of all projects behind `after_position` whose state is not noted.
+  absl::StatusOr<std::vector<CatalogEntry>> ListUnnotedJobs(int64_t after_position,
+                                                            int max_entries);
+  // The ones of a project that ended first, from one time on and before another; those that do not
+  // know when they ended stand at time 0.
+  absl::StatusOr<std::vector<CatalogEntry>> ListEndedJobs(const std::string& project,
+                                                          int64_t from_unix_ms,
+                                                          int64_t before_unix_ms, int max_entries);
+  // The newest job that a request of the project made; kNotFound.
+  absl::StatusOr<CatalogEntry> FindJobOfRequest(const std::string& project,
+                                                const std::string& request_id);
+  struct JobCount {
+    std::string project, state;
+    int64_t num = 0;
+  };
+  absl::StatusOr<std::vector<JobCount>> CountJobs();  // by project and state; some may be 0
+
+  // The steps that SQLite's machine has taken for all reads so far.
+  uint64_t num_read_steps() const;
   // kNotFound when there is none. In the same commit the file of the entry becomes a pending
   // removal.
   absl::Status Delete(const ProjectKind& kind, const std::string& id);
@@ -150,6 +186,7 @@ class Catalog {
   // Looks for damage and returns the version, 0 for an empty file.
   absl::StatusOr<int> CheckFile(const std::string& path);
   absl::StatusOr<std::vector<std::string>> Ids(const char* sql);
+  absl::Status PutRow(EntryKind kind, const CatalogEntry& entry);  // with the writer's mutex held
   // Selects the rows of entries that `conditions`, the rest of the statement, is about.
   std::string Select(const char* conditions) const;
   // Runs a statement that changes the entry with `?1 = kind AND ?2 = id AND ?4 = project`;
@@ -164,7 +201,7 @@ class Catalog {
   bool has_properties_ = true;
   bool has_lives_ = true;
   bool has_projects_ = true;
-  std::atomic<uint64_t> num_page_steps_ = 0;
+  bool has_job_columns_ = true;
 };
 
 }  // namespace pleat

@@ -14,10 +14,16 @@
 
 namespace pleat {
 
+// Of a file that belongs to a job which has not ended.
+struct CheckpointInfo {
+  std::string job_id;
+};
+
 std::string EncodeRecord(const SequenceInfo& info);
 std::string EncodeRecord(const JobInfo& info);
 std::string EncodeRecord(const ModelInfo& info);
 std::string EncodeRecord(const CompressedSequenceInfo& info);
+std::string EncodeRecord(const CheckpointInfo& info);
 
 // kDataLoss when the bytes are no such record or a value in them is out of range: what comes from a
 // damaged disk is checked like what comes from outside.
@@ -25,5 +31,6 @@ absl::StatusOr<SequenceInfo> DecodeSequenceRecord(const std::string& bytes);
 absl::StatusOr<JobInfo> DecodeJobRecord(const std::string& bytes);
 absl::StatusOr<ModelInfo> DecodeModelRecord(const std::string& bytes);
 absl::StatusOr<CompressedSequenceInfo> DecodeCompressedSequenceRecord(const std::string& bytes);
+absl::StatusOr<CheckpointInfo> DecodeCheckpointRecord(const std::string& bytes);
 
 }  // namespace pleat

@@ -22,7 +22,7 @@
 
 namespace pleat {
 
-class FolderLock;
+class FileLock;
 
 struct StoreOptions {
   std::string data_dir{};
@@ -125,7 +125,7 @@ class Store {
   const std::string data_dir_;
   const std::function<void(const std::string& problem)> on_problem_;
   Quarantine quarantine_;
-  std::unique_ptr<FolderLock> lock_;
+  std::unique_ptr<FileLock> lock_;
   std::unique_ptr<BlobStore> blobs_;
   std::unique_ptr<Catalog> catalog_;
   const SyncHook before_sync_;

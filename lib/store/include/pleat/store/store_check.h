@@ -34,11 +34,11 @@ const char* StoreProblemName(StoreProblem::Kind kind);  // "missing file"
 StoreProblem FileProblem(const std::string& id, const absl::Status& why);
 
 struct StoreCheck {
-  std::string store_id;                 // empty: never written
-  std::array<size_t, 5> num_entries{};  // by EntryKind
-  size_t num_files = 0;                 // that entries name and that are there
-  uint64_t num_bytes = 0;               // of these files
-  std::vector<StoreProblem> problems;   // in the order of the enumeration, then by id
+  std::string store_id;                                      // empty: never written
+  std::array<size_t, std::size(kEntryKinds)> num_entries{};  // by EntryKind
+  size_t num_files = 0;                                      // that entries name and that are there
+  uint64_t num_bytes = 0;                                    // of these files
+  std::vector<StoreProblem> problems;  // in the order of the enumeration, then by id
   std::vector<QuarantinedFile> quarantine;
 };
 

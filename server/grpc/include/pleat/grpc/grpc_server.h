@@ -38,6 +38,8 @@ struct CallFacts {
   std::string trace_id;  // of the W3C trace that it belongs to, 32 digits; empty: none
   // What all log lines about the call name: "x-request-id" of its metadata, or made by the server.
   std::string request_id;
+  std::string project;  // that the call was let into; empty: none
+  std::string limit;    // that refused the call (google.rpc.QuotaFailure); empty: none did
   bool is_stream = false;
   bool audited = false;          // it belongs in the audit log, whatever its end
   std::vector<std::string> ids;  // that its request names; only of audited calls

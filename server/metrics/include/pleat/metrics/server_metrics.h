@@ -5,8 +5,10 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
+#include "pleat/metrics/project_labels.h"
 
 namespace pleat {
 
@@ -25,6 +27,11 @@ class ServerMetrics {
   // status: the name of a code, "OK". seconds: from the first message to the status.
   void CallStarted(const std::string& method);
   void CallEnded(const std::string& method, const std::string& status, double seconds);
+  // A call that has ended was one of this project; empty: of nobody who was let in. Its label is
+  // that of project_labels().
+  void CallOfProject(const std::string& project);
+  // A call was refused for a limit, which the program names.
+  void CallRefused(const std::string& limit);
 
   // A frame was evaluated ("query"), encoded ("encode"), or is on its way to the client ("send"),
   // and that took so long. step: one of these three.
@@ -38,6 +45,17 @@ class ServerMetrics {
   void AddGauge(const std::string& name, const std::string& help, const Labels& labels,
                 std::function<double()> read);
 
+  // Values that `read` returns all at once, from any thread, each with its labels. is_counter: they
+  // never fall while the process lives.
+  struct Sample {
+    Labels labels;
+    double value = 0;
+  };
+  void AddSeries(const std::string& name, const std::string& help, bool is_counter,
+                 std::function<std::vector<Sample>()> read);
+
+  ProjectLabels& project_labels() { return project_labels_; }
+
   // All metrics in the text format of Prometheus.
   std::string Text() const;
   // Answers GET /metrics at HOST:PORT until StopServing. kUnavailable when the address cannot be
@@ -48,6 +66,7 @@ class ServerMetrics {
 
  private:
   class Impl;
+  ProjectLabels project_labels_;
   const std::unique_ptr<Impl> impl_;
 };
 

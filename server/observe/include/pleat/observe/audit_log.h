@@ -17,6 +17,7 @@ struct AuditEntry {
   // The token that the call showed. Its name is empty where the server does not know the token:
   // then anybody may have written the id.
   std::string token_id{}, token_name{};
+  std::string project{};           // that the caller was let into; empty: none
   std::vector<std::string> ids{};  // what the request names
   std::string trace_id{};          // W3C; empty: none
   std::string request_id{};        // that the lines of the log about the call name

@@ -5,21 +5,28 @@
 
 namespace pleat {
 
-// The id of the request that this thread works for; empty: none.
-const std::string& CurrentRequestId();
+// What every line about a request says.
+struct RequestTag {
+  std::string id{};       // empty: none
+  std::string project{};  // of the caller, once it was let in
+};
 
-// Says so as long as it lives, which must be no longer than the id does. Scopes of one thread are
+// The request that this thread works for.
+const RequestTag& CurrentRequest();
+inline const std::string& CurrentRequestId() { return CurrentRequest().id; }
+
+// Says so as long as it lives, which must be no longer than the tag does. Scopes of one thread are
 // nested. They copy nothing: there is one around each piece of work.
 class RequestScope {
  public:
-  explicit RequestScope(const std::string& request_id);
-  explicit RequestScope(std::string&& request_id) = delete;
+  explicit RequestScope(const RequestTag& request);
+  explicit RequestScope(RequestTag&& request) = delete;
   ~RequestScope();
   RequestScope(const RequestScope&) = delete;
   RequestScope& operator=(const RequestScope&) = delete;
 
  private:
-  const std::string* const outer_;
+  const RequestTag* const outer_;
 };
 
 // The id that a client chose for its request, when it can stand in a log: 1 to 64 letters, digits,

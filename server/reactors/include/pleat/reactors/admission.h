@@ -63,10 +63,13 @@ class RefusedStream final : public CallReactor<GrpcReactor> {
 template <typename GrpcReactor, typename Start>
 GrpcReactor* StartAdmitted(HandlerContext* context, const grpc::ServerContextBase& call,
                            const char* rpc, Start start) {
-  const std::string request_id = context->calls->running_calls.RequestIdOf(call);
-  const RequestScope scope(request_id);
+  RequestTag request{.id = context->calls->running_calls.RequestIdOf(call)};
+  const RequestScope scope(request);
   absl::StatusOr<HandlerContext*> admitted = AdmitStream(context, call, rpc);
-  if (admitted.ok()) return start(*admitted);
+  if (admitted.ok()) {
+    request.project = (*admitted)->project;
+    return start(*admitted);
+  }
   return StartReactor<RefusedStream<GrpcReactor>>(context, rpc, std::move(admitted).status());
 }
 

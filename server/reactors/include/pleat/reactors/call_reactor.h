@@ -51,12 +51,12 @@ class CallReactor : public GrpcReactor,
   void OnDone() final { self_.reset(); }
 
  protected:
-  // A reactor is made inside the scope of its request and keeps the id for all that it does.
+  // A reactor is made inside the scope of its request and keeps the tag for all that it does.
   explicit CallReactor(HandlerContext* context)
-      : open_call_(&context->calls->open_calls), request_id_(CurrentRequestId()) {}
+      : open_call_(&context->calls->open_calls), request_(CurrentRequest()) {}
 
   // For RequestScope, around what does not run by Post.
-  const std::string& request_id() const { return request_id_; }
+  const RequestTag& request() const { return request_; }
 
   // Keeps the reactor alive. Call it where it still is: before Finish.
   std::shared_ptr<const void> Hold() { return this->shared_from_this(); }
@@ -67,7 +67,7 @@ class CallReactor : public GrpcReactor,
             TurnKind kind = TurnKind::kInteractive) {
     executor->Post(
         [this, hold = Hold(), task = std::move(task)]() mutable {
-          const RequestScope scope(request_id_);
+          const RequestScope scope(request_);
           task();
         },
         flow, kind);
@@ -78,7 +78,7 @@ class CallReactor : public GrpcReactor,
   friend Reactor* StartReactor(Arguments&&... arguments);
 
   const OpenCalls::Entry open_call_;
-  const std::string request_id_;       // empty: the call has none
+  const RequestTag request_;           // of the call
   std::shared_ptr<CallReactor> self_;  // gRPC's share
 };
 

@@ -10,6 +10,7 @@
 
 #include "pleat/base/executor.h"
 #include "pleat/base/memory_budget.h"
+#include "pleat/base/project.h"
 #include "pleat/identity/token_registry.h"
 #include "pleat/reactors/live_registry.h"
 #include "pleat/reactors/open_calls.h"
@@ -47,6 +48,7 @@ struct ServerCalls {
 };
 
 struct HandlerContext {
+  std::string project = kDefaultProject;
   // Each handler uses one of the services; a test of a handler sets that one.
   SequenceService* sequences = nullptr;
   JobService* jobs = nullptr;

@@ -28,6 +28,7 @@ class RunningCalls {
     std::recursive_mutex mutex;
     const grpc::ServerContextBase* context = nullptr;  // guarded by mutex; null after the end
     std::string request_id{};                          // never changes
+    std::string project{};                             // guarded by mutex_ of the list
   };
   using Calls = std::multimap<std::string, std::shared_ptr<Call>>;  // by token id
 
@@ -52,6 +53,11 @@ class RunningCalls {
 
   // The id of the request that a call makes (request_scope.h); empty for a call that is not here.
   std::string RequestIdOf(const grpc::ServerContextBase& context);
+
+  // Notes the project that a call was let into. It does nothing for a call that is not here.
+  void NoteProject(const grpc::ServerContextBase& context, const std::string& project);
+  // The project that a call was let into; empty: none.
+  std::string ProjectOf(const grpc::ServerContextBase& context);
 
   // Cancels the calls of all tokens for which `is_good` says no. It asks once for each token.
   void CancelUnless(const std::function<bool(const std::string& token_id)>& is_good);

@@ -1,4 +1,4 @@
-// Ends a thread that pauses.
+// Ends a thread that does something again and again.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,8 @@
 
 namespace pleat {
 
-// Thread-safe.
+// Thread-safe. The thread runs `while (stop.Pause(period)) Work();`, and whoever ends it calls Set
+// and joins it.
 class StopSignal {
  public:
   void Set() {
@@ -18,10 +19,14 @@ class StopSignal {
     changed_.notify_all();
   }
   // Waits for so many seconds; false when it was set, then or before.
-  bool Pause(double seconds) {
+  bool Pause(double seconds) { return Pause(std::chrono::duration<double>(seconds)); }
+  bool Pause(std::chrono::duration<double> time) {
     std::unique_lock lock(mutex_);
-    return !changed_.wait_for(lock, std::chrono::duration<double>(seconds),
-                              [this] { return stopped_; });
+    return !changed_.wait_for(lock, time, [this] { return stopped_; });
+  }
+  bool is_set() {
+    std::lock_guard lock(mutex_);
+    return stopped_;
   }
 
  private:
