@@ -18,7 +18,7 @@ namespace pleat {
 namespace {
 
 constexpr FileKind kKind = {"PLEATCKP", 1, 1, "checkpoint"};
-constexpr uint32_t kDetailVersion = 4;  // the version of model files whose section 9 this has
+constexpr uint32_t kModelVersion = 5;  // the version of model files whose sections these are
 constexpr size_t kMaxJobIdBytes = 64;
 constexpr size_t kMaxWarningBytes = size_t{1} << 16;
 constexpr size_t kMaxNameBytes = 256;  // of a learner
@@ -56,7 +56,8 @@ absl::StatusOr<TrainingCheckpoint::Rigging> ReadRigging(ByteReader* reader,
     return absl::ResourceExhaustedError(
         absl::StrCat(num_vertices, " vertices, the limit is ", limits.max_vertices));
   }
-  PLEAT_ASSIGN_OR_RETURN(rigging.rig, ReadSkin(reader, skeleton, static_cast<int>(num_vertices)));
+  PLEAT_ASSIGN_OR_RETURN(rigging.rig,
+                         ReadSkin(reader, kModelVersion, skeleton, static_cast<int>(num_vertices)));
   PLEAT_ASSIGN_OR_RETURN(rigging.rest_frame, reader->Read<int32_t>("rest frame"));
   PLEAT_ASSIGN_OR_RETURN(rigging.yaw_degrees, reader->Read<double>("yaw"));
   PLEAT_ASSIGN_OR_RETURN(rigging.residual, reader->Read<double>("residual"));
@@ -154,7 +155,7 @@ absl::Status ReadStages(ByteReader* reader, LastStage last, const MeshLimits& li
   }
   if (last < LastStage::kLearn) return absl::OkStatus();
   PLEAT_ASSIGN_OR_RETURN(DetailModelParameters parameters,
-                         ReadDetail(reader, kDetailVersion, limits.max_unfolded_bytes));
+                         ReadDetail(reader, kModelVersion, limits.max_unfolded_bytes));
   PLEAT_ASSIGN_OR_RETURN(DetailModel model, DetailModel::FromParameters(std::move(parameters)));
   checkpoint->detail_model = std::make_shared<const DetailModel>(std::move(model));
   return absl::OkStatus();
