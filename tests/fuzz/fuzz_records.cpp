@@ -25,5 +25,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Check<pleat::ModelInfo>(&pleat::DecodeModelRecord, bytes);
   Check<pleat::JobInfo>(&pleat::DecodeJobRecord, bytes);
   Check<pleat::CompressedSequenceInfo>(&pleat::DecodeCompressedSequenceRecord, bytes);
+  Check<pleat::CheckpointInfo>(&pleat::DecodeCheckpointRecord, bytes);
   return 0;
 }

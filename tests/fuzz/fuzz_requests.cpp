@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "page_token.h"
 #include "pleat/service/limits.h"
 #include "pleat/v1/compressed_sequence_service.pb.h"
 #include "pleat/v1/job_service.pb.h"
@@ -72,7 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   const uint8_t which = *data++;
   --size;
-  switch (which % 7) {
+  switch (which % 8) {
     case 0:
       Parse<v1::CreateTrainingJobRequest>(data, size);
       break;
@@ -90,6 +91,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       break;
     case 5:
       Parse<v1::LiveSessionRequest>(data, size);
+      break;
+    case 6:  // the token of a page
+      PageTokens("secret", "robots")
+          .Parse(EntryKind::kJob, std::string(reinterpret_cast<const char*>(data), size))
+          .IgnoreError();
       break;
     default:  // what a server sends beside a refusal
       WithLimitDetails(absl::ResourceExhaustedError("x"),
