@@ -29,14 +29,21 @@ absl::Status CheckRegion(const SkinFeaturesParameters::Region& region, int num_e
   return absl::OkStatus();
 }
 
-// The values of the edges of a region, one after the other.
-Eigen::VectorXf Gathered(const Eigen::VectorXf& values, const std::vector<int>& edges) {
-  Eigen::VectorXf gathered(3 * static_cast<Eigen::Index>(edges.size()));
-  for (size_t e = 0; e < edges.size(); ++e) {
-    gathered.segment<3>(3 * static_cast<Eigen::Index>(e)) =
-        values.segment<3>(3 * static_cast<Eigen::Index>(edges[e]));
+// Copies the values of the edges of a region, one after the other; returns the end of `target`.
+float* CopyEdges(const Eigen::VectorXf& values, const std::vector<int>& edges, float* target) {
+  for (const int edge : edges) {
+    target = std::copy_n(values.data() + 3 * static_cast<ptrdiff_t>(edge), 3, target);
   }
-  return gathered;
+  return target;
+}
+
+// The offset of features that are computed from values without the center.
+Eigen::VectorXf CenteredOffset(const CoefficientFoldBlock& block, const std::vector<int>& edges,
+                               const Eigen::VectorXf& center,
+                               const Eigen::Ref<const Eigen::VectorXf>& offset) {
+  Eigen::VectorXf own(3 * static_cast<Eigen::Index>(edges.size()));
+  CopyEdges(center, edges, own.data());
+  return (offset.cast<double>() - block.Dense() * own.cast<double>()).cast<float>();
 }
 
 }  // namespace
@@ -75,9 +82,8 @@ absl::StatusOr<SkinFeatures> SkinFeatures::FromParameters(const Rig& rig,
   for (const std::vector<int>& own : result.region_edges_) {
     if (own.empty()) continue;
     const auto [first, count] = block->targets[0];
-    const Eigen::VectorXd away = block->Dense() * Gathered(result.center_, own).cast<double>() -
-                                 result.offset_.segment(first, count).cast<double>();
-    result.centered_offset_.segment(first, count) = (-away).cast<float>();
+    auto offset = result.centered_offset_.segment(first, count);
+    offset = CenteredOffset(*block, own, result.center_, offset.eval());
     ++block;
   }
   return result;
@@ -122,13 +128,8 @@ void SkinFeatures::Gather(const BoneTransforms& transforms, Workspace* workspace
   w.gathered.resize(projection_.num_inputs());
   edges_.Compute(transforms, &w.edges, w.values);
   w.values -= center_;
-  Eigen::Index place = 0;
-  for (const std::vector<int>& edges : region_edges_) {
-    for (const int edge : edges) {
-      w.gathered.segment<3>(place) = w.values.segment<3>(3 * static_cast<Eigen::Index>(edge));
-      place += 3;
-    }
-  }
+  float* target = w.gathered.data();
+  for (const std::vector<int>& edges : region_edges_) target = CopyEdges(w.values, edges, target);
 }
 
 void SkinFeatures::Project(std::span<const Query> queries) const {
