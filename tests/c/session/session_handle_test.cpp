@@ -146,10 +146,11 @@ class ParameterSessionTest : public CCharacterTest {};
 
 TEST_F(ParameterSessionTest, ParametersBecomeTheMeshHere) {
   ScriptedServer server;
+  const std::string id = ModelId(bytes_);  // which the download is checked against
   EXPECT_CALL(server.models, DownloadModel)
       .WillOnce([&](grpc::ServerContext*, const v1::DownloadModelRequest* request,
                     grpc::ServerWriter<v1::DownloadModelResponse>* out) {
-        EXPECT_EQ(request->id(), "m");
+        EXPECT_EQ(request->id(), id);
         v1::DownloadModelResponse response;
         response.set_size_bytes(bytes_.size());
         response.set_data(bytes_);
@@ -181,7 +182,7 @@ TEST_F(ParameterSessionTest, ParametersBecomeTheMeshHere) {
   pleat_session_options options{};
   options.struct_size = sizeof(options);
   options.address = address.c_str();
-  options.model_id = "m";
+  options.model_id = id.c_str();
   options.content = PLEAT_CONTENT_PARAMETERS;
   pleat_session* opened = nullptr;
   ASSERT_EQ(pleat_session_open(&options, &opened, &error_), PLEAT_OK) << error_.message;
