@@ -125,10 +125,12 @@ absl::Status ValidateTrainOptions(const TrainOptions& options) {
 
 std::string FormatTrainOptions(const TrainOptions& options) {
   std::string text;
-  VisitTrainOptions(options, [&text](const char* name, const auto& value) {
+  VisitTrainOptions(options, [&](const char* name, const auto& value) {
     using T = std::decay_t<decltype(value)>;
     // These are younger than the first models.
-    if constexpr (std::is_same_v<T, JumpPolicy>) {
+    if constexpr (std::is_same_v<T, int>) {
+      if (&value == &options.influences && value == TrainOptions().influences) return;
+    } else if constexpr (std::is_same_v<T, JumpPolicy>) {
       if (value == TrainOptions().jumps) return;
     } else if constexpr (std::is_same_v<T, std::vector<PlacedJoint>>) {
       if (value.empty()) return;

@@ -168,6 +168,8 @@ TEST_F(ParameterSessionTest, ParametersBecomeTheMeshHere) {
     v1::LiveSessionResponse response;
     response.mutable_header()->set_num_vertices(num_vertices());
     response.mutable_header()->set_content(v1::STREAM_CONTENT_PARAMETERS);
+    response.mutable_header()->mutable_box()->set_range(1);
+    response.mutable_header()->mutable_box()->set_bits(14);
     stream->Write(response);
     stream->Read(&request);
     response.Clear();
