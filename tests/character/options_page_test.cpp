@@ -37,6 +37,7 @@ std::string Section(const std::string& name, [[maybe_unused]] const T& default_v
   if (text.alias != nullptr) absl::StrAppend(&flags, " or `--", text.alias, "`");
   std::string unwritten;
   if constexpr (std::is_enum_v<T>) unwritten = ChoiceName(default_value);
+  if constexpr (std::is_same_v<T, int>) unwritten = absl::StrCat(default_value);
   const std::string value = ValueOf({}, name, unwritten),
                     paper = ValueOf(TrainOptions::Paper(), name, unwritten);
   std::string section = absl::StrCat("## ", name, "\n\n", flags, ", default ",
