@@ -13,8 +13,10 @@ for bench in gp fitting character codec server; do
   echo "== ${bench}_bench"
   "build/bin/${bench}_bench" --benchmark_min_time=0.2 2>/dev/null
 done
+echo "== live_beside_jobs"
+build/bin/live_beside_jobs
 echo "== store_bench"
-TMPDIR=/dev/shm build/bin/store_bench --benchmark_min_time=0.2 2>/dev/null
+build/bin/store_bench --benchmark_min_time=0.2 2>/dev/null
 
 # The automatic rig of everything that is there, from its first frame and from frame 50 on; inputs
 # that are no humans are refused, which the exit code says and the table shows.
