@@ -200,7 +200,7 @@ class MorphBasisBuilder {
   Eigen::MatrixXd orthonormal_;  // 3V x (N - 1)
   std::vector<int> counts_;      // numbers of targets whose errors are measured
   MorphBasis basis_;
-  // Of the frame at hand:
+  // These belong to the frame at hand.
   BoneTransforms transforms_;
   Eigen::Matrix3Xd skinned_;
   std::vector<Eigen::Matrix3d> linear_;

@@ -13,7 +13,8 @@ inline constexpr uint32_t kFirstWithParts = 4;
 inline constexpr uint32_t kFirstWithSkinFeatures = 4;
 // Before it the weights of the fold and of the skin's features are floats.
 inline constexpr uint32_t kFirstWithPlanes = 5;
-// Before it every vertex has four influences, and no option says how many.
+// Before it every vertex has four influences, no option says how many, and there are no fit
+// weights.
 inline constexpr uint32_t kFirstWithInfluences = 5;
 
 }  // namespace pleat

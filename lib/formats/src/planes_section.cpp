@@ -57,4 +57,17 @@ absl::StatusOr<DetailBasisParameters> ReadPlaneMatrix(ByteReader* reader, uint64
   return matrix;
 }
 
+absl::StatusOr<DetailBasisParameters> ReadFloatsAsPlanes(ByteReader* reader, uint64_t num_columns,
+                                                         uint64_t num_rows,
+                                                         absl::string_view what) {
+  Eigen::MatrixXf transposed;
+  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_columns, num_rows, what, &transposed));
+  if (transposed.size() == 0) return DetailBasisParameters();
+  PLEAT_ASSIGN_OR_RETURN(const DetailBasis rounded,
+                         DetailBasis::Quantize(Eigen::VectorXf::Zero(transposed.cols()),
+                                               transposed.cast<double>().transpose(),
+                                               Eigen::VectorXd::Zero(transposed.rows())));
+  return rounded.parameters();
+}
+
 }  // namespace pleat

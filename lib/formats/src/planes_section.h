@@ -26,4 +26,9 @@ void WritePlaneMatrix(const DetailBasisParameters& matrix, ByteWriter* writer);
 absl::StatusOr<DetailBasisParameters> ReadPlaneMatrix(ByteReader* reader, uint64_t num_rows,
                                                       absl::string_view what);
 
+// Reads what files before version 5 have instead: the transpose, num_columns x num_rows float32,
+// which is rounded to as many planes as a component can have.
+absl::StatusOr<DetailBasisParameters> ReadFloatsAsPlanes(ByteReader* reader, uint64_t num_columns,
+                                                         uint64_t num_rows, absl::string_view what);
+
 }  // namespace pleat

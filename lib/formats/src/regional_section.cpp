@@ -87,11 +87,10 @@ absl::StatusOr<CoefficientFoldBlock> ReadFoldBlockOfFloats(ByteReader* reader) {
   PLEAT_ASSIGN_OR_RETURN(const int first_output, ReadPlace(reader));
   std::array<uint32_t, 2> sizes;
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(sizes), "block of the fold"));
-  Eigen::MatrixXf weights;
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, sizes[0], sizes[1], "block of the fold", &weights));
-  return CoefficientFoldBlock::Round(
-      first_input, {{first_output, static_cast<int>(weights.cols())}},
-      weights.cast<double>().transpose(), Eigen::VectorXd::Zero(weights.rows()));
+  CoefficientFoldBlock block{first_input, {{first_output, static_cast<int>(sizes[1])}}, {}};
+  PLEAT_ASSIGN_OR_RETURN(block.weights,
+                         ReadFloatsAsPlanes(reader, sizes[0], sizes[1], "block of the fold"));
+  return block;
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ absl::Status ReadOldInputScale(ByteReader* reader, uint32_t version, double* sca
 absl::Status ReadMeanAndScales(ByteReader* reader, uint32_t version, uint32_t num_inputs,
                                double old_scale, Eigen::VectorXd* mean, Eigen::VectorXd* scales);
 
-// Of a model. Whoever has a coefficient has its column of the fold, or of alpha, in the file as
-// well; the limit stops counts that only want memory.
+// The most coefficients of a model. Whoever has a coefficient has its column of the fold, or of
+// alpha, in the file as well; the limit stops counts that only want memory.
 inline constexpr uint32_t kMaxCoefficients = 1 << 16;
 
 void WriteRegional(const RegionalGpParameters& regional, ByteWriter* writer);

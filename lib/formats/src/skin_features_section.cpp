@@ -36,36 +36,21 @@ absl::StatusOr<SkinEdgesParameters> ReadEdges(ByteReader* reader) {
   return edges;
 }
 
-absl::StatusOr<SkinFeaturesParameters::Region> ReadRegion(ByteReader* reader) {
+absl::StatusOr<SkinFeaturesParameters::Region> ReadRegion(ByteReader* reader, uint32_t version) {
   SkinFeaturesParameters::Region region;
   std::array<uint32_t, 2> counts;
   PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of a region"));
   const auto [num_edges, num_features] = counts;
   PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_edges, "edges of a region", &region.edges));
+  constexpr const char* kWeights = "weights of a region";
+  if (version < kFirstWithPlanes) {  // the floats stand in front of the offset
+    PLEAT_ASSIGN_OR_RETURN(region.weights, ReadFloatsAsPlanes(reader, uint64_t{3} * num_edges,
+                                                              num_features, kWeights));
+  }
   PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_features, 1, "offset of a region", &region.offset));
-  if (num_edges == 0 && num_features == 0) return region;
-  PLEAT_ASSIGN_OR_RETURN(region.weights,
-                         ReadPlaneMatrix(reader, num_features, "weights of a region"));
-  return region;
-}
-
-// Reads a region whose weights are floats, edges x features, and rounds them as finely as planes
-// allow.
-absl::StatusOr<SkinFeaturesParameters::Region> ReadRegionOfFloats(ByteReader* reader) {
-  SkinFeaturesParameters::Region region;
-  std::array<uint32_t, 2> counts;
-  PLEAT_RETURN_IF_ERROR(reader->ReadArray(std::span<uint32_t>(counts), "sizes of a region"));
-  const auto [num_edges, num_features] = counts;
-  PLEAT_RETURN_IF_ERROR(ReadVector(reader, num_edges, "edges of a region", &region.edges));
-  Eigen::MatrixXf weights;
-  PLEAT_RETURN_IF_ERROR(
-      ReadMatrix(reader, uint64_t{3} * num_edges, num_features, "weights of a region", &weights));
-  PLEAT_RETURN_IF_ERROR(ReadMatrix(reader, num_features, 1, "offset of a region", &region.offset));
-  if (weights.size() == 0) return region;
-  PLEAT_ASSIGN_OR_RETURN(CoefficientFoldBlock block,
-                         CoefficientFoldBlock::Round(0, {}, weights.cast<double>().transpose(),
-                                                     Eigen::VectorXd::Zero(weights.rows())));
-  region.weights = std::move(block.weights);
+  if (version >= kFirstWithPlanes && (num_edges > 0 || num_features > 0)) {
+    PLEAT_ASSIGN_OR_RETURN(region.weights, ReadPlaneMatrix(reader, num_features, kWeights));
+  }
   return region;
 }
 
@@ -101,9 +86,7 @@ absl::StatusOr<std::optional<SkinFeatures>> ReadSkinFeatures(ByteReader* reader,
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_regions, reader->Read<uint32_t>("region count"));
   PLEAT_RETURN_IF_ERROR(reader->Require(num_regions, 2 * sizeof(uint32_t), "regions"));
   for (uint32_t r = 0; r < num_regions; ++r) {
-    PLEAT_ASSIGN_OR_RETURN(SkinFeaturesParameters::Region region, version >= kFirstWithPlanes
-                                                                      ? ReadRegion(reader)
-                                                                      : ReadRegionOfFloats(reader));
+    PLEAT_ASSIGN_OR_RETURN(SkinFeaturesParameters::Region region, ReadRegion(reader, version));
     p.regions.push_back(std::move(region));
   }
   PLEAT_ASSIGN_OR_RETURN(SkinFeatures features, SkinFeatures::FromParameters(rig, std::move(p)));

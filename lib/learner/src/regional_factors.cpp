@@ -95,8 +95,9 @@ Eigen::MatrixXd RegionalFactors::Inputs(Eigen::Index num_inputs) const {
   return inputs;
 }
 
-// Of a chunk: products and squares of all atoms in doubles, products and distances of all sets in
-// floats; of the row: what shortens it in each set, and its square in each atom.
+// The scratch holds, for a chunk, the products and squares of all atoms in doubles and the products
+// and distances of all sets in floats; and for the row, what shortens it in each set and its square
+// in each atom.
 size_t RegionalFactors::scratch_size() const {
   return kLanes * (2 * atom_ends_.size() + set_ends_.size()) + 3 * set_ends_.size() +
          atom_ends_.size();
@@ -173,7 +174,7 @@ struct RegionalFactorsKernel {
     }
   }
 
-  // Of the rows of one chunk: the products and the distances of all sets.
+  // Computes the products and the distances of all sets for the rows of one chunk.
   static PLEAT_ALWAYS_INLINE void Sums(const RegionalFactors& f, const float* inputs,
                                        const double* row, const Shortening* shortenings,
                                        double* atoms, float* products) {

@@ -25,7 +25,7 @@ struct CharacterFile {
   Rig rig;               // its weights are written; they may have been cut (cut_influences.h)
   PoseTrack track;       // empty: the rest pose alone
   FrameRate frame_rate;  // of the track
-  // Of the track and the weights of the rig; only for glTF.
+  // They show the folds of the track with the weights of the rig; only glTF has them.
   std::optional<MorphBasis> morphs;
   // The whole mesh in every frame of the track, or nothing; only for USD.
   std::vector<Eigen::Matrix3Xf> points;

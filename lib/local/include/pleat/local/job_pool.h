@@ -39,7 +39,7 @@ class JobPool {
   JobPool(StoredFiles* files, RunnerOf runner_of, const JobPoolOptions& options);
 
   JobManager& manager() { return manager_; }
-  // Of all projects, as the rows say. 0 when the catalog cannot be read.
+  // Counts the jobs of all projects, as the rows say. 0 when the catalog cannot be read.
   size_t CountInState(JobState state) const;
 
   // Takes over the jobs of the process before and starts the workers. Call once.
