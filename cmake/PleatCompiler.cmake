@@ -23,9 +23,12 @@ string(REPLACE "-g" "-g1" CMAKE_CXX_FLAGS_RELWITHDEBINFO "${CMAKE_CXX_FLAGS_RELW
 # At -O1 gcc 12 sees uninitialized values in Eigen and dangling references to arguments that are none.
 set(PLEAT_O1_WARNINGS $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-pointer>)
-# Tests and the command line spend their time in the library: optimizing their own code costs more
-# than it gives.
+# Tests and the command line spend their time in the library: optimizing their own code, and saying
+# in the object files where each line of it went, costs more than it gives. Sanitizers name lines.
 set(PLEAT_COLD_OPTIONS -O1 ${PLEAT_O1_WARNINGS})
+if(NOT PLEAT_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  list(APPEND PLEAT_COLD_OPTIONS -g0)
+endif()
 
 if(PLEAT_SANITIZE)
   # Less optimization: the compiler takes most of the time of these workflows, not the tests.

@@ -45,6 +45,9 @@ function(pleat_add_module name)
   elseif("pleat_math" IN_LIST ARG_DEPENDS)
     pleat_use_precompiled(${target} math)
   endif()
+  if(PLEAT_BATCH_ALL AND NOT name STREQUAL "simd")  # whose files are compiled for processors of their own
+    pleat_compile_in_batches(${target})
+  endif()
   set_property(GLOBAL APPEND PROPERTY PLEAT_MODULES ${name})
 endfunction()
 

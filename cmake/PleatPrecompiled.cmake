@@ -27,6 +27,7 @@ set(PLEAT_PRECOMPILED_PACKAGES_cli CLI11::CLI11 nlohmann_json::nlohmann_json)
 # not once for each file, which is most of the time of such files. Names in anonymous namespaces must
 # then differ within the target; the compiler says so when they do not.
 option(PLEAT_BATCHES "Compile sources with large headers in batches" ON)
+option(PLEAT_BATCH_ALL "Compile the sources of every module in batches: faster from nothing, slower after a change" OFF)
 set(PLEAT_BATCH_SIZE 7)
 
 function(pleat_compile_in_batches target)

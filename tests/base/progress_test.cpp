@@ -31,6 +31,20 @@ TEST(ProgressTest, NestedStagesMapToTheWhole) {
   EXPECT_DOUBLE_EQ(updates[2].fraction, 0.75);
 }
 
+TEST(ProgressTest, WhatIsRepeatedInAnotherWayNeverGoesBack) {
+  std::vector<ProgressUpdate> updates;
+  const Progress whole([&](const ProgressUpdate& update) { updates.push_back(update); }, nullptr);
+  const Progress forward = whole.Stage("compress", 0, .5).ForwardOnly();
+  EXPECT_THAT(forward.Stage("encode", 0, 1).Report(.6), IsOk());
+  EXPECT_THAT(forward.Stage("align", .1, 1).Report(.1), IsOk());
+  EXPECT_THAT(forward.Stage("encode", .1, 1).Report(.9), IsOk());
+  ASSERT_EQ(updates.size(), 3u);
+  EXPECT_NEAR(updates[0].fraction, .3, 1e-12);
+  EXPECT_NEAR(updates[1].fraction, .3, 1e-12);
+  EXPECT_EQ(updates[1].stage, "align");
+  EXPECT_NEAR(updates[2].fraction, .455, 1e-12);
+}
+
 TEST(ProgressTest, CancellationReachesSubStages) {
   bool cancel = false;
   const Progress stage = Progress(nullptr, [&] { return cancel; }).Stage("learn", 0, 1);

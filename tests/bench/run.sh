@@ -16,8 +16,10 @@ done
 if [ -f build/python/pleat/py.typed ]; then  # with Debian's Python, for which it was built
   PYTHONPATH=build/python:tests/c /usr/bin/python3 tests/bench/python_calls.py build/client/c/libpleat_eval.so
 fi
+echo "== live_beside_jobs"
+build/bin/live_beside_jobs
 echo "== store_bench"
-TMPDIR=/dev/shm build/bin/store_bench --benchmark_min_time=0.2 2>/dev/null
+build/bin/store_bench --benchmark_min_time=0.2 2>/dev/null
 
 # The automatic rig of everything that is there, from its first frame and from frame 50 on; inputs
 # that are no humans are refused, which the exit code says and the table shows.

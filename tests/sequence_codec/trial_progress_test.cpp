@@ -52,18 +52,5 @@ TEST_F(TrialProgressTest, PartsKeepTheStageAndPassCancellationOn) {
   EXPECT_EQ(updates_.size(), 1u);
 }
 
-TEST_F(TrialProgressTest, WhatIsRepeatedInAnotherWayNeverGoesBack) {
-  const Progress stage = progress_.Stage("compress", 0, .5);
-  const Progress forward = ForwardOnly(stage);
-  EXPECT_THAT(forward.Stage("encode", 0, 1).Report(.6), IsOk());
-  EXPECT_THAT(forward.Stage("align", .1, 1).Report(.1), IsOk());
-  EXPECT_THAT(forward.Stage("encode", .1, 1).Report(.9), IsOk());
-  ASSERT_EQ(updates_.size(), 3u);
-  EXPECT_NEAR(updates_[0].fraction, .3, 1e-12);
-  EXPECT_NEAR(updates_[1].fraction, .3, 1e-12);
-  EXPECT_EQ(updates_[1].stage, "align");
-  EXPECT_NEAR(updates_[2].fraction, .455, 1e-12);
-}
-
 }  // namespace
 }  // namespace pleat

@@ -245,9 +245,38 @@ def scrub_problems(it, kills, chance):
     return it.crashes.matrix("scrub", damaged_c, command, inspect, kills, chance)
 
 
+def train_problems(it, kills, chance):
+    """A training that is killed goes on, ends with the same model, and leaves no checkpoint behind."""
+    folder = it.root / "performer"
+    it.crashes.run("generate", "performer", "-o", str(folder), "--format", "pc2", "--frames", "24", "--vertices", "700")
+    command = ["train", str(folder / "performer.pc2"), *it.local(), "--learner", "ridge", "--resolution-percent", "10", "-q"]
+    it.fresh()
+    it.crashes.run(*command)
+    expected = it.crashes.listed(it.data, "models")
+
+    def inspect(_):
+        jobs = it.crashes.listed(it.data, "jobs")
+        if jobs is None or not it.keeps_a_and_b():
+            return "the folder does not open"
+        for job in jobs:
+            if it.crashes.run("jobs", "watch", job, *it.local()).returncode != 0:
+                return "the job does not go on"
+        if jobs and it.crashes.listed(it.data, "models") != expected:
+            return "the model is another one"
+        check = json.loads(it.crashes.run("store", "check", str(it.data), "--json").stdout)
+        if check["problems"] or check["entries"]["checkpoint"] != 0:
+            return "the store is not sound, or a checkpoint is left"
+        return None
+
+    if not expected or len(expected) != 1:
+        return ["train: the training fails without a kill"]
+    return it.crashes.matrix("train", it.fresh, command, inspect, kills, chance)
+
+
 def all_problems(crashes, root, kills, chance):
     it = Template(crashes, root)
-    matrices = (upload_problems, delete_problems, backup_problems, repair_problems, sweep_problems, scrub_problems)
+    matrices = (upload_problems, delete_problems, backup_problems, repair_problems, sweep_problems, scrub_problems,
+                train_problems)
     print(f"{'command':<10} {'moments':>8} {'kills':>6} {'lost':>5}")
     problems = []
     for matrix in matrices:

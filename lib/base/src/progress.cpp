@@ -1,6 +1,7 @@
 #include "pleat/base/progress.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace pleat {
@@ -23,6 +24,17 @@ Progress Progress::Stage(const std::string& stage, double begin, double end) con
   sub.begin_ = begin_ + begin * (end_ - begin_);
   sub.end_ = begin_ + end * (end_ - begin_);
   return sub;
+}
+
+Progress Progress::ForwardOnly() const {
+  // The fraction is shared, because every stage of the token has a copy of the sink.
+  return Progress(
+      [whole = *this, furthest = std::make_shared<double>(0)](const ProgressUpdate& update) {
+        *furthest = std::max(*furthest, update.fraction);
+        // Whoever reports next hears of a cancellation.
+        whole.Stage(update.stage, 0, 1).Report(*furthest, update.objective).IgnoreError();
+      },
+      cancel_test_);
 }
 
 bool Progress::cancelled() const { return cancel_test_ && cancel_test_(); }

@@ -205,10 +205,11 @@ absl::StatusOr<EvaluateReport> EvaluateCharacter(const MeshSequence& sequence,
                                                  const std::optional<MeshSequence>& test_sequence,
                                                  const EvaluateOptions& options,
                                                  const Progress& progress) {
+  const Progress forward = progress.ForwardOnly();
   PLEAT_ASSIGN_OR_RETURN(
       const EvaluationSetup setup,
-      PrepareEvaluation(sequence, test_sequence, options, progress.Stage("", 0, .35)));
-  return EvaluateLearning(setup, options.train, options, progress.Stage("", .35, 1));
+      PrepareEvaluation(sequence, test_sequence, options, forward.Stage("", 0, .35)));
+  return EvaluateLearning(setup, options.train, options, forward.Stage("", .35, 1));
 }
 
 }  // namespace pleat

@@ -9,8 +9,8 @@
 #include "absl/strings/str_format.h"
 #include "pleat/base/status.h"
 #include "pleat/character/pose_evaluator.h"
-#include "pleat/gp/scaling.h"
 #include "pleat/math/pca.h"
+#include "pleat/math/spread_rows.h"
 
 namespace pleat {
 namespace {

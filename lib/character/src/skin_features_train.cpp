@@ -13,8 +13,8 @@
 #include "pleat/base/parallel.h"
 #include "pleat/base/status.h"
 #include "pleat/geometry/surface_cells.h"
-#include "pleat/gp/scaling.h"
 #include "pleat/math/pca.h"
+#include "pleat/math/spread_rows.h"
 
 namespace pleat {
 namespace {

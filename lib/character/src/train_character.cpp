@@ -222,7 +222,9 @@ absl::StatusOr<std::shared_ptr<const CharacterModel>> Train(
   if (options.jumps == JumpPolicy::kRefuse && !resources.clips_are_known_without_jumps) {
     for (const MeshSequence& clip : clips) PLEAT_RETURN_IF_ERROR(RefuseFrameJumps(clip));
   }
-  return Training(options, resources, progress).Run(frames, rig, summary);
+  // The automatic rig tries again where its first skeleton is doubtful.
+  const Progress forward = progress.ForwardOnly();
+  return Training(options, resources, forward).Run(frames, rig, summary);
 }
 
 }  // namespace

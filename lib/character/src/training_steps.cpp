@@ -26,7 +26,7 @@
 #include "pleat/fitting/fit_weights.h"
 #include "pleat/fitting/rig_refinement.h"
 #include "pleat/geometry/control_mesh.h"
-#include "pleat/gp/scaling.h"
+#include "pleat/math/spread_rows.h"
 #include "pleat/skeleton/pose_history.h"
 
 namespace pleat {

@@ -11,8 +11,8 @@
 namespace pleat {
 namespace {
 
-absl::Status CheckInput(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
-                        const std::vector<int>& vertices) {
+absl::Status CheckDetailsInput(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
+                               const std::vector<int>& vertices) {
   PLEAT_RETURN_IF_ERROR(CheckRigOfSequence("details", sequence, rig));
   PLEAT_RETURN_IF_ERROR(CheckTrackOfSequence("details", sequence, rig, track));
   for (const int v : vertices) {
@@ -87,7 +87,7 @@ absl::StatusOr<Eigen::MatrixXd> ComputeDetails(const MeshSequence& sequence, con
                                                const std::vector<int>& vertices,
                                                const ComputeDetailsOptions& options,
                                                const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(CheckInput(sequence, rig, track, vertices));
+  PLEAT_RETURN_IF_ERROR(CheckDetailsInput(sequence, rig, track, vertices));
   constexpr int kBatch = 64;  // frames between two reports of progress
   const int num_frames = sequence.num_frames();
   Eigen::MatrixXd details(num_frames, 3 * vertices.size());

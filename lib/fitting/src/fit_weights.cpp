@@ -2,17 +2,18 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdint>
 #include <vector>
 
 #include "pleat/base/parallel.h"
+#include "pleat/math/spread_rows.h"
 
 namespace pleat {
 
 Eigen::VectorXf ComputeFitWeights(const MeshSequence& sequence, const Rig& rig,
                                   const PoseTrack& track, int num_threads, int max_frames) {
   assert(track.num_frames() == sequence.num_frames());
-  const int num_frames = std::min(sequence.num_frames(), max_frames);
+  const std::vector<Eigen::Index> frames = SpreadRows(sequence.num_frames(), max_frames);
+  const int num_frames = static_cast<int>(frames.size());
   // Items have a fixed size, and their sums are added in order, so that the number of threads does
   // not show.
   constexpr int kItemFrames = 16;
@@ -23,7 +24,7 @@ Eigen::VectorXf ComputeFitWeights(const MeshSequence& sequence, const Rig& rig,
     BoneTransforms transforms;
     Eigen::Matrix3Xd skinned;
     for (int f = item * kItemFrames; f < std::min(num_frames, (item + 1) * kItemFrames); ++f) {
-      const int t = static_cast<int>(static_cast<int64_t>(f) * sequence.num_frames() / num_frames);
+      const int t = static_cast<int>(frames[f]);
       ComputeBoneTransforms(rig.skeleton, track.pose(t), {}, &transforms);
       SkinVertices(rig.weights, rig.rest_positions, transforms, &skinned);
       sums[item] +=

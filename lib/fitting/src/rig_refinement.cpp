@@ -45,6 +45,7 @@
 #include "pleat/fitting/moments.h"
 #include "pleat/fitting/pose_energy.h"
 #include "pleat/fitting/pose_solvers.h"
+#include "pleat/math/spread_rows.h"
 #include "pleat/mesh/adjacency.h"
 #include "vertex_step.h"
 
@@ -56,9 +57,8 @@ class RigRefiner {
   RigRefiner(const MeshSequence& sequence, const Rig& rig, const PoseTrack& track,
              const RigRefinementOptions& options)
       : sequence_(sequence), first_(rig), options_(options), rig_(rig) {
-    const int num_frames = std::min(sequence.num_frames(), options.max_frames);
-    for (int f = 0; f < num_frames; ++f) {
-      const int t = static_cast<int>(static_cast<int64_t>(f) * sequence.num_frames() / num_frames);
+    for (const Eigen::Index row : SpreadRows(sequence.num_frames(), options.max_frames)) {
+      const int t = static_cast<int>(row);
       const Eigen::Vector3d center = sequence.frame(t).cast<double>().rowwise().mean();
       frames_.push_back(t);
       centers_.push_back(center);

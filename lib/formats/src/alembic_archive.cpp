@@ -14,9 +14,8 @@
 namespace pleat {
 namespace {
 
-constexpr int kMaxDepth = 1000;
-constexpr size_t kHashBytes = 32;      // behind the headers of the children
-constexpr uint8_t kTextFollows = 255;  // in place of an index of metadata
+constexpr int kMaxTreeDepth = 1000;
+constexpr size_t kHashBytes = 32;  // behind the headers of the children
 // The children of the root group.
 constexpr size_t kLayoutVersion = 0, kLibraryVersion = 1, kTop = 2, kMetadata = 3;
 constexpr size_t kTimeSamplings = 4, kIndexedMetadata = 5, kNumRootChildren = 6;
@@ -146,9 +145,9 @@ absl::Status AlembicArchive::ReadObjects(OgawaRef top) {
   while (!open.empty()) {
     const OpenObject next = std::move(open.back());
     open.pop_back();
-    if (next.depth > kMaxDepth) {
+    if (next.depth > kMaxTreeDepth) {
       return absl::InvalidArgumentError(
-          absl::StrCat("objects are nested more than ", kMaxDepth, " deep"));
+          absl::StrCat("objects are nested more than ", kMaxTreeDepth, " deep"));
     }
     const int index = static_cast<int>(objects_.size());
     objects_.push_back(next.object);

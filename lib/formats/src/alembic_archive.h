@@ -14,6 +14,9 @@
 
 namespace pleat {
 
+// Stands in place of an index of metadata where the text itself follows.
+inline constexpr uint32_t kTextFollows = 255;
+
 struct AlembicObject {
   std::string_view name{};      // as in the file: any bytes, not empty
   std::string_view metadata{};  // "key=value;key=value"

@@ -8,7 +8,6 @@
 namespace pleat {
 namespace {
 
-constexpr uint32_t kTextFollowsIndex = 255;
 constexpr int32_t kWrittenLayout = 0, kWrittenLibrary = 10800;  // as library version 1.8 writes
 constexpr uint32_t kSamplingBit = 0x100, kChangesBit = 0x200, kSameSizeBit = 0x400;
 constexpr uint32_t kConstantBit = 0x800;
@@ -53,7 +52,7 @@ void WriteNameAndMetadata(const std::string& name, const std::string& metadata, 
                           uint32_t hint, ByteWriter* writer) {
   WriteSized(static_cast<uint32_t>(name.size()), hint, writer);
   writer->WriteRaw(name);
-  if (index != kTextFollowsIndex) return;
+  if (index != kTextFollows) return;
   WriteSized(static_cast<uint32_t>(metadata.size()), hint, writer);
   writer->WriteRaw(metadata);
 }
@@ -92,7 +91,7 @@ uint32_t AlembicBuilder::IndexOf(const std::string& metadata) {
   const auto known = std::ranges::find(metadata_, metadata);
   const auto index = static_cast<uint32_t>(known - metadata_.begin());
   if (known != metadata_.end()) return index;
-  if (metadata.size() > 255 || index >= kTextFollowsIndex) return kTextFollowsIndex;
+  if (metadata.size() > 255 || index >= kTextFollows) return kTextFollows;
   metadata_.push_back(metadata);
   return index;
 }
@@ -176,7 +175,7 @@ AlembicBuilder::Written AlembicBuilder::AddObject(const ObjectToWrite& object) {
     headers.WriteString(child.name);
     const uint32_t index = IndexOf(child.metadata);
     headers.Write(static_cast<uint8_t>(index));
-    if (index == kTextFollowsIndex) headers.WriteString(child.metadata);
+    if (index == kTextFollows) headers.WriteString(child.metadata);
   }
   const Digest children_digest = object.children.empty() ? Digest{} : MurmurHash3(digests);
   headers.WriteRaw(BytesOf(properties.digest));

@@ -12,7 +12,7 @@
 namespace pleat {
 namespace {
 
-constexpr size_t kMaxListed = 8;  // paths in a message
+constexpr size_t kMaxListedPaths = 8;  // paths in a message
 
 class Chooser {
  public:
@@ -126,7 +126,7 @@ class Chooser {
 
   std::string Paths(const std::vector<int>& objects) const {
     std::vector<std::string> paths;
-    for (size_t i = 0; i < std::min(objects.size(), kMaxListed); ++i) {
+    for (size_t i = 0; i < std::min(objects.size(), kMaxListedPaths); ++i) {
       paths.push_back(archive_.Path(objects[i]));
     }
     const size_t more = objects.size() - paths.size();
@@ -141,7 +141,7 @@ class Chooser {
       std::set<std::string> schemas;
       for (size_t i = 1; i < archive_.objects().size(); ++i) {
         schemas.insert(EscapeControls(archive_.schema(static_cast<int>(i))));
-        if (schemas.size() == kMaxListed) break;
+        if (schemas.size() == kMaxListedPaths) break;
       }
       return absl::NotFoundError(absl::StrCat("the archive holds no mesh; its ",
                                               archive_.objects().size() - 1,

@@ -12,7 +12,6 @@ namespace pleat {
 namespace {
 
 constexpr size_t kKeyBytes = 16;  // the hash before the values of a sample
-constexpr uint32_t kTextFollows = 255;
 
 // The bits of a header (docs/formats/alembic.md).
 constexpr uint32_t kHasSampling = 0x100, kHasChanges = 0x200, kIsConstant = 0x800;

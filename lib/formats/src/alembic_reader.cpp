@@ -276,8 +276,8 @@ FrameRate ChooseRate(const AlembicChoice& choice, const std::optional<FrameRate>
   return used;
 }
 
-absl::StatusOr<MeshSequence> Decode(std::string_view bytes, const AlembicOptions& options,
-                                    const Progress& progress, InputReport* report) {
+absl::StatusOr<MeshSequence> DecodeArchive(std::string_view bytes, const AlembicOptions& options,
+                                           const Progress& progress, InputReport* report) {
   std::vector<InputNote>* notes = &report->notes;
   if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
   if (!bytes.starts_with("Ogawa")) {
@@ -315,7 +315,7 @@ absl::StatusOr<MeshSequence> DecodeAlembic(std::string_view bytes, const std::st
                                            const AlembicOptions& options, const Progress& progress,
                                            InputReport* report) {
   InputReport found;
-  absl::StatusOr<MeshSequence> sequence = Decode(bytes, options, progress, &found);
+  absl::StatusOr<MeshSequence> sequence = DecodeArchive(bytes, options, progress, &found);
   if (report != nullptr) {
     report->has_frame_rate = found.has_frame_rate;
     report->first_frame = found.first_frame;

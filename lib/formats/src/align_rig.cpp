@@ -18,8 +18,8 @@ namespace pleat {
 namespace {
 
 // Clip units per file unit: centimeters and inches to meters, and back.
-constexpr double kUnits[] = {1, .01, 100, .0254, 1 / .0254};
-constexpr double kUnitTolerance = .05;  // of the ratio of two sizes that should be a unit
+constexpr double kUnitRatios[] = {1, .01, 100, .0254, 1 / .0254};
+constexpr double kRatioTolerance = .05;  // of the ratio of two sizes that should be a unit
 constexpr int kMaxSamples = 400, kNumClosestPointSteps = 15;
 // Two placements are told apart when the better one has at most half of the other's distance.
 constexpr double kClearlyBetter = .5;
@@ -210,15 +210,15 @@ absl::Status AlignRig(const Eigen::Matrix3Xd& rest, double max_distance_m, RigFi
   meshes.clip_size = SizeAround(distinct_clip, meshes.clip_center);
   const double ratio = meshes.clip_size / meshes.file_size;
   const auto unit = std::ranges::find_if(
-      kUnits, [&](double u) { return std::abs(ratio / u - 1) <= kUnitTolerance; });
-  const double scale = unit != std::end(kUnits) ? *unit : 1;
+      kUnitRatios, [&](double u) { return std::abs(ratio / u - 1) <= kRatioTolerance; });
+  const double scale = unit != std::end(kUnitRatios) ? *unit : 1;
   const std::vector<Placement> guesses = DirectGuesses(meshes, scale, file->shown_from_mesh);
   for (size_t g = 0; g < guesses.size(); ++g) {
     if (!Distance(meshes, guesses[g])) continue;
     if (g > 0) Move(guesses[g], file, notes);
     return absl::OkStatus();
   }
-  if (unit == std::end(kUnits)) return absl::OkStatus();
+  if (unit == std::end(kUnitRatios)) return absl::OkStatus();
   PLEAT_ASSIGN_OR_RETURN(const std::optional<Placement> placement, Search(meshes, scale));
   if (placement) Move(*placement, file, notes);
   return absl::OkStatus();

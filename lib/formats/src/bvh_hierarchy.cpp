@@ -12,7 +12,7 @@ namespace pleat {
 namespace {
 
 constexpr double kMaxLength = 1e9;  // of an offset, in any unit
-constexpr size_t kMaxJointNameBytes = 4096;
+constexpr size_t kMaxBvhNameBytes = 4096;
 
 bool Is(std::string_view word, const char* keyword) {
   return absl::EqualsIgnoreCase(absl::string_view(word.data(), word.size()), keyword);
@@ -82,7 +82,7 @@ class HierarchyParser {
 
   absl::Status ParseJoint(bool is_root) {
     const std::string_view name = words_.RestOfName();
-    if (name.size() > kMaxJointNameBytes) return Fault("the name of a joint is too long");
+    if (name.size() > kMaxBvhNameBytes) return Fault("the name of a joint is too long");
     if (is_root != (current_ < 0)) {
       return Fault(is_root ? "a ROOT stands inside another joint" : "a JOINT stands outside ROOT");
     }

@@ -17,7 +17,7 @@
 namespace pleat {
 namespace {
 
-constexpr FileKind kKind = {"PLEATCKP", 1, 1, "checkpoint"};
+constexpr FileKind kCheckpointKind = {"PLEATCKP", 1, 1, "checkpoint"};
 constexpr uint32_t kModelVersion = 5;  // the version of model files whose sections these are
 constexpr size_t kMaxJobIdBytes = 64;
 constexpr size_t kMaxWarningBytes = size_t{1} << 16;
@@ -166,7 +166,7 @@ absl::Status ReadStages(ByteReader* reader, LastStage last, const MeshLimits& li
 std::string EncodeCheckpoint(const CheckpointFile& file) {
   const TrainingCheckpoint& checkpoint = file.checkpoint;
   ByteWriter writer;
-  WriteFileKind(kKind, &writer);
+  WriteFileKind(kCheckpointKind, &writer);
   writer.WriteString(file.job_id);
   writer.WriteString(file.inputs);
   writer.Write(static_cast<uint32_t>(LastStageOf(checkpoint)));
@@ -178,7 +178,7 @@ std::string EncodeCheckpoint(const CheckpointFile& file) {
 }
 
 absl::StatusOr<CheckpointFile> DecodeCheckpoint(std::string_view bytes, const MeshLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const SealedFile sealed, OpenSealedFile(kKind, bytes));
+  PLEAT_ASSIGN_OR_RETURN(const SealedFile sealed, OpenSealedFile(kCheckpointKind, bytes));
   ByteReader reader(sealed.bytes.substr(kFileKindBytes));
   CheckpointFile file;
   PLEAT_ASSIGN_OR_RETURN(file.job_id, reader.ReadString(kMaxJobIdBytes, "job id"));

@@ -17,13 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kUnsignedInt = 5125, kFloat = 5126;
-
-absl::Status Fault(const std::string& what) {
-  return absl::InvalidArgumentError(absl::StrCat("GLB: ", what));
-}
 
 uint32_t ReadU32(std::string_view bytes, size_t at) {
   uint32_t value;
@@ -86,8 +81,8 @@ absl::Status CheckExtensions(const json& root) {
   for (const json& extension : *required) {
     for (const std::string_view name : kCompressions) {
       if (extension == std::string(name)) {
-        return Fault(absl::StrCat("the file needs ", std::string(name),
-                                  ", which is not read: export it without compression"));
+        return GlbFault(absl::StrCat("the file needs ", std::string(name),
+                                     ", which is not read: export it without compression"));
       }
     }
   }
@@ -145,37 +140,42 @@ std::vector<float> GlbAccessor::CopyFloats() const {
   return values;
 }
 
+absl::Status GlbFault(const std::string& what) {
+  return absl::InvalidArgumentError(absl::StrCat("GLB: ", what));
+}
+
 absl::StatusOr<GlbContainer> GlbContainer::Open(std::string_view bytes, const MeshLimits& limits) {
-  if (bytes.size() < 20 || ReadU32(bytes, 0) != kMagic) return Fault("not a binary glTF file");
+  if (bytes.size() < 20 || ReadU32(bytes, 0) != kGlbMagic)
+    return GlbFault("not a binary glTF file");
   if (ReadU32(bytes, 4) != 2) {
-    return Fault(absl::StrCat("version ", ReadU32(bytes, 4), ", not 2"));
+    return GlbFault(absl::StrCat("version ", ReadU32(bytes, 4), ", not 2"));
   }
   if (ReadU32(bytes, 8) > bytes.size()) {
-    return Fault(absl::StrCat("cut off: ", bytes.size(), " of ", ReadU32(bytes, 8), " bytes"));
+    return GlbFault(absl::StrCat("cut off: ", bytes.size(), " of ", ReadU32(bytes, 8), " bytes"));
   }
   GlbContainer glb;
   bool has_json = false;
   for (size_t at = 12; at + 8 <= bytes.size();) {
     const uint64_t size = ReadU32(bytes, at);
     const uint32_t kind = ReadU32(bytes, at + 4);
-    if (size > bytes.size() - at - 8) return Fault("a chunk reaches beyond the end");
+    if (size > bytes.size() - at - 8) return GlbFault("a chunk reaches beyond the end");
     const std::string_view chunk = bytes.substr(at + 8, size);
-    if (kind == kJsonChunk && !has_json) {
+    if (kind == kGlbJsonChunk && !has_json) {
       if (size > limits.max_document_bytes) {
         return absl::ResourceExhaustedError(absl::StrCat(
             "GLB: ", size, " bytes of JSON; the limit is ", limits.max_document_bytes));
       }
       if (NestsTooDeep(chunk, kMaxGltfDepth)) {
-        return Fault(absl::StrCat("JSON nested deeper than ", kMaxGltfDepth, " levels"));
+        return GlbFault(absl::StrCat("JSON nested deeper than ", kMaxGltfDepth, " levels"));
       }
       glb.root_ = json::parse(chunk, nullptr, false);
       has_json = true;
-    } else if (kind == kBinaryChunk && glb.binary_.empty()) {
+    } else if (kind == kGlbBinaryChunk && glb.binary_.empty()) {
       glb.binary_ = chunk;
     }
     at += 8 + size;
   }
-  if (!has_json || !glb.root_.is_object()) return Fault("the JSON chunk is missing or damaged");
+  if (!has_json || !glb.root_.is_object()) return GlbFault("the JSON chunk is missing or damaged");
   PLEAT_RETURN_IF_ERROR(CheckExtensions(glb.root_));
   return glb;
 }
@@ -202,7 +202,7 @@ const json& GlbContainer::Entry(const char* name, const json& index) const {
 absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_view type) const {
   const json& accessor = Entry("accessors", index);
   if (!accessor.is_object() || accessor.value("type", json()) != std::string(type)) {
-    return Fault(absl::StrCat("an accessor of type ", std::string(type), " is missing"));
+    return GlbFault(absl::StrCat("an accessor of type ", std::string(type), " is missing"));
   }
   GlbAccessor result;
   const int64_t component = Size(accessor, "componentType", 0);
@@ -213,7 +213,7 @@ absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_
       static_cast<int64_t>(result.num_components_ * ComponentBytes(result.component_type_));
   const int64_t count = Size(accessor, "count", -1);
   if (element_bytes == 0 || count < 1 || count > static_cast<int64_t>(binary_.size())) {
-    return Fault("an accessor reaches beyond its buffer");
+    return GlbFault("an accessor reaches beyond its buffer");
   }
   result.count_ = static_cast<size_t>(count);
   if (accessor.contains("bufferView")) {
@@ -221,7 +221,7 @@ absl::StatusOr<GlbAccessor> GlbContainer::Access(const json& index, std::string_
                            Elements(accessor["bufferView"], Size(accessor, "byteOffset", 0), count,
                                     element_bytes, &result.stride_));
   } else if (!accessor.contains("sparse")) {
-    return Fault(
+    return GlbFault(
         "an accessor has no buffer view; if the mesh is compressed, export it without compression");
   }
   if (accessor.contains("sparse")) {
@@ -234,10 +234,10 @@ absl::StatusOr<const char*> GlbContainer::Elements(const json& view_index, int64
                                                    int64_t count, int64_t element_bytes,
                                                    size_t* stride) const {
   const json& view = Entry("bufferViews", view_index);
-  if (!view.is_object()) return Fault("an accessor's buffer view is missing");
+  if (!view.is_object()) return GlbFault("an accessor's buffer view is missing");
   const json& buffer = Entry("buffers", view.value("buffer", json()));
   if (view.value("buffer", json()) != 0 || !buffer.is_object() || buffer.contains("uri")) {
-    return Fault("only the file's own binary chunk is read, no other files");
+    return GlbFault("only the file's own binary chunk is read, no other files");
   }
   const int64_t view_offset = Size(view, "byteOffset", 0), view_size = Size(view, "byteLength", -1);
   const int64_t step = Size(view, "byteStride", element_bytes);
@@ -246,7 +246,7 @@ absl::StatusOr<const char*> GlbContainer::Elements(const json& view_index, int64
       view_size > static_cast<int64_t>(binary_.size()) - view_offset || offset > view_size ||
       element_bytes > view_size - offset ||
       (count - 1) > (view_size - offset - element_bytes) / step) {
-    return Fault("an accessor reaches beyond its buffer");
+    return GlbFault("an accessor reaches beyond its buffer");
   }
   *stride = static_cast<size_t>(step);
   return binary_.data() + view_offset + offset;
@@ -257,13 +257,13 @@ absl::Status GlbContainer::ReadSparse(const json& sparse, int64_t element_bytes,
   const json indices = sparse.is_object() ? sparse.value("indices", json()) : json();
   const json values = sparse.is_object() ? sparse.value("values", json()) : json();
   if (!indices.is_object() || !values.is_object()) {
-    return Fault("a sparse accessor lacks its indices or values");
+    return GlbFault("a sparse accessor lacks its indices or values");
   }
   const int64_t count = Size(sparse, "count", -1);
   const int64_t index_type = Size(indices, "componentType", 0);
   if (count < 1 || count > static_cast<int64_t>(accessor->count_) ||
       (index_type != kUnsignedByte && index_type != kUnsignedShort && index_type != kUnsignedInt)) {
-    return Fault("a sparse accessor has a bad count or type of its indices");
+    return GlbFault("a sparse accessor has a bad count or type of its indices");
   }
   accessor->sparse_index_type_ = static_cast<int>(index_type);
   const auto index_bytes = static_cast<int64_t>(ComponentBytes(accessor->sparse_index_type_));
@@ -276,7 +276,7 @@ absl::Status GlbContainer::ReadSparse(const json& sparse, int64_t element_bytes,
                                   count, element_bytes, &value_stride));
   if (static_cast<int64_t>(index_stride) != index_bytes ||
       static_cast<int64_t>(value_stride) != element_bytes) {
-    return Fault("the buffer views of a sparse accessor must not have a byteStride");
+    return GlbFault("the buffer views of a sparse accessor must not have a byteStride");
   }
   accessor->num_sparse_ = static_cast<size_t>(count);
   for (size_t i = 0; i < accessor->num_sparse_; ++i) {
@@ -284,7 +284,7 @@ absl::Status GlbContainer::ReadSparse(const json& sparse, int64_t element_bytes,
     if (index >= accessor->count_ ||
         (i > 0 &&
          index <= LoadIndex(accessor->sparse_indices_, accessor->sparse_index_type_, i - 1))) {
-      return Fault("the indices of a sparse accessor must ascend and be its elements");
+      return GlbFault("the indices of a sparse accessor must ascend and be its elements");
     }
   }
   return absl::OkStatus();

@@ -3,15 +3,23 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "pleat/mesh/mesh_limits.h"
 
 namespace pleat {
 
 inline constexpr int kMaxGltfDepth = 64;  // nested brackets of its JSON
+// The first word of a file and the types of its chunks.
+inline constexpr uint32_t kGlbMagic = 0x46546C67, kGlbJsonChunk = 0x4E4F534A;
+inline constexpr uint32_t kGlbBinaryChunk = 0x004E4942;
+
+// kInvalidArgument that says what is wrong with a GLB file.
+absl::Status GlbFault(const std::string& what);
 
 // The elements of one accessor, all of which lie inside the file.
 class GlbAccessor {

@@ -27,10 +27,6 @@ constexpr size_t kMaxDropped = 16;               // kinds of attributes that are
 // that never ends. Large scenes have some ten thousand pieces.
 constexpr size_t kMaxVisits = 4'000'000;
 
-absl::Status Fault(const std::string& what) {
-  return absl::InvalidArgumentError(absl::StrCat("GLB: ", what));
-}
-
 // The corners of triangle t of a strip or a fan, of which consecutive ones share vertices. Every
 // second triangle of a strip is turned around, so that all are wound alike.
 std::array<size_t, 3> ConnectedCorners(int mode, size_t t) {
@@ -67,7 +63,7 @@ class MeshReader {
     const json& mesh = glb_.Entry("meshes", *index);
     const auto primitives = mesh.is_object() ? mesh.find("primitives") : mesh.end();
     if (!mesh.is_object() || primitives == mesh.end() || !primitives->is_array()) {
-      return Fault(absl::StrCat("node ", node, ": its mesh has no primitives"));
+      return GlbFault(absl::StrCat("node ", node, ": its mesh has no primitives"));
     }
     PLEAT_ASSIGN_OR_RETURN(const int skin, ReadSkinOf(entry));
     // Exporters split a mesh by its materials and leave all its vertices to each piece.
@@ -82,7 +78,7 @@ class MeshReader {
   absl::StatusOr<int> ReadSkinOf(const json& node) {
     const auto index = node.find("skin");
     if (index == node.end()) return -1;
-    if (glb_.Entry("skins", *index).is_null()) return Fault("the skin of a node is missing");
+    if (glb_.Entry("skins", *index).is_null()) return GlbFault("the skin of a node is missing");
     const auto skin = index->get<size_t>();
     if (result_.skins[skin].joint_nodes.empty()) {
       PLEAT_ASSIGN_OR_RETURN(result_.skins[skin], ReadGlbSkin(glb_, nodes_, skin));
@@ -95,7 +91,7 @@ class MeshReader {
     const auto attributes = primitive.is_object() ? primitive.find("attributes") : primitive.end();
     if (!primitive.is_object() || attributes == primitive.end() || !attributes->is_object() ||
         !attributes->contains("POSITION")) {
-      return Fault(absl::StrCat("node ", node, ": a primitive of its mesh has no POSITION"));
+      return GlbFault(absl::StrCat("node ", node, ": a primitive of its mesh has no POSITION"));
     }
     num_visits_ += 1 + attributes->size();
     if (num_visits_ > kMaxVisits) {
@@ -104,7 +100,7 @@ class MeshReader {
     }
     const json mode = primitive.value("mode", json(kTriangles));
     if (!mode.is_number_integer() || mode < 0 || mode > kTriangleFan) {
-      return Fault(absl::StrCat("node ", node, ": a primitive has an unknown mode"));
+      return GlbFault(absl::StrCat("node ", node, ": a primitive has an unknown mode"));
     }
     if (mode < kTriangles) {
       dropped_.insert("lines and points");
@@ -156,7 +152,7 @@ class MeshReader {
   absl::Status ReadTargets(const json& primitive, GlbPart* part) {
     const auto targets = primitive.find("targets");
     if (is_still_ || targets == primitive.end()) return absl::OkStatus();
-    if (!targets->is_array()) return Fault("the morph targets of a primitive are no list");
+    if (!targets->is_array()) return GlbFault("the morph targets of a primitive are no list");
     num_visits_ += targets->size();
     const auto num_vertices = static_cast<size_t>(part->positions.cols());
     for (const json& target : *targets) {
@@ -164,8 +160,8 @@ class MeshReader {
       if (!target.is_object() || !target.contains("POSITION")) continue;
       PLEAT_ASSIGN_OR_RETURN(points, glb_.Access(target["POSITION"], "VEC3"));
       if (points->count() != num_vertices) {
-        return Fault(absl::StrCat("a morph target has ", points->count(), " vertices, its mesh ",
-                                  num_vertices));
+        return GlbFault(absl::StrCat("a morph target has ", points->count(), " vertices, its mesh ",
+                                     num_vertices));
       }
     }
     return absl::OkStatus();
@@ -206,7 +202,7 @@ class MeshReader {
   absl::StatusOr<int> ReadTexcoords(const json& index, size_t num_vertices) {
     PLEAT_ASSIGN_OR_RETURN(const GlbAccessor accessor, glb_.Access(index, "VEC2"));
     if (accessor.count() != num_vertices) {
-      return Fault("POSITION and TEXCOORD_0 of a primitive differ in length");
+      return GlbFault("POSITION and TEXCOORD_0 of a primitive differ in length");
     }
     std::vector<Eigen::Vector2f>& texcoords = result_.appearance.texcoords;
     const auto first = static_cast<int>(texcoords.size());
@@ -243,8 +239,8 @@ class MeshReader {
       for (size_t c = 0; c < 3; ++c) {
         const double vertex = indices ? indices->At(at[c], 0) : static_cast<double>(at[c]);
         if (!(vertex >= 0 && vertex < range.count)) {
-          return Fault(absl::StrCat("node ", node, ": index ", at[c], " of its mesh names vertex ",
-                                    vertex, " of ", range.count));
+          return GlbFault(absl::StrCat("node ", node, ": index ", at[c],
+                                       " of its mesh names vertex ", vertex, " of ", range.count));
         }
         corners[c] = static_cast<int>(vertex);
       }
@@ -306,8 +302,8 @@ class MeshReader {
 
   absl::StatusOr<GlbMesh> Finish() {
     if (face_materials_.empty()) {
-      return Fault(absl::StrCat("the scene shows no triangles: ", nodes_.shown().size(), " nodes, ",
-                                num_vertices_, " vertices"));
+      return GlbFault(absl::StrCat("the scene shows no triangles: ", nodes_.shown().size(),
+                                   " nodes, ", num_vertices_, " vertices"));
     }
     AddNotes();
     const size_t num_faces = face_materials_.size();
@@ -317,7 +313,7 @@ class MeshReader {
     absl::StatusOr<Topology> topology =
         Topology::Create(static_cast<int>(num_vertices_), std::move(corner_vertices_),
                          std::vector<int32_t>(num_faces, 3));
-    if (!topology.ok()) return Fault(std::string(topology.status().message()));
+    if (!topology.ok()) return GlbFault(std::string(topology.status().message()));
     result_.topology = *std::move(topology);
     return std::move(result_);
   }

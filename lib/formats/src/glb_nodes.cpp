@@ -20,7 +20,7 @@ absl::Status NodeFault(size_t node, const std::string& what) {
 }
 
 // Reads a list of `count` finite numbers. Without the key the values stay as they are.
-bool ReadNumbers(const json& node, const char* key, size_t count, double* values) {
+bool ReadNodeNumbers(const json& node, const char* key, size_t count, double* values) {
   const auto found = node.find(key);
   if (found == node.end()) return true;
   if (!found->is_array() || found->size() != count) return false;
@@ -36,15 +36,15 @@ bool ReadNumbers(const json& node, const char* key, size_t count, double* values
 absl::StatusOr<GlbTransform> ReadTransform(const json& node, size_t index) {
   GlbTransform transform;
   if (node.contains("matrix")) {
-    if (!ReadNumbers(node, "matrix", 16, transform.matrix.emplace().data())) {
+    if (!ReadNodeNumbers(node, "matrix", 16, transform.matrix.emplace().data())) {
       return NodeFault(index, "'s matrix is not 16 numbers");
     }
     return transform;
   }
   Eigen::Vector4d turn(0, 0, 0, 1);  // x, y, z, w
-  if (!ReadNumbers(node, "translation", 3, transform.translation.data()) ||
-      !ReadNumbers(node, "scale", 3, transform.scale.data()) ||
-      !ReadNumbers(node, "rotation", 4, turn.data())) {
+  if (!ReadNodeNumbers(node, "translation", 3, transform.translation.data()) ||
+      !ReadNodeNumbers(node, "scale", 3, transform.scale.data()) ||
+      !ReadNodeNumbers(node, "rotation", 4, turn.data())) {
     return NodeFault(index, "'s translation, rotation or scale is not a list of finite numbers");
   }
   transform.rotation = Eigen::Quaterniond(turn);

@@ -21,10 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-absl::Status Fault(const std::string& what) {
-  return absl::InvalidArgumentError(absl::StrCat("GLB: ", what));
-}
-
 std::string SkinName(const json& skin) {
   const auto name = skin.is_object() ? skin.find("name") : skin.end();
   return skin.is_object() && name != skin.end() && name->is_string() ? name->get<std::string>()
@@ -35,7 +31,7 @@ std::string SkinName(const json& skin) {
 // the file has one skin.
 absl::StatusOr<size_t> ChooseSkin(const json& skins, const std::string& choice) {
   constexpr size_t kMaxNamed = 8;
-  if (skins.empty()) return Fault("the file has no skin: export the armature with the mesh");
+  if (skins.empty()) return GlbFault("the file has no skin: export the armature with the mesh");
   if (choice.empty() && skins.size() == 1) return 0;
   size_t chosen = skins.size(), num_named = 0;
   for (size_t s = 0; !choice.empty() && s < skins.size(); ++s) {
@@ -52,9 +48,9 @@ absl::StatusOr<size_t> ChooseSkin(const json& skins, const std::string& choice) 
   if (skins.size() > kMaxNamed) absl::StrAppend(&list, ", ...");
   const std::string fault =
       choice.empty() ? "" : absl::StrCat("--skin '", choice, "' is not one: ");
-  return Fault(absl::StrCat(fault, "the file has ", skins.size(),
-                            skins.size() == 1 ? " skin: " : " skins: ", list,
-                            "; choose one by name or number with --skin"));
+  return GlbFault(absl::StrCat(fault, "the file has ", skins.size(),
+                               skins.size() == 1 ? " skin: " : " skins: ", list,
+                               "; choose one by name or number with --skin"));
 }
 
 // Reads nodes, skin, skeleton and meshes, in this order, because each needs the one before. Mesh
@@ -70,7 +66,7 @@ class SkinReader {
     PLEAT_ASSIGN_OR_RETURN(skin_index_, ChooseSkin(glb_.List("skins"), std::string(skin)));
     PLEAT_ASSIGN_OR_RETURN(skin_, ReadGlbSkin(glb_, nodes_, skin_index_));
     if (skin_.joint_nodes.size() < 2) {
-      return Fault(absl::StrCat("the skin must have 2 to ", kMaxUserJoints, " joints"));
+      return GlbFault(absl::StrCat("the skin must have 2 to ", kMaxUserJoints, " joints"));
     }
     PLEAT_RETURN_IF_ERROR(MakeSkeleton());
     PLEAT_RETURN_IF_ERROR(ReadMeshes());
@@ -135,10 +131,10 @@ class SkinReader {
     const auto num_roots = static_cast<size_t>(std::ranges::count(parent_joints_, -1));
     if (num_roots > 1) {
       if (skin_.joint_nodes.size() == kMaxUserJoints) {
-        return Fault(absl::StrCat("the skin has ", num_roots,
-                                  " roots and no room for the joint "
-                                  "above them: a rig has at most ",
-                                  kMaxUserJoints, " joints"));
+        return GlbFault(absl::StrCat("the skin has ", num_roots,
+                                     " roots and no room for the joint "
+                                     "above them: a rig has at most ",
+                                     kMaxUserJoints, " joints"));
       }
       joints.push_back(CommonRoot({order.begin(), order.begin() + num_roots}));
       skin_places_.push_back(-1);
@@ -151,7 +147,7 @@ class SkinReader {
       skin_places_.push_back(j);
     }
     absl::StatusOr<Skeleton> skeleton = Skeleton::Create(std::move(joints));
-    if (!skeleton.ok()) return Fault(std::string(skeleton.status().message()));
+    if (!skeleton.ok()) return GlbFault(std::string(skeleton.status().message()));
     file_.skeleton = *std::move(skeleton);
     return absl::OkStatus();
   }
@@ -162,12 +158,12 @@ class SkinReader {
       if (!node.contains("mesh") || node.value("skin", json()) != skin_index_) continue;
       const json& mesh = glb_.Entry("meshes", node["mesh"]);
       const json primitives = mesh.is_object() ? mesh.value("primitives", json()) : json();
-      if (!primitives.is_array()) return Fault("a mesh has no primitives");
+      if (!primitives.is_array()) return GlbFault("a mesh has no primitives");
       for (const json& primitive : primitives) {
         PLEAT_RETURN_IF_ERROR(ReadPrimitive(primitive, &positions));
       }
     }
-    if (positions.empty()) return Fault("no mesh uses the skin");
+    if (positions.empty()) return GlbFault("no mesh uses the skin");
     file_.positions.resize(3, static_cast<Eigen::Index>(positions.size()));
     for (size_t v = 0; v < positions.size(); ++v) {
       file_.positions.col(static_cast<Eigen::Index>(v)) = positions[v];
@@ -179,7 +175,7 @@ class SkinReader {
     const json attributes =
         primitive.is_object() ? primitive.value("attributes", json::object()) : json::object();
     if (!attributes.is_object() || !attributes.contains("POSITION")) {
-      return Fault("a primitive of the skinned mesh lacks POSITION");
+      return GlbFault("a primitive of the skinned mesh lacks POSITION");
     }
     PLEAT_ASSIGN_OR_RETURN(const GlbAccessor points, glb_.Access(attributes["POSITION"], "VEC3"));
     if (positions->size() + points.count() > static_cast<size_t>(limits_.max_vertices)) {
@@ -188,7 +184,7 @@ class SkinReader {
     }
     for (size_t v = 0; v < points.count(); ++v) {
       const Eigen::Vector3d point(points.At(v, 0), points.At(v, 1), points.At(v, 2));
-      if (!point.allFinite()) return Fault(absl::StrCat("position ", v, " is not finite"));
+      if (!point.allFinite()) return GlbFault(absl::StrCat("position ", v, " is not finite"));
       positions->push_back(point);
     }
     PLEAT_ASSIGN_OR_RETURN(

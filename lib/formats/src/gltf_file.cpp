@@ -21,9 +21,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
-
-absl::Status Fault(const std::string& what) {
+absl::Status GltfFault(const std::string& what) {
   return absl::InvalidArgumentError(
       absl::StrCat("glTF: ", what, "; export as GLB to have all in one file"));
 }
@@ -58,26 +56,26 @@ absl::StatusOr<std::string> ReadBuffer(const json& buffer, size_t index, const s
                                        const MeshLimits& limits) {
   const auto uri = buffer.is_object() ? buffer.find("uri") : buffer.end();
   if (!buffer.is_object() || uri == buffer.end() || !uri->is_string()) {
-    return Fault(absl::StrCat("buffer ", index, " names no file"));
+    return GltfFault(absl::StrCat("buffer ", index, " names no file"));
   }
   const std::string text = uri->get<std::string>();
   if (text.starts_with("data:")) {
     const size_t comma = text.find(";base64,");
     std::string bytes;
     if (comma == std::string::npos || !absl::Base64Unescape(text.substr(comma + 8), &bytes)) {
-      return Fault(absl::StrCat("buffer ", index, ": its data URI is not base64"));
+      return GltfFault(absl::StrCat("buffer ", index, ": its data URI is not base64"));
     }
     return bytes;
   }
   const std::filesystem::path name = PercentDecoded(text);
   if (!IsInside(name)) {
-    return Fault(absl::StrCat("buffer ", index, " is '", EscapeControls(text),
-                              "', which is not beside the file"));
+    return GltfFault(absl::StrCat("buffer ", index, " is '", EscapeControls(text),
+                                  "', which is not beside the file"));
   }
   absl::StatusOr<std::string> bytes = ReadFile(
       (std::filesystem::path(path).parent_path() / name).string(), limits.max_document_bytes);
   if (absl::IsNotFound(bytes.status())) {
-    return Fault(absl::StrCat("its buffer '", EscapeControls(text), "' is not beside it"));
+    return GltfFault(absl::StrCat("its buffer '", EscapeControls(text), "' is not beside it"));
   }
   return bytes;
 }
@@ -87,7 +85,7 @@ absl::Status JoinBuffers(const std::string& path, const MeshLimits& limits, json
                          std::string* binary) {
   std::vector<size_t> starts;
   const json buffers = root->value("buffers", json::array());
-  if (!buffers.is_array()) return Fault("'buffers' is not a list");
+  if (!buffers.is_array()) return GltfFault("'buffers' is not a list");
   for (const json& buffer : buffers) {
     PLEAT_ASSIGN_OR_RETURN(const std::string bytes,
                            ReadBuffer(buffer, starts.size(), path, limits));
@@ -102,11 +100,11 @@ absl::Status JoinBuffers(const std::string& path, const MeshLimits& limits, json
   const auto views = root->find("bufferViews");
   if (views != root->end() && views->is_array()) {
     for (json& view : *views) {
-      if (!view.is_object()) return Fault("a buffer view is not an object");
+      if (!view.is_object()) return GltfFault("a buffer view is not an object");
       const json buffer = view.value("buffer", json()), offset = view.value("byteOffset", json(0));
       if (!buffer.is_number_integer() || buffer < 0 || buffer >= starts.size() ||
           !offset.is_number_integer() || offset < 0 || offset > int64_t{1} << 40) {
-        return Fault("a buffer view is outside its buffer");
+        return GltfFault("a buffer view is outside its buffer");
       }
       view["byteOffset"] = starts[buffer.get<size_t>()] + offset.get<size_t>();
       view["buffer"] = 0;
@@ -128,10 +126,10 @@ bool IsGltfText(std::string_view bytes) {
 absl::StatusOr<std::string> PackGltf(std::string_view text, const std::string& path,
                                      const MeshLimits& limits) {
   if (NestsTooDeep(text, kMaxGltfDepth)) {
-    return Fault(absl::StrCat("nested deeper than ", kMaxGltfDepth, " levels"));
+    return GltfFault(absl::StrCat("nested deeper than ", kMaxGltfDepth, " levels"));
   }
   json root = json::parse(text, nullptr, false);
-  if (!root.is_object()) return Fault("the file is not a JSON object");
+  if (!root.is_object()) return GltfFault("the file is not a JSON object");
   std::string binary;
   PLEAT_RETURN_IF_ERROR(JoinBuffers(path, limits, &root, &binary));
   std::string document = root.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -149,14 +147,14 @@ std::string GlbStart(std::string document, size_t binary_bytes) {
     bytes.append(reinterpret_cast<const char*>(&narrow), sizeof(narrow));
   };
   const uint64_t padded_bytes = (uint64_t{binary_bytes} + 3) / 4 * 4;
-  append(kMagic);
+  append(kGlbMagic);
   append(2);
   append(28 + document.size() + padded_bytes);
   append(document.size());
-  append(kJsonChunk);
+  append(kGlbJsonChunk);
   bytes.append(document);
   append(padded_bytes);
-  append(kBinaryChunk);
+  append(kGlbBinaryChunk);
   return bytes;
 }
 

@@ -26,7 +26,7 @@
 namespace pleat {
 namespace {
 
-constexpr FileKind kKind = {"PLEATMDL", kModelFileVersion, 1, "model file"};
+constexpr FileKind kModelKind = {"PLEATMDL", kModelFileVersion, 1, "model file"};
 constexpr uint32_t kNumSections = 10;
 constexpr uint64_t kTableEntryBytes = 24;
 constexpr uint64_t kFirstSectionOffset = kFileKindBytes + 4 + kNumSections * kTableEntryBytes;
@@ -173,7 +173,7 @@ absl::Status ReadLearnedSections(const Sections& sections, uint32_t version,
 std::string EncodeModel(const CharacterModel& model) {
   const std::array<std::string, kNumSections> sections = EncodeSections(model.parts());
   ByteWriter writer;
-  WriteFileKind(kKind, &writer);
+  WriteFileKind(kModelKind, &writer);
   writer.Write(kNumSections);
   uint64_t offset = kFirstSectionOffset;
   for (uint32_t i = 0; i < kNumSections; ++i) {
@@ -189,7 +189,7 @@ std::string EncodeModel(const CharacterModel& model) {
 
 absl::StatusOr<std::shared_ptr<const CharacterModel>> DecodeModel(std::string_view bytes,
                                                                   const MeshLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const SealedFile file, OpenSealedFile(kKind, bytes));
+  PLEAT_ASSIGN_OR_RETURN(const SealedFile file, OpenSealedFile(kModelKind, bytes));
   PLEAT_ASSIGN_OR_RETURN(const Sections sections, CutSections(file.bytes));
   CharacterModel::Parts parts;
   PLEAT_RETURN_IF_ERROR(ReadMeshSections(sections, file.version, limits, &parts));

@@ -20,11 +20,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "pleat.motion/1";
-constexpr double kMaxFps = 1000;
-constexpr double kUnitTolerance = 0.01;  // normalizing by more than this is worth a warning
+constexpr const char* kMotionSchema = "pleat.motion/1";
+constexpr double kMaxMotionFps = 1000;
+constexpr double kNormTolerance = 0.01;  // normalizing by more than this is worth a warning
 
-absl::Status Fault(const std::string& what) { return absl::InvalidArgumentError(what); }
+absl::Status MotionFault(const std::string& what) { return absl::InvalidArgumentError(what); }
 
 std::string KnownJoints(const Skeleton& skeleton) {
   return absl::StrJoin(skeleton.joints(), ", ",
@@ -35,19 +35,19 @@ absl::StatusOr<int> FindJoint(const Skeleton& skeleton, const std::string& name,
                               absl::string_view where) {
   const int joint = skeleton.FindJoint(name);
   if (joint >= 0) return joint;
-  return Fault(absl::StrCat(where, ": the character has no joint '", name, "'; its joints are ",
-                            KnownJoints(skeleton)));
+  return MotionFault(absl::StrCat(where, ": the character has no joint '", name,
+                                  "'; its joints are ", KnownJoints(skeleton)));
 }
 
 // Fills `numbers` from a JSON array of exactly that many finite numbers.
 absl::Status ReadNumbers(const json& value, const std::string& where, std::span<double> numbers) {
   if (!value.is_array() || value.size() != numbers.size()) {
-    return Fault(absl::StrCat(where, " must be a list of ", numbers.size(), " numbers"));
+    return MotionFault(absl::StrCat(where, " must be a list of ", numbers.size(), " numbers"));
   }
   for (size_t i = 0; i < numbers.size(); ++i) {
     numbers[i] = value[i].is_number() ? value[i].get<double>() : std::nan("");
     if (!std::isfinite(numbers[i])) {
-      return Fault(absl::StrCat(where, ", entry ", i, " is not a finite number"));
+      return MotionFault(absl::StrCat(where, ", entry ", i, " is not a finite number"));
     }
   }
   return absl::OkStatus();
@@ -62,11 +62,11 @@ class MotionParser {
       : root_(root), skeleton_(skeleton), limits_(limits) {}
 
   absl::StatusOr<Motion> Parse() {
-    if (!root_.is_object()) return Fault("a motion file must be a JSON object");
+    if (!root_.is_object()) return MotionFault("a motion file must be a JSON object");
     const auto schema = root_.find("schema");
-    if (schema == root_.end() || *schema != kSchema) {
-      return Fault(absl::StrCat("field 'schema' must be \"", kSchema, "\", found ",
-                                schema == root_.end() ? "none" : Excerpt(*schema)));
+    if (schema == root_.end() || *schema != kMotionSchema) {
+      return MotionFault(absl::StrCat("field 'schema' must be \"", kMotionSchema, "\", found ",
+                                      schema == root_.end() ? "none" : Excerpt(*schema)));
     }
     PLEAT_RETURN_IF_ERROR(ParseFps());
     PLEAT_RETURN_IF_ERROR(ParseJoints());
@@ -86,9 +86,9 @@ class MotionParser {
   absl::Status ParseFps() {
     const auto fps = root_.find("fps");
     const double value = fps != root_.end() && fps->is_number() ? fps->get<double>() : 0;
-    if (!(value > 0 && value <= kMaxFps)) {
-      return Fault(absl::StrCat("field 'fps' must be a number above 0 and at most ", kMaxFps,
-                                fps == root_.end() ? "; it is missing" : ""));
+    if (!(value > 0 && value <= kMaxMotionFps)) {
+      return MotionFault(absl::StrCat("field 'fps' must be a number above 0 and at most ",
+                                      kMaxMotionFps, fps == root_.end() ? "; it is missing" : ""));
     }
     track_.fps = value;
     return absl::OkStatus();
@@ -97,16 +97,16 @@ class MotionParser {
   absl::Status ParseJoints() {
     const auto joints = root_.find("joints");
     if (joints == root_.end() || !joints->is_array() || joints->empty()) {
-      return Fault(absl::StrCat("field 'joints' must list joint names; the character has ",
-                                KnownJoints(skeleton_)));
+      return MotionFault(absl::StrCat("field 'joints' must list joint names; the character has ",
+                                      KnownJoints(skeleton_)));
     }
     std::set<int> seen;
     for (const json& name : *joints) {
-      if (!name.is_string()) return Fault("field 'joints' must hold names only");
+      if (!name.is_string()) return MotionFault("field 'joints' must hold names only");
       PLEAT_ASSIGN_OR_RETURN(const int joint,
                              FindJoint(skeleton_, name.get<std::string>(), "joints"));
       if (!seen.insert(joint).second) {
-        return Fault(absl::StrCat("joints: '", name.get<std::string>(), "' is listed twice"));
+        return MotionFault(absl::StrCat("joints: '", name.get<std::string>(), "' is listed twice"));
       }
       columns_.push_back(joint);
     }
@@ -122,17 +122,18 @@ class MotionParser {
     const auto rotations = root_.find("rotations");
     const bool has_columns = translations != root_.end() && rotations != root_.end();
     if ((frames != root_.end()) == has_columns) {
-      return Fault("a motion needs either 'frames' or both 'root_translation' and 'rotations'");
+      return MotionFault(
+          "a motion needs either 'frames' or both 'root_translation' and 'rotations'");
     }
     const json& list = has_columns ? *translations : *frames;
-    if (!list.is_array() || list.empty()) return Fault("the motion has no frames");
+    if (!list.is_array() || list.empty()) return MotionFault("the motion has no frames");
     if (static_cast<int64_t>(list.size()) > limits_.max_frames) {
       return absl::ResourceExhaustedError(absl::StrCat(
           "the motion has ", list.size(), " frames, the limit is ", limits_.max_frames));
     }
     if (has_columns && (!rotations->is_array() || rotations->size() != list.size())) {
-      return Fault(absl::StrCat("'rotations' must have one entry for each of the ", list.size(),
-                                " frames of 'root_translation'"));
+      return MotionFault(absl::StrCat("'rotations' must have one entry for each of the ",
+                                      list.size(), " frames of 'root_translation'"));
     }
     track_.poses.reserve(list.size());
     for (size_t t = 0; t < list.size(); ++t) {
@@ -142,7 +143,7 @@ class MotionParser {
       }
       if (!list[t].is_object() || !list[t].contains("root_translation") ||
           !list[t].contains("rotations")) {
-        return Fault(absl::StrCat("frame ", t, " needs 'root_translation' and 'rotations'"));
+        return MotionFault(absl::StrCat("frame ", t, " needs 'root_translation' and 'rotations'"));
       }
       PLEAT_RETURN_IF_ERROR(ParsePose(t, list[t]["root_translation"], list[t]["rotations"]));
     }
@@ -154,8 +155,9 @@ class MotionParser {
     PLEAT_RETURN_IF_ERROR(ReadNumbers(translation, absl::StrCat("frame ", t, ", root_translation"),
                                       std::span(pose.root_position.data(), 3)));
     if (!rotations.is_array() || rotations.size() != columns_.size()) {
-      return Fault(absl::StrCat("frame ", t, " has ", rotations.is_array() ? rotations.size() : 0,
-                                " rotations, 'joints' lists ", columns_.size()));
+      return MotionFault(absl::StrCat("frame ", t, " has ",
+                                      rotations.is_array() ? rotations.size() : 0,
+                                      " rotations, 'joints' lists ", columns_.size()));
     }
     for (size_t i = 0; i < columns_.size(); ++i) {
       const std::string& name = skeleton_.joint(columns_[i]).name;
@@ -164,10 +166,10 @@ class MotionParser {
       PLEAT_RETURN_IF_ERROR(ReadNumbers(rotations[i], where, wxyz));
       const double norm = std::hypot(std::hypot(wxyz[0], wxyz[1]), std::hypot(wxyz[2], wxyz[3]));
       if (!(norm > 1e-6) || !std::isfinite(norm)) {
-        return Fault(absl::StrCat(where, " has length ", norm,
-                                  "; a rotation is a quaternion w, x, y, z of length 1"));
+        return MotionFault(absl::StrCat(where, " has length ", norm,
+                                        "; a rotation is a quaternion w, x, y, z of length 1"));
       }
-      num_rescaled_ += std::abs(norm - 1) > kUnitTolerance;
+      num_rescaled_ += std::abs(norm - 1) > kNormTolerance;
       pose.rotations[columns_[i]] =
           Eigen::Quaterniond(wxyz[0] / norm, wxyz[1] / norm, wxyz[2] / norm, wxyz[3] / norm);
     }
@@ -178,13 +180,14 @@ class MotionParser {
   absl::Status ParseBoneScales() {
     const auto scales = root_.find("bone_scales");
     if (scales == root_.end()) return absl::OkStatus();
-    if (!scales->is_object()) return Fault("field 'bone_scales' must map joint names to factors");
+    if (!scales->is_object())
+      return MotionFault("field 'bone_scales' must map joint names to factors");
     motion_.bone_scales.assign(static_cast<size_t>(skeleton_.num_joints()), 1.0);
     for (const auto& [name, value] : scales->items()) {
       PLEAT_ASSIGN_OR_RETURN(const int joint, FindJoint(skeleton_, name, "bone_scales"));
       const double factor = value.is_number() ? value.get<double>() : 0;
       if (!(factor > 0) || !std::isfinite(factor)) {
-        return Fault(absl::StrCat("bone_scales: the factor of '", name, "' must be above 0"));
+        return MotionFault(absl::StrCat("bone_scales: the factor of '", name, "' must be above 0"));
       }
       motion_.bone_scales[static_cast<size_t>(joint)] = factor;
     }
@@ -201,7 +204,8 @@ class MotionParser {
       track_.clip_starts.push_back(static_cast<int>(start));
     }
     if (!starts->is_array() || track_.clip_starts.size() != starts->size()) {
-      return Fault("field 'clip_starts' must list ascending frame numbers of the motion from 0");
+      return MotionFault(
+          "field 'clip_starts' must list ascending frame numbers of the motion from 0");
     }
     return absl::OkStatus();
   }
@@ -240,7 +244,7 @@ class MotionParser {
 
 absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skeleton,
                                     const MeshLimits& limits) {
-  if (text.empty()) return Fault("the motion file is empty");
+  if (text.empty()) return MotionFault("the motion file is empty");
   if (text.size() > limits.max_document_bytes) {
     return absl::ResourceExhaustedError(absl::StrCat(
         "the motion file has ", text.size(), " bytes, the limit is ", limits.max_document_bytes));
@@ -251,11 +255,11 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
   } catch (const json::parse_error& fault) {
     const std::string_view before = text.substr(0, std::max<size_t>(fault.byte, 1) - 1);
     const size_t line_begin = before.rfind('\n') + 1;  // 0 when there is no line break
-    return Fault(absl::StrCat("the motion file is not JSON: it cannot be read from line ",
-                              1 + std::ranges::count(before, '\n'), ", column ",
-                              1 + before.size() - line_begin, " on"));
+    return MotionFault(absl::StrCat("the motion file is not JSON: it cannot be read from line ",
+                                    1 + std::ranges::count(before, '\n'), ", column ",
+                                    1 + before.size() - line_begin, " on"));
   } catch (const json::exception&) {
-    return Fault("the motion file is not JSON");
+    return MotionFault("the motion file is not JSON");
   }
   return MotionParser(root, skeleton, limits).Parse();
 }
@@ -264,7 +268,7 @@ std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales) {
   assert(CheckJointCount(track, skeleton.num_joints()).ok());
   nlohmann::ordered_json root;
-  root["schema"] = kSchema;
+  root["schema"] = kMotionSchema;
   root["fps"] = track.fps();
   for (const Joint& joint : skeleton.joints()) root["joints"].push_back(joint.name);
   root["frames"] = nlohmann::ordered_json::array();

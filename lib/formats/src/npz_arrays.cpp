@@ -13,7 +13,7 @@ namespace pleat {
 namespace {
 
 constexpr std::string_view kEnding = ".npy";
-constexpr size_t kMaxListed = 12;
+constexpr size_t kMaxListedMembers = 12;
 constexpr uint64_t kHeaderStart = 4096;  // a header of NumPy has some hundred bytes
 
 std::string ArrayName(const ZipMember& member) {
@@ -100,12 +100,13 @@ std::optional<NpyArray> NpzArrays::HeaderOf(const ZipMember& member) const {
 std::string NpzArrays::List() const {
   std::string list;
   const std::vector<ZipMember>& members = archive_.members();
-  for (size_t i = 0; i < std::min(members.size(), kMaxListed); ++i) {
+  for (size_t i = 0; i < std::min(members.size(), kMaxListedMembers); ++i) {
     const std::optional<NpyArray> header = HeaderOf(members[i]);
     absl::StrAppend(&list, i > 0 ? ", " : "", QuotedName(ArrayName(members[i])), " ",
                     header ? DescribeNpy(*header) : "(no array of numbers)");
   }
-  if (members.size() > kMaxListed) absl::StrAppend(&list, ", ... (", members.size(), " in all)");
+  if (members.size() > kMaxListedMembers)
+    absl::StrAppend(&list, ", ... (", members.size(), " in all)");
   return list.empty() ? "no arrays" : list;
 }
 
@@ -113,7 +114,7 @@ std::vector<std::string> NpzArrays::NotTaken() const {
   std::vector<std::string> names;
   for (const ZipMember& member : archive_.members()) {
     if (taken_.count(ArrayName(member)) > 0) continue;
-    if (names.size() == kMaxListed) {
+    if (names.size() == kMaxListedMembers) {
       names.push_back("...");
       break;
     }

@@ -14,19 +14,19 @@
 namespace pleat {
 namespace {
 
-constexpr std::string_view kMagic("POINTCACHE2\0", 12);
+constexpr std::string_view kPc2Magic("POINTCACHE2\0", 12);
 
-struct Header {
+struct Pc2Header {
   int32_t num_vertices = 0, num_frames = 0;
   float start_frame = 0, sample_rate = 1;
 };
 
-absl::StatusOr<Header> ReadHeader(ByteReader* reader) {
-  PLEAT_ASSIGN_OR_RETURN(const std::string_view magic, reader->ReadRaw(kMagic.size(), "magic"));
-  if (magic != kMagic) {
+absl::StatusOr<Pc2Header> ReadPc2Header(ByteReader* reader) {
+  PLEAT_ASSIGN_OR_RETURN(const std::string_view magic, reader->ReadRaw(kPc2Magic.size(), "magic"));
+  if (magic != kPc2Magic) {
     return absl::InvalidArgumentError("not a PointCache2 file: it does not begin with POINTCACHE2");
   }
-  Header header;
+  Pc2Header header;
   PLEAT_ASSIGN_OR_RETURN(const int32_t version, reader->Read<int32_t>("version"));
   if (version != 1) {
     return absl::InvalidArgumentError(
@@ -44,7 +44,8 @@ absl::StatusOr<Header> ReadHeader(ByteReader* reader) {
   return header;
 }
 
-absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes, const MeshLimits& limits) {
+absl::Status CheckSizes(const Pc2Header& header, uint64_t remaining_bytes,
+                        const MeshLimits& limits) {
   const MeshCounts counts = {.num_vertices = header.num_vertices, .num_frames = header.num_frames};
   PLEAT_RETURN_IF_ERROR(CheckSequenceCounts(counts, limits));
   const uint64_t total_bytes = counts.position_bytes();
@@ -59,13 +60,13 @@ absl::Status CheckSizes(const Header& header, uint64_t remaining_bytes, const Me
   return absl::OkStatus();
 }
 
-absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshLimits& limits) {
+absl::StatusOr<PointCache> DecodePc2(std::string_view bytes, const MeshLimits& limits) {
   if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
   if (const std::string other = DescribeForeignBytes(bytes); !other.empty()) {
     return absl::InvalidArgumentError(absl::StrCat("this is ", other));
   }
   ByteReader reader(bytes);
-  PLEAT_ASSIGN_OR_RETURN(const Header header, ReadHeader(&reader));
+  PLEAT_ASSIGN_OR_RETURN(const Pc2Header header, ReadPc2Header(&reader));
   PLEAT_RETURN_IF_ERROR(CheckSizes(header, reader.remaining(), limits));
   PointCache cache;
   cache.start_frame = header.start_frame;
@@ -83,7 +84,7 @@ absl::StatusOr<PointCache> Decode(std::string_view bytes, const MeshLimits& limi
 std::vector<std::string_view> PartsOf(const PointCache& cache, std::string* header) {
   assert(!cache.frames.empty());
   ByteWriter writer;
-  writer.WriteRaw(kMagic);
+  writer.WriteRaw(kPc2Magic);
   writer.Write<int32_t>(1);
   writer.Write(static_cast<int32_t>(cache.frames[0].cols()));
   writer.Write(cache.start_frame);
@@ -103,7 +104,7 @@ std::vector<std::string_view> PartsOf(const PointCache& cache, std::string* head
 
 absl::StatusOr<PointCache> DecodePointCache(std::string_view bytes, const std::string& file,
                                             const MeshLimits& limits) {
-  return WithContext(file, Decode(bytes, limits));
+  return WithContext(file, DecodePc2(bytes, limits));
 }
 
 absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshLimits& limits) {

@@ -21,12 +21,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "pleat.rig_file/1";
+constexpr const char* kRigSchema = "pleat.rig_file/1";
 constexpr int kMaxFrame = 100'000;
-constexpr int kMaxListed = 64;  // influences of one vertex
-constexpr int kMaxDepth = 16;   // nested brackets in the JSON
+constexpr int kMaxListedInfluences = 64;  // influences of one vertex
+constexpr int kMaxRigDepth = 16;          // nested brackets in the JSON
 
-absl::Status Fault(const std::string& what) {
+absl::Status RigFault(const std::string& what) {
   return absl::InvalidArgumentError(absl::StrCat("rig: ", what));
 }
 
@@ -35,15 +35,15 @@ class RigParser {
   RigParser(const json& root, const MeshLimits& limits) : root_(root), limits_(limits) {}
 
   absl::StatusOr<RigFile> Parse() {
-    if (!root_.is_object()) return Fault("the file is not a JSON object");
-    if (root_.value("schema", json()) != kSchema) {
-      return Fault(absl::StrCat("field 'schema' must be \"", kSchema, "\""));
+    if (!root_.is_object()) return RigFault("the file is not a JSON object");
+    if (root_.value("schema", json()) != kRigSchema) {
+      return RigFault(absl::StrCat("field 'schema' must be \"", kRigSchema, "\""));
     }
     PLEAT_RETURN_IF_ERROR(ParseJoints());
     PLEAT_RETURN_IF_ERROR(ParseWeights());
     if (const auto frame = root_.find("rest_frame"); frame != root_.end()) {
       if (!frame->is_number_integer() || *frame < 0 || *frame > kMaxFrame) {
-        return Fault("'rest_frame' must be a frame number of the first clip");
+        return RigFault("'rest_frame' must be a frame number of the first clip");
       }
       file_.rest_frame = frame->get<int>();
     }
@@ -56,7 +56,7 @@ class RigParser {
     const auto list = root_.find("joints");
     if (list == root_.end() || !list->is_array() || list->size() < 2 ||
         list->size() > kMaxUserJoints) {
-      return Fault(absl::StrCat("'joints' must list 2 to ", kMaxUserJoints, " joints"));
+      return RigFault(absl::StrCat("'joints' must list 2 to ", kMaxUserJoints, " joints"));
     }
     std::vector<Joint> joints;
     for (const json& entry : *list) {
@@ -64,7 +64,7 @@ class RigParser {
       joints.push_back(std::move(joint));
     }
     absl::StatusOr<Skeleton> skeleton = Skeleton::Create(std::move(joints));
-    if (!skeleton.ok()) return Fault(std::string(skeleton.status().message()));
+    if (!skeleton.ok()) return RigFault(std::string(skeleton.status().message()));
     file_.skeleton = *std::move(skeleton);
     return absl::OkStatus();
   }
@@ -73,7 +73,7 @@ class RigParser {
     const std::string where = absl::StrCat("joint ", before.size());
     const auto name = entry.is_object() ? entry.find("name") : entry.end();
     if (!entry.is_object() || name == entry.end() || !name->is_string()) {
-      return Fault(absl::StrCat(where, " has no name"));
+      return RigFault(absl::StrCat(where, " has no name"));
     }
     Joint joint;
     joint.name = name->get<std::string>();
@@ -83,27 +83,27 @@ class RigParser {
     } else if (parent->is_string()) {
       const auto found = std::ranges::find(before, parent->get<std::string>(), &Joint::name);
       if (found == before.end()) {
-        return Fault(absl::StrCat(where, " ('", joint.name, "'): its parent '",
-                                  parent->get<std::string>(), "' is not listed before it"));
+        return RigFault(absl::StrCat(where, " ('", joint.name, "'): its parent '",
+                                     parent->get<std::string>(), "' is not listed before it"));
       }
       joint.parent = static_cast<int>(found - before.begin());
     } else if (parent->is_number_integer() && *parent >= -1 &&
                *parent < static_cast<int64_t>(before.size())) {
       joint.parent = parent->get<int>();
     } else {
-      return Fault(absl::StrCat(where, " ('", joint.name,
-                                "'): 'parent' must name a joint listed before it, by name or "
-                                "index; -1 or nothing for the root"));
+      return RigFault(absl::StrCat(where, " ('", joint.name,
+                                   "'): 'parent' must name a joint listed before it, by name or "
+                                   "index; -1 or nothing for the root"));
     }
     const auto position = entry.find("position_m");
     if (position == entry.end() || !position->is_array() || position->size() != 3) {
-      return Fault(absl::StrCat(where, " ('", joint.name, "') needs a position_m [x, y, z]"));
+      return RigFault(absl::StrCat(where, " ('", joint.name, "') needs a position_m [x, y, z]"));
     }
     for (int k = 0; k < 3; ++k) {
       const json& value = (*position)[k];
       joint.rest_position[k] = value.is_number() ? value.get<double>() : std::nan("");
       if (!std::isfinite(joint.rest_position[k])) {
-        return Fault(absl::StrCat(where, " ('", joint.name, "'): position_m is not finite"));
+        return RigFault(absl::StrCat(where, " ('", joint.name, "'): position_m is not finite"));
       }
     }
     return joint;
@@ -111,7 +111,7 @@ class RigParser {
 
   absl::Status ParseLocks() {
     if (const auto locked = root_.find("locked"); locked != root_.end()) {
-      if (!locked->is_boolean()) return Fault("'locked' must be true or false");
+      if (!locked->is_boolean()) return RigFault("'locked' must be true or false");
       file_.is_locked = locked->get<bool>();
     }
     const json& joints = root_["joints"];
@@ -119,7 +119,7 @@ class RigParser {
       const auto locked = joints[j].find("locked");
       if (locked == joints[j].end()) continue;
       if (!locked->is_boolean()) {
-        return Fault(absl::StrCat("joint ", j, ": 'locked' must be true or false"));
+        return RigFault(absl::StrCat("joint ", j, ": 'locked' must be true or false"));
       }
       if (locked->get<bool>()) file_.locked_joints.push_back(static_cast<int>(j));
     }
@@ -129,15 +129,15 @@ class RigParser {
   absl::Status ParseWeights() {
     const auto weights = root_.find("weights");
     if (weights == root_.end()) return absl::OkStatus();
-    if (!weights->is_object()) return Fault("'weights' must be an object");
+    if (!weights->is_object()) return RigFault("'weights' must be an object");
     const json of = weights->value("of", json("joints"));
     if (of != "joints" && of != "bones") {
-      return Fault("'weights.of' must be \"joints\" or \"bones\"");
+      return RigFault("'weights.of' must be \"joints\" or \"bones\"");
     }
     file_.influences_are_of_bones = of == "bones";
     const auto vertices = weights->find("vertices");
     if (vertices == weights->end() || !vertices->is_array() || vertices->empty()) {
-      return Fault("'weights.vertices' must hold one list for every vertex");
+      return RigFault("'weights.vertices' must hold one list for every vertex");
     }
     if (static_cast<int64_t>(vertices->size()) > limits_.max_vertices) {
       return absl::ResourceExhaustedError(absl::StrCat(
@@ -154,11 +154,11 @@ class RigParser {
   // Reads the list of one vertex: [joint, weight, joint, weight, ...].
   absl::StatusOr<std::vector<JointInfluence>> ParseVertex(const json& vertex) const {
     const size_t v = file_.influences.size();
-    if (!vertex.is_array() || vertex.size() % 2 != 0 || vertex.size() > 2 * kMaxListed) {
-      return Fault(absl::StrCat("vertex ", v,
-                                ": its weights must be a list joint, weight, ... of "
-                                "at most ",
-                                kMaxListed, " pairs"));
+    if (!vertex.is_array() || vertex.size() % 2 != 0 || vertex.size() > 2 * kMaxListedInfluences) {
+      return RigFault(absl::StrCat("vertex ", v,
+                                   ": its weights must be a list joint, weight, ... of "
+                                   "at most ",
+                                   kMaxListedInfluences, " pairs"));
     }
     std::vector<JointInfluence> influences;
     for (size_t k = 0; k < vertex.size(); k += 2) {
@@ -166,8 +166,8 @@ class RigParser {
       if (!joint.is_number_integer() || joint < 0 || joint >= file_.skeleton.num_joints() ||
           !weight.is_number() || !(weight.get<double>() >= 0) ||
           !std::isfinite(weight.get<double>())) {
-        return Fault(absl::StrCat("vertex ", v, ", pair ", k / 2,
-                                  ": must be the index of a joint and a weight of at least 0"));
+        return RigFault(absl::StrCat("vertex ", v, ", pair ", k / 2,
+                                     ": must be the index of a joint and a weight of at least 0"));
       }
       influences.push_back({joint.get<int>(), weight.get<double>()});
     }
@@ -196,10 +196,10 @@ absl::StatusOr<RigFile> DecodeRigJson(std::string_view text, const MeshLimits& l
     return absl::ResourceExhaustedError(
         absl::StrCat("rig: ", text.size(), " bytes; the limit is ", limits.max_document_bytes));
   }
-  if (NestsTooDeep(text, kMaxDepth))
-    return Fault(absl::StrCat("nested deeper than ", kMaxDepth, " levels"));
+  if (NestsTooDeep(text, kMaxRigDepth))
+    return RigFault(absl::StrCat("nested deeper than ", kMaxRigDepth, " levels"));
   const json root = json::parse(text, nullptr, false);
-  if (root.is_discarded()) return Fault("the file is not JSON");
+  if (root.is_discarded()) return RigFault("the file is not JSON");
   return RigParser(root, limits).Parse();
 }
 
@@ -207,7 +207,7 @@ absl::Status LockJoints(const std::vector<std::string>& names, RigFile* file) {
   std::set<int> locked(file->locked_joints.begin(), file->locked_joints.end());
   for (const std::string& name : names) {
     const int joint = file->skeleton.FindJoint(name);
-    if (joint < 0) return Fault(absl::StrCat("there is no joint '", name, "' to lock"));
+    if (joint < 0) return RigFault(absl::StrCat("there is no joint '", name, "' to lock"));
     locked.insert(joint);
   }
   file->locked_joints.assign(locked.begin(), locked.end());
@@ -235,13 +235,14 @@ absl::StatusOr<RigFile> ReadRigFile(const std::string& path, const MeshLimits& l
   if (absl::EndsWith(ending, ".glb")) {
     return WithContext(path, DecodeRigGlb(bytes, limits, skin));
   }
-  if (!skin.empty()) return WithContext(path, Fault("only GLB and glTF have skins to choose from"));
+  if (!skin.empty())
+    return WithContext(path, RigFault("only GLB and glTF have skins to choose from"));
   return WithContext(path, DecodeRigJson(bytes, limits));
 }
 
 std::string EncodeRig(const UserRig& rig) {
   nlohmann::ordered_json root;
-  root["schema"] = kSchema;
+  root["schema"] = kRigSchema;
   root["rest_frame"] = rig.rest_frame;
   for (const Joint& joint : rig.skeleton.joints()) {
     const Eigen::Vector3d& p = joint.rest_position;

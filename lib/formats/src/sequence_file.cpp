@@ -16,7 +16,7 @@
 namespace pleat {
 namespace {
 
-constexpr FileKind kKind = {"PLEATSEQ", 1, 1, "sequence file"};
+constexpr FileKind kSequenceKind = {"PLEATSEQ", 1, 1, "sequence file"};
 
 // Fields 3 to 11 of the file, without padding, so that they can be read at once.
 struct Header {
@@ -85,7 +85,7 @@ absl::StatusOr<std::vector<Eigen::Matrix3Xf>> ReadFrames(ByteReader* reader, con
 std::string EncodeSequence(const MeshSequence& sequence) {
   const Header header = MakeHeader(sequence);
   ByteWriter writer;
-  WriteFileKind(kKind, &writer);
+  WriteFileKind(kSequenceKind, &writer);
   writer.WriteArray(std::span(reinterpret_cast<const uint32_t*>(&header), 9));
   WriteName(sequence.name(), &writer);
   WriteMaterialNames(sequence.appearance(), &writer);
@@ -99,7 +99,7 @@ std::string EncodeSequence(const MeshSequence& sequence) {
 }
 
 absl::StatusOr<MeshSequence> DecodeSequence(std::string_view bytes, const MeshLimits& limits) {
-  PLEAT_ASSIGN_OR_RETURN(const SealedFile file, OpenSealedFile(kKind, bytes));
+  PLEAT_ASSIGN_OR_RETURN(const SealedFile file, OpenSealedFile(kSequenceKind, bytes));
   ByteReader reader(file.bytes.substr(kFileKindBytes));
   PLEAT_ASSIGN_OR_RETURN(const Header header, ReadHeader(&reader, limits));
   PLEAT_ASSIGN_OR_RETURN(MeshSequenceOptions options, ReadNames(&reader, header));

@@ -13,7 +13,7 @@
 namespace pleat {
 namespace {
 
-constexpr int kMinResolution = 16, kMaxResolution = 512, kMaxGrowth = 14;
+constexpr int kMinSurfaceResolution = 16, kMaxSurfaceResolution = 512, kMaxGrowth = 14;
 // The grid on which far crumbs are found, and how far apart its pieces are, in voxels.
 constexpr int kFocusResolution = 48, kFocusGrowth = 3;
 // A piece that spans less than this share of everything is looked at again by itself.
@@ -133,15 +133,16 @@ Solid CloseGaps(const VoxelGrid& grid, const VoxelMask& surface, const OuterSurf
   return most;
 }
 
-absl::Status CheckInput(const Triangles& triangles, const OuterSurfaceOptions& options) {
+absl::Status CheckSurfaceInput(const Triangles& triangles, const OuterSurfaceOptions& options) {
   if (triangles.cols() == 0) {
     return absl::InvalidArgumentError("an outer surface needs at least one triangle");
   }
-  if (options.resolution < kMinResolution || options.resolution > kMaxResolution ||
+  if (options.resolution < kMinSurfaceResolution || options.resolution > kMaxSurfaceResolution ||
       options.max_growth < 0 || options.max_growth > kMaxGrowth || options.growth > kMaxGrowth) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "outer surface: resolution ", options.resolution, " and growth ", options.max_growth,
-        " must be ", kMinResolution, " to ", kMaxResolution, " and 0 to ", kMaxGrowth));
+    return absl::InvalidArgumentError(
+        absl::StrCat("outer surface: resolution ", options.resolution, " and growth ",
+                     options.max_growth, " must be ", kMinSurfaceResolution, " to ",
+                     kMaxSurfaceResolution, " and 0 to ", kMaxGrowth));
   }
   return absl::OkStatus();
 }
@@ -152,7 +153,7 @@ absl::StatusOr<OuterSurface> ComputeOuterSurface(
     const Eigen::Ref<const Eigen::Matrix3Xd>& positions,
     const Eigen::Ref<const Eigen::Matrix3Xi>& triangles, const OuterSurfaceOptions& options,
     const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(CheckInput(triangles, options));
+  PLEAT_RETURN_IF_ERROR(CheckSurfaceInput(triangles, options));
   OuterSurface outer;
   std::vector<char> is_used(triangles.cols(), 1);
   const Eigen::AlignedBox3d box = FocusOnLargest(positions, triangles, &is_used);

@@ -10,6 +10,7 @@
 #include "pleat/gp/inducing.h"
 #include "pleat/gp/marginal_likelihood.h"
 #include "pleat/gp/scaling.h"
+#include "pleat/math/spread_rows.h"
 #include "pleat/optimize/lbfgs.h"
 #include "pleat/simd/dense.h"
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBlockRows = DetailBasis::kBlockDetails;
 
-absl::Status Refuse(const std::string& what) {
+absl::Status RefuseFold(const std::string& what) {
   return absl::InvalidArgumentError("fold of the regions: " + what);
 }
 
@@ -80,13 +80,13 @@ absl::StatusOr<CoefficientFold> CoefficientFold::FromBlocks(
     const int64_t rows = CountOutputs(block.targets, num_outputs);
     if (rows < 1 || rows != block.weights.values.rows() || rows != block.weights.mean.size() ||
         block.first_input < 0 || block.weights.num_components > num_inputs - block.first_input) {
-      return Refuse(absl::StrCat("a block of ", block.weights.values.rows(), " x ",
-                                 block.weights.num_components, " from ", block.first_input,
-                                 " does not fit its ", block.targets.size(), " targets or is not ",
-                                 "within ", num_outputs, " x ", num_inputs));
+      return RefuseFold(absl::StrCat(
+          "a block of ", block.weights.values.rows(), " x ", block.weights.num_components, " from ",
+          block.first_input, " does not fit its ", block.targets.size(), " targets or is not ",
+          "within ", num_outputs, " x ", num_inputs));
     }
     auto weights = InOrderOfBlocks(block.weights);
-    if (!weights.ok()) return Refuse(std::string(weights.status().message()));
+    if (!weights.ok()) return RefuseFold(std::string(weights.status().message()));
     fold.blocks_.push_back(
         {block.first_input, std::move(block.targets), static_cast<int>(rows), *std::move(weights)});
   }

@@ -17,32 +17,32 @@ namespace {
 
 constexpr int kLargest = 127;  // of a value; -128 stays unused, so that signs are symmetric
 
-absl::Status Refuse(const std::string& what) {
+absl::Status RefuseBasis(const std::string& what) {
   return absl::InvalidArgumentError("detail basis: " + what);
 }
 
-absl::Status CheckParameters(const DetailBasisParameters& p) {
+absl::Status CheckBasis(const DetailBasisParameters& p) {
   const size_t num_planes = p.components.size();
-  if (p.mean.size() < 1 || p.num_components < 1) return Refuse("no details or no components");
+  if (p.mean.size() < 1 || p.num_components < 1) return RefuseBasis("no details or no components");
   if (p.values.rows() != p.mean.size() || static_cast<size_t>(p.values.cols()) != num_planes ||
       p.scales.size() != num_planes) {
-    return Refuse(absl::StrCat("planes are ", p.values.rows(), " x ", p.values.cols(), " with ",
-                               p.scales.size(), " scales, expected ", p.mean.size(), " x ",
-                               num_planes));
+    return RefuseBasis(absl::StrCat("planes are ", p.values.rows(), " x ", p.values.cols(),
+                                    " with ", p.scales.size(), " scales, expected ", p.mean.size(),
+                                    " x ", num_planes));
   }
-  if (!p.mean.allFinite()) return Refuse("an entry of the mean is not finite");
+  if (!p.mean.allFinite()) return RefuseBasis("an entry of the mean is not finite");
   if (num_planes > static_cast<size_t>(DetailBasis::kMaxPlanes) * p.num_components) {
-    return Refuse(absl::StrCat(num_planes, " planes for ", p.num_components, " components"));
+    return RefuseBasis(absl::StrCat(num_planes, " planes for ", p.num_components, " components"));
   }
   for (size_t i = 0; i < num_planes; ++i) {
     if (p.components[i] < (i == 0 ? 0 : p.components[i - 1]) ||
         p.components[i] >= p.num_components) {
-      return Refuse(
+      return RefuseBasis(
           absl::StrCat("the components of the planes do not ascend below ", p.num_components));
     }
-    if (!std::isfinite(p.scales[i])) return Refuse("a scale is not finite");
+    if (!std::isfinite(p.scales[i])) return RefuseBasis("a scale is not finite");
   }
-  if ((p.values.array() < -kLargest).any()) return Refuse("a value of a plane is -128");
+  if ((p.values.array() < -kLargest).any()) return RefuseBasis("a value of a plane is -128");
   return absl::OkStatus();
 }
 
@@ -59,7 +59,7 @@ static_assert(DetailBasis::kBlockDetails == kPlaneRows);
 absl::StatusOr<DetailBasis> DetailBasis::Quantize(
     const Eigen::Ref<const Eigen::VectorXf>& mean, const Eigen::Ref<const Eigen::MatrixXd>& basis,
     const Eigen::Ref<const Eigen::VectorXd>& largest_steps) {
-  if (!basis.cast<float>().allFinite()) return Refuse("a number to round is not finite");
+  if (!basis.cast<float>().allFinite()) return RefuseBasis("a number to round is not finite");
   DetailBasisParameters p;
   p.mean = mean;
   p.num_components = static_cast<int>(basis.cols());
@@ -84,7 +84,7 @@ absl::StatusOr<DetailBasis> DetailBasis::Quantize(
 }
 
 absl::StatusOr<DetailBasis> DetailBasis::FromParameters(const DetailBasisParameters& parameters) {
-  if (absl::Status status = CheckParameters(parameters); !status.ok()) return status;
+  if (absl::Status status = CheckBasis(parameters); !status.ok()) return status;
   DetailBasis basis;
   basis.num_details_ = static_cast<int>(parameters.mean.size());
   basis.num_components_ = parameters.num_components;

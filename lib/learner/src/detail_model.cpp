@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMostTogether = 16;  // queries
 
-absl::Status Refuse(const std::string& what) {
+absl::Status RefuseModel(const std::string& what) {
   return absl::InvalidArgumentError("detail model parameters: " + what);
 }
 
@@ -50,8 +50,8 @@ std::string LearnerName(Learner learner) {
 absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters parameters) {
   const size_t expected = parameters.learner == Learner::kSgplvm ? 2 : 1;
   if (parameters.stages.size() != expected) {
-    return Refuse(absl::StrCat("the learner ", LearnerName(parameters.learner), " has ", expected,
-                               " stages, got ", parameters.stages.size()));
+    return RefuseModel(absl::StrCat("the learner ", LearnerName(parameters.learner), " has ",
+                                    expected, " stages, got ", parameters.stages.size()));
   }
   DetailModel model;
   for (GpRegressionParameters& stage : parameters.stages) {
@@ -59,22 +59,24 @@ absl::StatusOr<DetailModel> DetailModel::FromParameters(DetailModelParameters pa
     model.stages_.push_back(std::move(regression));
   }
   if (expected == 2 && model.stages_[0].num_outputs() != model.stages_[1].num_inputs()) {
-    return Refuse(absl::StrCat("the first stage has ", model.stages_[0].num_outputs(),
-                               " outputs, the second ", model.stages_[1].num_inputs(), " inputs"));
+    return RefuseModel(absl::StrCat("the first stage has ", model.stages_[0].num_outputs(),
+                                    " outputs, the second ", model.stages_[1].num_inputs(),
+                                    " inputs"));
   }
   PLEAT_ASSIGN_OR_RETURN(model.basis_, PartedBasis::FromParameters(parameters.basis));
   if (!(parameters.fade_confidence >= 0 && parameters.fade_confidence <= 1)) {
-    return Refuse("the fading confidence is not between 0 and 1");
+    return RefuseModel("the fading confidence is not between 0 and 1");
   }
   if (parameters.regional.has_value() != (parameters.learner == Learner::kRegional) ||
       !(parameters.regional_share >= 0 && parameters.regional_share <= 1)) {
-    return Refuse("regions and learner do not belong together, or their share is not in 0 to 1");
+    return RefuseModel(
+        "regions and learner do not belong together, or their share is not in 0 to 1");
   }
   if (parameters.fold.empty() &&
       model.basis_.num_coefficients() != model.stages_.back().num_outputs()) {
-    return Refuse(absl::StrCat("the basis has ", model.basis_.num_coefficients(),
-                               " components, the last stage ", model.stages_.back().num_outputs(),
-                               " outputs"));
+    return RefuseModel(absl::StrCat("the basis has ", model.basis_.num_coefficients(),
+                                    " components, the last stage ",
+                                    model.stages_.back().num_outputs(), " outputs"));
   }
   if (parameters.regional) PLEAT_RETURN_IF_ERROR(model.TakeRegional(&parameters));
   model.regional_share_ = parameters.regional_share;
@@ -94,7 +96,7 @@ absl::Status DetailModel::TakeRegional(DetailModelParameters* parameters) {
              regional_->num_outputs() == stages_[0].num_outputs()) {
     return absl::OkStatus();
   }
-  return Refuse("the regions have other inputs or outputs than the first stage");
+  return RefuseModel("the regions have other inputs or outputs than the first stage");
 }
 
 DetailModelParameters DetailModel::parameters() const {

@@ -5,19 +5,20 @@
 
 #include "absl/strings/str_cat.h"
 #include "pleat/base/status.h"
-#include "pleat/gp/scaling.h"
 #include "pleat/learner/detail_model.h"
 #include "pleat/math/clip_starts.h"
 #include "pleat/math/pca.h"
+#include "pleat/math/spread_rows.h"
 #include "regional_training.h"
 #include "score_pca.h"
 
 namespace pleat {
 namespace {
 
-absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& features,
-                       const PrincipalComponents& details, const std::vector<int>& clip_starts,
-                       const DetailModelOptions& options) {
+absl::Status CheckTrainingData(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                               const PrincipalComponents& details,
+                               const std::vector<int>& clip_starts,
+                               const DetailModelOptions& options) {
   const Eigen::Index num_details = details.mean.size();
   if (features.rows() != details.scores.rows() || features.rows() < 2 || features.cols() < 1 ||
       num_details < 1) {
@@ -285,7 +286,7 @@ absl::StatusOr<DetailModel> TrainDetailModel(const Eigen::Ref<const Eigen::Matri
                                              const DetailModelOptions& options,
                                              DetailModelSummary* summary,
                                              const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(CheckData(features, details, clip_starts, options));
+  PLEAT_RETURN_IF_ERROR(CheckTrainingData(features, details, clip_starts, options));
   if (details.scores.cols() == 0) {  // all details are the same: one component that stays zero
     PrincipalComponents constant{details.mean, Eigen::VectorXd::Unit(details.mean.size(), 0),
                                  Eigen::VectorXd::Zero(features.rows()), 1};

@@ -13,7 +13,7 @@
 namespace pleat {
 namespace {
 
-absl::Status Refuse(const std::string& what) {
+absl::Status RefuseParts(const std::string& what) {
   return absl::InvalidArgumentError("parts of the detail basis: " + what);
 }
 
@@ -33,41 +33,42 @@ absl::Status CheckPart(const PartedBasisParameters::Part& part, int num_vertices
                        int num_coefficients) {
   if (static_cast<size_t>(part.basis.mean.size()) != 3 * part.vertices.size() ||
       !AscendsBelow(part.vertices, num_vertices)) {
-    return Refuse(absl::StrCat("a part has ", part.basis.mean.size(), " details for ",
-                               part.vertices.size(), " vertices, or they do not ascend below ",
-                               num_vertices));
+    return RefuseParts(absl::StrCat("a part has ", part.basis.mean.size(), " details for ",
+                                    part.vertices.size(), " vertices, or they do not ascend below ",
+                                    num_vertices));
   }
   if (part.coefficients.size() != static_cast<size_t>(part.basis.num_components) ||
       !AscendsBelow(part.coefficients, num_coefficients)) {
-    return Refuse(absl::StrCat("a part has ", part.coefficients.size(), " coefficients for ",
-                               part.basis.num_components,
-                               " components, or they do not ascend "
-                               "below ",
-                               num_coefficients));
+    return RefuseParts(absl::StrCat("a part has ", part.coefficients.size(), " coefficients for ",
+                                    part.basis.num_components,
+                                    " components, or they do not ascend "
+                                    "below ",
+                                    num_coefficients));
   }
   return absl::OkStatus();
 }
 
 absl::Status CheckParts(const PartedBasisParameters& p) {
-  if (p.parts.empty() || p.num_coefficients < 1) return Refuse("there is none");
+  if (p.parts.empty() || p.num_coefficients < 1) return RefuseParts("there is none");
   if (p.parts.size() == 1 && p.parts[0].vertices.empty()) {
     if (p.parts[0].basis.num_components == p.num_coefficients) return absl::OkStatus();
-    return Refuse(absl::StrCat(p.parts[0].basis.num_components, " components for ",
-                               p.num_coefficients, " coefficients"));
+    return RefuseParts(absl::StrCat(p.parts[0].basis.num_components, " components for ",
+                                    p.num_coefficients, " coefficients"));
   }
   const int64_t num_details = CountDetails(p);
-  if (num_details % 3 != 0) return Refuse(absl::StrCat(num_details, " details"));
+  if (num_details % 3 != 0) return RefuseParts(absl::StrCat(num_details, " details"));
   const int num_vertices = static_cast<int>(num_details / 3);
   std::vector<char> has_vertex(num_vertices, 0), has_coefficient(p.num_coefficients, 0);
   for (const PartedBasisParameters::Part& part : p.parts) {
     PLEAT_RETURN_IF_ERROR(CheckPart(part, num_vertices, p.num_coefficients));
     for (const int v : part.vertices) {
-      if (std::exchange(has_vertex[v], 1)) return Refuse(absl::StrCat("vertex ", v, " is in two"));
+      if (std::exchange(has_vertex[v], 1))
+        return RefuseParts(absl::StrCat("vertex ", v, " is in two"));
     }
     for (const int c : part.coefficients) has_coefficient[c] = 1;
   }
   // As many places as vertices, and none twice: every vertex has a part.
-  if (std::ranges::count(has_coefficient, 0) > 0) return Refuse("a coefficient moves no part");
+  if (std::ranges::count(has_coefficient, 0) > 0) return RefuseParts("a coefficient moves no part");
   return absl::OkStatus();
 }
 

@@ -38,7 +38,7 @@
 namespace pleat {
 namespace {
 
-absl::Status Refuse(const std::string& what) {
+absl::Status RefuseRegions(const std::string& what) {
   return absl::InvalidArgumentError("regional GP parameters: " + what);
 }
 
@@ -46,40 +46,41 @@ bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false fo
 
 absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index num_inputs) {
   if (!IsFeatureSet(scale.columns, num_inputs)) {
-    return Refuse(absl::StrCat("the columns of a scale do not ascend below ", num_inputs));
+    return RefuseRegions(absl::StrCat("the columns of a scale do not ascend below ", num_inputs));
   }
-  if (!(scale.max_norm > 0)) return Refuse("the largest norm of a scale is not positive");
+  if (!(scale.max_norm > 0)) return RefuseRegions("the largest norm of a scale is not positive");
   if (!IsPositive(scale.inverse_width) || !IsPositive(scale.amplitude) || !(scale.linear >= 0) ||
       !(scale.linear < 1e30)) {
-    return Refuse("a width, amplitude or slope is out of range");
+    return RefuseRegions("a width, amplitude or slope is out of range");
   }
   return absl::OkStatus();
 }
 
 // The parameters may come from a damaged file. The bounds of 1e30 refuse what no training writes.
-absl::Status CheckParameters(const RegionalGpParameters& p) {
+absl::Status CheckRegions(const RegionalGpParameters& p) {
   const Eigen::Index n = p.inputs.rows(), r = p.output_mean.size();
   if (n < 1 || p.inputs.cols() < 1 || r < 1 || p.regions.empty()) {
-    return Refuse("no rows, inputs, outputs or regions");
+    return RefuseRegions("no rows, inputs, outputs or regions");
   }
   if (p.input_mean.size() != p.inputs.cols() || p.input_scales.size() != p.inputs.cols() ||
       !std::all_of(p.input_scales.begin(), p.input_scales.end(), IsPositive)) {
-    return Refuse("mean or scales of the inputs do not fit");
+    return RefuseRegions("mean or scales of the inputs do not fit");
   }
   if (!p.input_mean.allFinite() || !p.inputs.allFinite() || !p.output_mean.allFinite()) {
-    return Refuse("an input or a mean is not finite");
+    return RefuseRegions("an input or a mean is not finite");
   }
   for (const RegionalGpParameters::Region& region : p.regions) {
     if (region.alpha.rows() != n || region.alpha.cols() < 1 || !region.alpha.allFinite()) {
-      return Refuse(absl::StrCat("alpha is ", region.alpha.rows(), " x ", region.alpha.cols(),
-                                 " or not finite, expected ", n, " rows"));
+      return RefuseRegions(absl::StrCat("alpha is ", region.alpha.rows(), " x ",
+                                        region.alpha.cols(), " or not finite, expected ", n,
+                                        " rows"));
     }
     if (region.first_output < 0 || region.alpha.cols() > r - region.first_output) {
-      return Refuse(absl::StrCat("a region has the outputs from ", region.first_output, " on, ",
-                                 region.alpha.cols(), " of ", r));
+      return RefuseRegions(absl::StrCat("a region has the outputs from ", region.first_output,
+                                        " on, ", region.alpha.cols(), " of ", r));
     }
     if (region.scales.empty() || !(region.bias >= 0) || !(region.bias < 1e30)) {
-      return Refuse("a region without scales, or its bias is out of range");
+      return RefuseRegions("a region without scales, or its bias is out of range");
     }
     for (const RegionalGpParameters::Scale& scale : region.scales) {
       PLEAT_RETURN_IF_ERROR(CheckScale(scale, p.inputs.cols()));
@@ -91,7 +92,7 @@ absl::Status CheckParameters(const RegionalGpParameters& p) {
 }  // namespace
 
 absl::StatusOr<RegionalGp> RegionalGp::FromParameters(RegionalGpParameters parameters) {
-  PLEAT_RETURN_IF_ERROR(CheckParameters(parameters));
+  PLEAT_RETURN_IF_ERROR(CheckRegions(parameters));
   return RegionalGp(std::move(parameters));
 }
 

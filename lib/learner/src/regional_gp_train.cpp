@@ -35,13 +35,14 @@
 #include "pleat/gp/inducing.h"
 #include "pleat/gp/scaling.h"
 #include "pleat/learner/regional_gp.h"
+#include "pleat/math/spread_rows.h"
 #include "pleat/optimize/lbfgs.h"
 
 namespace pleat {
 namespace {
 
-absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                       const std::vector<GpRegion>& regions) {
+absl::Status CheckRegionalData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                               const std::vector<GpRegion>& regions) {
   if (inputs.rows() < 2 || inputs.cols() < 1 || regions.empty() || !inputs.allFinite()) {
     return absl::InvalidArgumentError(
         absl::StrCat("a regional GP needs regions and at least two finite rows of inputs, got ",
@@ -194,7 +195,7 @@ absl::StatusOr<RegionalGp> RegionalGp::Train(const Eigen::Ref<const Eigen::Matri
                                              const std::vector<GpRegion>& regions,
                                              const RegionalGpOptions& options,
                                              const Progress& progress) {
-  PLEAT_RETURN_IF_ERROR(CheckData(inputs, regions));
+  PLEAT_RETURN_IF_ERROR(CheckRegionalData(inputs, regions));
   PLEAT_RETURN_IF_ERROR(CheckScales(options.input_scales, inputs.cols()));
   RegionalGpParameters p;
   p.input_mean = inputs.colwise().mean().transpose();

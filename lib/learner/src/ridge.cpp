@@ -10,9 +10,9 @@
 namespace pleat {
 namespace {
 
-absl::Status CheckData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                       const Eigen::Ref<const Eigen::MatrixXd>& outputs,
-                       const RidgeOptions& options) {
+absl::Status CheckRidgeData(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                            const Eigen::Ref<const Eigen::MatrixXd>& outputs,
+                            const RidgeOptions& options) {
   if (inputs.rows() >= 1 && inputs.cols() >= 1 && outputs.cols() >= 1 &&
       inputs.rows() == outputs.rows() && inputs.allFinite() && outputs.allFinite() &&
       options.penalty > 0) {
@@ -35,7 +35,7 @@ Eigen::MatrixXd Ridge::Predict(const Eigen::Ref<const Eigen::MatrixXd>& rows) co
 absl::StatusOr<Ridge> TrainRidge(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                  const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                  const RidgeOptions& options) {
-  if (absl::Status status = CheckData(inputs, outputs, options); !status.ok()) return status;
+  if (absl::Status status = CheckRidgeData(inputs, outputs, options); !status.ok()) return status;
   Ridge ridge;
   ridge.input_mean = inputs.colwise().mean().transpose();
   ridge.output_mean = outputs.colwise().mean().transpose();
@@ -58,7 +58,7 @@ absl::StatusOr<Ridge> TrainRidge(const Eigen::Ref<const Eigen::MatrixXd>& inputs
 absl::StatusOr<GpRegression> TrainRidgeGp(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                           const Eigen::Ref<const Eigen::MatrixXd>& outputs,
                                           const RidgeOptions& options) {
-  if (absl::Status status = CheckData(inputs, outputs, options); !status.ok()) return status;
+  if (absl::Status status = CheckRidgeData(inputs, outputs, options); !status.ok()) return status;
   const auto n = static_cast<double>(inputs.rows());
   Eigen::MatrixXd x = inputs.rowwise() - inputs.colwise().mean();
   const Eigen::MatrixXd y = outputs.rowwise() - outputs.colwise().mean();

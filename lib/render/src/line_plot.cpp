@@ -13,7 +13,7 @@
 namespace pleat {
 namespace {
 
-constexpr Rgb kInk{40, 40, 40}, kGrid{228, 228, 228}, kAxis{120, 120, 120};
+constexpr Rgb kAxisInk{40, 40, 40}, kGrid{228, 228, 228}, kAxis{120, 120, 120};
 // The palette of Okabe and Ito (2008), which color-blind readers can tell apart, too.
 constexpr std::array<Rgb, 7> kPalette = {{{0, 114, 178},
                                           {213, 94, 0},
@@ -91,7 +91,7 @@ class Plot {
 };
 
 void Plot::DrawFrame(const LinePlotOptions& options) {
-  DrawText(&image_, kLeft, 4, options.title, 2, kInk);
+  DrawText(&image_, kLeft, 4, options.title, 2, kAxisInk);
   const auto step = [](const std::vector<double>& ticks) {
     return ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
   };
@@ -100,27 +100,27 @@ void Plot::DrawFrame(const LinePlotOptions& options) {
     const int y = static_cast<int>(std::lround(Y(tick)));
     image_.FillRectangle(kLeft, y, right_ - kLeft, 1, kGrid);
     const std::string label = TickLabel(tick, step(y_ticks));
-    DrawText(&image_, kLeft - 6 - TextWidth(label, 1), y - 4, label, 1, kInk);
+    DrawText(&image_, kLeft - 6 - TextWidth(label, 1), y - 4, label, 1, kAxisInk);
   }
   const std::vector<double> x_ticks = RoundTicks(x_.low, x_.high, 12);
   for (double tick : x_ticks) {
     const int x = static_cast<int>(std::lround(X(tick)));
     image_.FillRectangle(x, top_, 1, bottom_ - top_, kGrid);
     const std::string label = TickLabel(tick, step(x_ticks));
-    DrawText(&image_, x - TextWidth(label, 1) / 2, bottom_ + 6, label, 1, kInk);
+    DrawText(&image_, x - TextWidth(label, 1) / 2, bottom_ + 6, label, 1, kAxisInk);
   }
   image_.FillRectangle(kLeft, top_, 1, bottom_ - top_, kAxis);
   image_.FillRectangle(kLeft, bottom_, right_ - kLeft, 1, kAxis);
   DrawText(&image_, (kLeft + right_ - TextWidth(options.x_label, 1)) / 2, bottom_ + 22,
-           options.x_label, 1, kInk);
-  DrawText(&image_, 6, top_ - kLegendLine, options.y_label, 1, kInk);  // above the axis
+           options.x_label, 1, kAxisInk);
+  DrawText(&image_, 6, top_ - kLegendLine, options.y_label, 1, kAxisInk);  // above the axis
 }
 
 void Plot::DrawLegend(const std::vector<PlotSeries>& series) {
   for (size_t i = 0; i < series.size(); ++i) {
     const auto [x, y] = legend_[i];
     image_.FillRectangle(x, y + 3, kSwatch - 5, 3, kPalette[i % kPalette.size()]);
-    DrawText(&image_, x + kSwatch, y, series[i].name, 1, kInk);
+    DrawText(&image_, x + kSwatch, y, series[i].name, 1, kAxisInk);
   }
 }
 

@@ -290,7 +290,7 @@ absl::StatusOr<std::string> CompressSequence(const MeshSequence& sequence,
   PLEAT_RETURN_IF_ERROR(ValidateCompressOptions(options));
   const Extent extent(sequence);
   const TimeShares shares = SharesOf(options.goal);
-  const Progress forward = ForwardOnly(progress);
+  const Progress forward = progress.ForwardOnly();
   absl::StatusOr<Encoded> encoded = EncodeAround(Eigen::Vector3d::Zero(), sequence, extent, options,
                                                  forward.Stage("", 0, shares.encoded));
   // Where the sequence lies cannot be quantized as finely as its shape: that is subtracted first.

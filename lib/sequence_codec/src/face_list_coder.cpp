@@ -16,13 +16,13 @@ namespace pleat {
 namespace {
 
 // How a corner is named: a vertex that no face had before, one of a few candidates, or any other.
-enum CornerKind {
-  kNewVertex = 0,
+enum FaceCornerKind {
+  kNewFaceVertex = 0,
   kBetween = 1,   // the open edges from the corner before and to the first corner meet there
   kEdgeFrom = 2,  // +0..2: the ends of the newest open edges that leave the corner before
   kEdgeTo = 5,    // +0..2: the starts of the newest that arrive at the first corner (last corner)
   kPreviousFace = 8,  // +0..3: the corners of the face before
-  kOtherVertex = 12,
+  kOtherFaceVertex = 12,
   kNumKinds = 13,
 };
 constexpr int kNewest = 3, kPreviousCorners = 4;
@@ -110,13 +110,13 @@ class FaceListCoder {
     int32_t* vertex = &(*face)[place];
     const Candidates candidates = FindCandidates(place, *face);
     uint32_t available = 0;
-    int kind = kOtherVertex;
+    int kind = kOtherFaceVertex;
     for (int k = 0; k < kNumKinds; ++k) {
       if (candidates[k] < 0) continue;
       available |= 1u << k;
       if (known_ != nullptr && candidates[k] == *vertex) kind = k;
     }
-    if (known_ != nullptr && !seen_[*vertex]) kind = kNewVertex;
+    if (known_ != nullptr && !seen_[*vertex]) kind = kNewFaceVertex;
     const uint32_t known_so_far = *shape * 16 + static_cast<uint32_t>(std::min(place, 15));
     kind = kinds_.CodeUnsigned(coder_, kind,
                                {static_cast<int>(Hash(known_so_far, available, 0)),
@@ -124,9 +124,9 @@ class FaceListCoder {
                                 static_cast<int>(Hash(available, shapes_[0], shapes_[1]))},
                                std::min(place, 3));
     *shape = *shape * 16 + static_cast<uint32_t>(kind);
-    if (kind == kNewVertex) return CodeNewVertex(place, vertex);
-    if (kind == kOtherVertex) return CodeOtherVertex(place, *face, vertex);
-    if (kind > kOtherVertex || candidates[kind] < 0) return Damaged();
+    if (kind == kNewFaceVertex) return CodeNewVertex(place, vertex);
+    if (kind == kOtherFaceVertex) return CodeOtherVertex(place, *face, vertex);
+    if (kind > kOtherFaceVertex || candidates[kind] < 0) return Damaged();
     *vertex = candidates[kind];
     return absl::OkStatus();
   }

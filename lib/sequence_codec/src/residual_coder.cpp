@@ -10,7 +10,7 @@
 namespace pleat {
 namespace {
 
-constexpr double kMaxQuantized = 1 << 26;
+constexpr double kMaxSteps = 1 << 26;
 
 using Integers = std::array<int, 3>;
 
@@ -67,7 +67,7 @@ class ResidualWalk {
       const double steps = on_grid ? Round((truth[c] - grid_.origin_m[c]) / grid_.step_m) -
                                          Round((predicted[c] - grid_.origin_m[c]) / grid_.step_m)
                                    : Round((truth[c] - predicted[c]) / grid_.step_m);
-      if (!(std::fabs(steps) < kMaxQuantized)) return false;
+      if (!(std::fabs(steps) < kMaxSteps)) return false;
       (*q)[c] = static_cast<int>(steps);
     }
     if (!on_grid) Shrink(truth - predicted, q);

@@ -9,7 +9,7 @@
 namespace pleat {
 namespace {
 
-constexpr double kRounding = 0.35, kMaxQuantized = 1 << 26;
+constexpr double kRounding = 0.35, kMaxQuantizedStep = 1 << 26;
 constexpr int kNumFrequencyClasses = 24;
 
 // cos(pi m / (2 T)) for m = 0 .. 4 T - 1, from products and sums alone: library cosines may differ
@@ -84,7 +84,7 @@ absl::Status CodeTrajectories(const Eigen::Ref<const Eigen::VectorXd>& steps, Bi
       int q = 0;
       if (!coder->decoding()) {
         const double scaled = std::fabs(coefficients[f]) / steps[k];
-        if (!(scaled < kMaxQuantized)) {
+        if (!(scaled < kMaxQuantizedStep)) {
           return absl::InvalidArgumentError("the motion is too large for the quantization step");
         }
         q = static_cast<int>(scaled + kRounding);

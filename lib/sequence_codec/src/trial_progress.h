@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -17,18 +16,6 @@ inline Progress PartOf(const Progress& progress, double begin, double end) {
       [&progress, begin, end](const ProgressUpdate& update) {
         // Whoever reports next hears of a cancellation.
         progress.Report(begin + update.fraction * (end - begin), update.objective).IgnoreError();
-      },
-      [&progress] { return progress.cancelled(); });
-}
-
-// Returns a token that passes on what `progress` hears, which must outlive it, but never less than
-// it heard before: of a step that is repeated in another way.
-inline Progress ForwardOnly(const Progress& progress) {
-  return Progress(
-      // Shared, because every stage of the token has a copy of this function.
-      [&progress, last = std::make_shared<double>(0)](const ProgressUpdate& update) {
-        *last = std::max(*last, update.fraction);
-        progress.Stage(update.stage, 0, 1).Report(*last, update.objective).IgnoreError();
       },
       [&progress] { return progress.cancelled(); });
 }

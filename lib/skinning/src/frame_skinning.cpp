@@ -31,7 +31,8 @@ FrameSkinning::FrameSkinning(const Rig& rig, std::vector<int> lane_vertices)
     for (int k = 0; k < kMaxInfluences; ++k) {
       block.weights[k * kSkinningLanes + lane] = influences.weights[k];
       block.bones[k * kSkinningLanes + lane] = influences.bones[k];
-      if (influences.weights[k] > 0 && k >= block.num_influences) block.num_influences = 8;
+      if (influences.weights[k] > 0 && k >= block.num_influences)
+        block.num_influences = kMaxInfluences;
       if (k > 0 && influences.weights[k] > 0) {
         pairs.emplace(influences.bones[0], influences.bones[k]);
       }

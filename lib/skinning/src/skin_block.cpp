@@ -106,8 +106,8 @@ PLEAT_ALWAYS_INLINE void Move(const Sixteen* m, const SkinBlockInputs& inputs, S
 struct SkinBlockBody {
   static PLEAT_ALWAYS_INLINE void Run(const SkinBlockInputs& inputs, float* positions) {
     Sixteen m[kParameters], position[3];
-    if (inputs.block->num_influences == 4) {
-      BlendVertices<4>(inputs, m);
+    if (inputs.block->num_influences == kStandardInfluences) {
+      BlendVertices<kStandardInfluences>(inputs, m);
     } else {
       BlendVertices<kMaxInfluences>(inputs, m);
     }
@@ -179,8 +179,8 @@ PLEAT_TARGET_AVX512 void SkinBlockForAvx512(const SkinBlockInputs& inputs, float
   }
   Sixteen m[kParameters], position[3];
   const bool with_axes = inputs.details != nullptr;
-  if (inputs.block->num_influences == 4) {
-    BlendByLookup<4>(inputs, with_axes, m);
+  if (inputs.block->num_influences == kStandardInfluences) {
+    BlendByLookup<kStandardInfluences>(inputs, with_axes, m);
   } else {
     BlendByLookup<kMaxInfluences>(inputs, with_axes, m);
   }

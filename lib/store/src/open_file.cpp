@@ -14,7 +14,7 @@ namespace pleat {
 namespace {
 
 // No path of the server is for the eyes of a client.
-absl::Status CannotRead(const std::string& id) {
+absl::Status CannotOpen(const std::string& id) {
   return absl::UnavailableError(
       absl::StrCat("cannot read the stored file '", id, "': the disk gives an error"));
 }
@@ -32,11 +32,11 @@ absl::StatusOr<std::unique_ptr<OpenFile>> OpenFile::Open(const std::string& path
   if (fd < 0 && (errno == ENOENT || errno == ENOTDIR)) {
     return absl::NotFoundError(absl::StrCat("no stored file has the id '", id, "'"));
   }
-  if (fd < 0) return CannotRead(id);
+  if (fd < 0) return CannotOpen(id);
   struct stat file = {};
   if (fstat(fd, &file) != 0 || !S_ISREG(file.st_mode)) {
     close(fd);
-    return CannotRead(id);
+    return CannotOpen(id);
   }
   return std::unique_ptr<OpenFile>(new OpenFile(id, fd, static_cast<uint64_t>(file.st_size)));
 }
@@ -52,7 +52,7 @@ absl::StatusOr<std::string> OpenFile::Read(uint64_t offset, uint64_t count) cons
     const ssize_t got =
         pread(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return CannotRead(id_);
+    if (got <= 0) return CannotOpen(id_);
     done += static_cast<size_t>(got);
   }
   return bytes;

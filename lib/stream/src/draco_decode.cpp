@@ -60,7 +60,8 @@ bool AttributesAreExpected(const draco::PointCloud& cloud, uint32_t num_points, 
 }
 
 template <typename Decoder, typename Geometry>
-absl::Status Run(std::string_view bytes, int num_points, Contents contents, Geometry* geometry) {
+absl::Status RunDecoder(std::string_view bytes, int num_points, Contents contents,
+                        Geometry* geometry) {
   return RunDracoDecoder<Decoder>(
       bytes,
       [num_points, contents](const draco::PointCloud& cloud) {
@@ -128,11 +129,11 @@ absl::Status DecodeDracoMesh(std::string_view bytes, int num_points, int num_tri
   PLEAT_ASSIGN_OR_RETURN(const uint8_t method, ReadHeader(&reader, DracoType::kMesh));
   PLEAT_RETURN_IF_ERROR(CheckMeshHeader(&reader, method, num_points, num_triangles));
   draco::Mesh mesh;
-  PLEAT_RETURN_IF_ERROR(
-      method == kDracoEdgebreaker
-          ? Run<draco::MeshEdgebreakerDecoder>(bytes, num_points, Contents::kPositionsAndIds, &mesh)
-          : Run<draco::MeshSequentialDecoder>(bytes, num_points, Contents::kPositionsAndIds,
-                                              &mesh));
+  PLEAT_RETURN_IF_ERROR(method == kDracoEdgebreaker
+                            ? RunDecoder<draco::MeshEdgebreakerDecoder>(
+                                  bytes, num_points, Contents::kPositionsAndIds, &mesh)
+                            : RunDecoder<draco::MeshSequentialDecoder>(
+                                  bytes, num_points, Contents::kPositionsAndIds, &mesh));
   PLEAT_RETURN_IF_ERROR(ExpectCount(mesh.num_faces(), num_triangles, "triangles"));
   return ReadMesh(mesh, num_vertices, positions, point_vertices, triangles);
 }
@@ -147,7 +148,7 @@ absl::Status DecodeCloud(std::string_view bytes, int num_points, Contents conten
   PLEAT_ASSIGN_OR_RETURN(const int32_t points, reader.Read<int32_t>("points"));
   if (points < 0) return MalformedDraco("a negative number of points");
   PLEAT_RETURN_IF_ERROR(ExpectCount(points, num_points, "points"));
-  return Run<draco::PointCloudSequentialDecoder>(bytes, num_points, contents, cloud);
+  return RunDecoder<draco::PointCloudSequentialDecoder>(bytes, num_points, contents, cloud);
 }
 
 }  // namespace

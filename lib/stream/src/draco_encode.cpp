@@ -20,7 +20,7 @@ int AddAttribute(draco::GeometryAttribute::Type type, draco::DataType data_type,
   return cloud->AddAttribute(attribute, /*identity_mapping=*/true, num_values);
 }
 
-absl::Status Run(draco::ExpertEncoder* encoder, std::string* bytes) {
+absl::Status RunEncoder(draco::ExpertEncoder* encoder, std::string* bytes) {
   draco::EncoderBuffer buffer;
   try {
     // Draco throws std::length_error on values that it cannot code, and std::bad_alloc.
@@ -103,7 +103,7 @@ absl::Status EncodeDracoResiduals(const draco::PointCloud& cloud, int speed, std
     const draco::Status status = encoder.SetAttributePredictionScheme(c, draco::PREDICTION_NONE);
     if (!status.ok()) return absl::InternalError(status.error_msg_string());
   }
-  return Run(&encoder, bytes);
+  return RunEncoder(&encoder, bytes);
 }
 
 absl::Status EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box, MeshMethod method,
@@ -113,7 +113,7 @@ absl::Status EncodeDracoMesh(const draco::Mesh& mesh, const QuantizationBox& box
   encoder.SetEncodingMethod(method == MeshMethod::kEdgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
                                                                : draco::MESH_SEQUENTIAL_ENCODING);
   encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
-  return Run(&encoder, bytes);
+  return RunEncoder(&encoder, bytes);
 }
 
 absl::Status EncodeDracoPointCloud(const draco::PointCloud& cloud, const QuantizationBox& box,
@@ -123,7 +123,7 @@ absl::Status EncodeDracoPointCloud(const draco::PointCloud& cloud, const Quantiz
   // Draco's default for quantized clouds is the kd-tree, which loses the order of the points.
   encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
   encoder.SetAttributeExplicitQuantization(0, box.bits, 3, box.origin_m.data(), box.range_m);
-  return Run(&encoder, bytes);
+  return RunEncoder(&encoder, bytes);
 }
 
 }  // namespace pleat

@@ -45,7 +45,7 @@ std::string PeerName(const sockaddr_storage& address) {
   return text;
 }
 
-bool Add(int epoll, int fd, uint32_t events) {
+bool AddToEpoll(int epoll, int fd, uint32_t events) {
   epoll_event event{};
   event.events = events;
   event.data.fd = fd;
@@ -65,8 +65,8 @@ absl::StatusOr<std::unique_ptr<ConnectionListener>> ConnectionListener::Open(
   }
   std::unique_ptr<ConnectionListener> listener(new ConnectionListener(std::move(socket), limits));
   if (listener->epoll_ < 0 || listener->wake_ < 0 || listener->reserve_ < 0 ||
-      !Add(listener->epoll_, listener->socket_.fd(), EPOLLIN) ||
-      !Add(listener->epoll_, listener->wake_, EPOLLIN)) {
+      !AddToEpoll(listener->epoll_, listener->socket_.fd(), EPOLLIN) ||
+      !AddToEpoll(listener->epoll_, listener->wake_, EPOLLIN)) {
     return absl::UnavailableError(
         absl::StrCat("cannot listen on '", address, "': no file descriptors are left"));
   }
@@ -166,7 +166,7 @@ const char* ConnectionListener::Refusal(const std::string& peer) const {
 bool ConnectionListener::Watch(int fd, const std::string& peer) {
   const int watcher = fcntl(fd, F_DUPFD_CLOEXEC, 0);
   if (watcher < 0) return false;
-  if (!Add(epoll_, watcher, EPOLLRDHUP)) {  // and EPOLLHUP, which always comes
+  if (!AddToEpoll(epoll_, watcher, EPOLLRDHUP)) {  // and EPOLLHUP, which always comes
     close(watcher);
     return false;
   }

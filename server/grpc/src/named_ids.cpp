@@ -15,7 +15,7 @@ using google::protobuf::Reflection;
 constexpr size_t kMaxIds = 8, kMaxIdBytes = 64;
 constexpr int kMaxDepth = 2;  // ids stand in the request, in its header, or in its character
 
-void Add(const std::string& id, std::vector<std::string>* ids) {
+void AddId(const std::string& id, std::vector<std::string>* ids) {
   if (id.empty() || ids->size() == kMaxIds) return;
   ids->emplace_back(Utf8Prefix(id, kMaxIdBytes));
 }
@@ -33,11 +33,11 @@ void Collect(const Message& message, int depth, std::vector<std::string>* ids) {
       continue;
     } else if (field->is_repeated() && absl::EndsWith(field->name(), "_ids")) {
       for (int i = 0; i < reflection.FieldSize(message, field) && ids->size() < kMaxIds; ++i) {
-        Add(reflection.GetRepeatedString(message, field, i), ids);
+        AddId(reflection.GetRepeatedString(message, field, i), ids);
       }
     } else if (!field->is_repeated() &&
                (field->name() == "id" || absl::EndsWith(field->name(), "_id"))) {
-      Add(reflection.GetString(message, field), ids);
+      AddId(reflection.GetString(message, field), ids);
     }
   }
 }

@@ -7,14 +7,14 @@ namespace pleat {
 namespace {
 
 // Streams end when their clients want; most are short.
-constexpr absl::Duration kRetryAfter = absl::Seconds(2);
+constexpr absl::Duration kRetryOpening = absl::Seconds(2);
 
 }  // namespace
 
 absl::Status StreamSlot::status() const {
   if (calls_->draining) return absl::UnavailableError("the server is shutting down");
   if (granted_) return memory_.status();
-  return RefuseForLimit({.limit = "--max-open-streams", .retry_after = kRetryAfter},
+  return RefuseForLimit({.limit = "--max-open-streams", .retry_after = kRetryOpening},
                         absl::StrCat("more than ", calls_->max_open_streams,
                                      " streams are open (--max-open-streams); close one or try "
                                      "again later"));

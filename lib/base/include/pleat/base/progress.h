@@ -35,6 +35,10 @@ class Progress {
   // Returns the token of a sub-step named `stage` that covers [begin, end] of this token's range.
   Progress Stage(const std::string& stage, double begin, double end) const;
 
+  // Returns a token that passes on to this one what it hears, but never a smaller fraction than it
+  // heard before: for a step that may be given up and repeated in another way.
+  Progress ForwardOnly() const;
+
   // Returns true when the caller asked to stop. It is cheap; call it at least every 100 ms of work.
   bool cancelled() const;
 

@@ -147,7 +147,7 @@ class ByteCache {
     absl::StatusOr<Reservation> charge = account_->Charge(bytes, key);
     if (!charge.ok()) return charge.status();
     auto charged =
-        std::make_shared<Charged>(std::move(loaded->value), account_, *std::move(charge));
+        std::make_shared<Charged>(Charged{std::move(loaded->value), account_, *std::move(charge)});
     Handle handle(charged, charged->value.get());
     if (flight.erased) return handle;
     recency_.push_front(key);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 namespace pleat {
 
@@ -16,9 +15,5 @@ void ScaleColumns(Eigen::MatrixXd* centered);
 // x N, lower); 1 when there are none. Of an even count it is the upper one of the two in the
 // middle.
 double MedianSquaredDistance(const Eigen::MatrixXd& distances);
-
-// Returns at most `count` (at least one) of `num_rows` rows, spread evenly, ascending. The first is
-// 0.
-std::vector<Eigen::Index> SpreadRows(Eigen::Index num_rows, Eigen::Index count);
 
 }  // namespace pleat

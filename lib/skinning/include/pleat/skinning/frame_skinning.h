@@ -64,10 +64,10 @@ class FrameSkinning {
     float rest[3 * kSkinningLanes];  // x of all, y, z; meters
     float weights[kMaxInfluences * kSkinningLanes];
     uint16_t bones[kMaxInfluences * kSkinningLanes];  // the strongest of each vertex first
-    // Those that its vertices have, as a multiple of four: kernels are unrolled for it, and entries
-    // without weight, which add zero, change no bit of a sum.
+    // What its vertices have, rounded up to one of the two counts for which kernels are unrolled:
+    // entries without weight, which add zero, change no bit of a sum.
     // It is last, because kernels load the lists above as whole, aligned registers.
-    int num_influences = 4;
+    int num_influences = kStandardInfluences;
   };
 
  private:
