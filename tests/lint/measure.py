@@ -65,21 +65,31 @@ def whole_line_comments(tree, paths):
     return sum(line.startswith("//") for line in lines) / max(1, len(lines))
 
 
+# Where the tests of a folder are when they are not in the folder of its name.
+OTHER_TEST_FOLDERS = {
+    "client/c": ["tests/c/"],
+    "client/cli": [f"tests/client/{part}" for part in ("io/", "load/", "show/", "verbs/")],
+    "client/python": ["tests/python/"],
+}
+# Suffixes of tests.
+TESTS = [*CPP, ".c", ".py"]
+
+
 def units(tree):
-    """(name, folder of code, folder of its tests) of each row of the table: modules, then whole programs."""
+    """(name, folder of code, folders of its tests) of each row of the table: modules, then whole programs."""
     for top in PROGRAM_FOLDERS:
         for folder in sorted({"/".join(p.split("/")[:2]) for p in tree.select(CPP, [f"{top}/"]) if p.count("/") > 1}):
             name = folder.split("/")[1]
-            beside = f"tests/{top}/{name}/"
-            yield folder, f"{folder}/", beside if top != "lib" else f"tests/{name}/"
+            beside = f"tests/{name}/" if top == "lib" else f"tests/{folder}/"
+            yield folder, f"{folder}/", OTHER_TEST_FOLDERS.get(folder, [beside])
     for program in PROGRAM_FOLDERS[1:]:
-        yield program, f"{program}/", f"tests/{program}/"
+        yield program, f"{program}/", [f"tests/{program}/"]
 
 
 def print_modules(tree):
     print(f"{'module':<22}{'files':>6}{'lines':>7}{'tests':>7}{'tests/code':>12}")
-    for name, code_folder, test_folder in units(tree):
-        code, tests = tree.select(CPP, [code_folder]), tree.select(CPP, [test_folder])
+    for name, code_folder, test_folders in units(tree):
+        code, tests = tree.select(CPP, [code_folder]), tree.select(TESTS, test_folders)
         num_code, num_tests = count_lines(tree, code), count_lines(tree, tests)
         print(f"{name:<22}{len(code):>6}{num_code:>7}{num_tests:>7}{num_tests / max(1, num_code):>12.2f}")
 
