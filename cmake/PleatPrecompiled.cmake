@@ -33,6 +33,10 @@ set(PLEAT_BATCH_SIZE 7)
 function(pleat_compile_in_batches target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${PLEAT_BATCHES}
                         UNITY_BUILD_BATCH_SIZE ${PLEAT_BATCH_SIZE})
+  if(PLEAT_BATCHES)
+    # gcc takes a source that a batch includes for a header, which should have no anonymous namespace.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
 endfunction()
 
 function(pleat_use_precompiled target layer)
