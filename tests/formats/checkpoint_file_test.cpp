@@ -116,5 +116,18 @@ TEST(CheckpointFile, OtherFilesAndCountsBeyondTheBytesAreRefused) {
               HasStatus(absl::StatusCode::kDataLoss, HasSubstr("too many")));
 }
 
+TEST(CheckpointFile, ARigWithoutVerticesIsRefused) {
+  CheckpointFile file = SmallCheckpoint(1);
+  file.checkpoint.rigging->rig =
+      Rig{.skeleton = file.checkpoint.rigging->rig.skeleton, .weights = {}, .rest_positions = {}};
+  file.checkpoint.rigging->warnings.clear();
+  file.checkpoint.rigging->locked_joints.clear();
+  std::string bytes = EncodeCheckpoint(file);
+  // A count of influences that is allowed, before a flag, a frame, two numbers and two empty lists.
+  bytes[bytes.size() - 32 - (4 + 4 + 4 + 8 + 8 + 4 + 4)] = 4;
+  EXPECT_THAT(DecodeCheckpoint(Reseal(bytes)),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("without vertices")));
+}
+
 }  // namespace
 }  // namespace pleat

@@ -52,6 +52,7 @@ absl::StatusOr<TrainingCheckpoint::Rigging> ReadRigging(ByteReader* reader,
   TrainingCheckpoint::Rigging rigging;
   PLEAT_ASSIGN_OR_RETURN(const Skeleton skeleton, ReadSkeleton(reader));
   PLEAT_ASSIGN_OR_RETURN(const uint32_t num_vertices, reader->Read<uint32_t>("vertex count"));
+  if (num_vertices == 0) return absl::InvalidArgumentError("a rig without vertices");
   if (num_vertices > limits.max_vertices) {
     return absl::ResourceExhaustedError(
         absl::StrCat(num_vertices, " vertices, the limit is ", limits.max_vertices));
