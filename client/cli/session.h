@@ -32,6 +32,7 @@ struct Session {
   bool quiet = false;
   bool force = false;                 // existing files may be replaced
   bool strict = false;                // warnings are errors
+  std::string animation;              // --animation: of glTF inputs, empty = the first that moves
   std::string object;                 // --object: of Alembic inputs, empty = all meshes that move
   std::vector<std::string> npz_keys;  // --key: "ROLE=NAME", the arrays of .npz inputs
 

@@ -31,7 +31,7 @@ class GlbFramesTest : public testing::Test {
     bytes_ = PackFigureGltf(edited);
     glb_.emplace(GlbContainer::Open(bytes_).value());
     nodes_ = GlbNodes::Read(*glb_).value();
-    animation_ = ChooseGlbAnimation(*glb_, nodes_, &report_).value();
+    animation_ = ChooseGlbAnimation(*glb_, nodes_, {}, &report_).value();
     return ChooseGlbFrames(*animation_, options, &report_);
   }
   std::vector<std::string> Kinds() const {
@@ -86,7 +86,7 @@ TEST_F(GlbFramesTest, OtherAnimationsAreNamed) {
   const std::string bytes = PackFigureGltf(two);
   const GlbContainer glb = GlbContainer::Open(bytes).value();
   const GlbNodes nodes = GlbNodes::Read(glb).value();
-  EXPECT_TRUE(ChooseGlbAnimation(glb, nodes, &report_).value().has_value());
+  EXPECT_TRUE(ChooseGlbAnimation(glb, nodes, {}, &report_).value().has_value());
   EXPECT_THAT(report_.notes, ElementsAre(Field(&InputNote::text, HasSubstr("2 animations"))));
 }
 

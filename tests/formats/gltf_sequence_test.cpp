@@ -62,10 +62,12 @@ class GltfSequenceTest : public testing::Test {
         {{"input", input}, {"output", output}, {"interpolation", interpolation}});
   }
 
-  absl::StatusOr<MeshSequence> Read(std::optional<FrameRate> rate = {}) {
+  absl::StatusOr<MeshSequence> Read(std::optional<FrameRate> rate = {},
+                                    const std::string& animation = {}) {
     report_ = {};
     EXPECT_THAT(WriteFile(folder_.File("a.glb"), PackFigureGltf(gltf_)), IsOk());
-    return ReadSequence(folder_.File("a.glb"), {.frame_rate = rate}, {}, &report_);
+    return ReadSequence(folder_.File("a.glb"), {.frame_rate = rate, .animation = animation}, {},
+                        &report_);
   }
   bool HasNote(const std::string& kind) const {
     return std::ranges::count(report_.notes, kind, &InputNote::kind) > 0;
@@ -157,6 +159,31 @@ TEST_F(GltfSequenceTest, OfSeveralAnimationsTheFirstIsRead) {
   gltf_.root["animations"].push_back(gltf_.root["animations"][0]);
   EXPECT_THAT(Read(), IsOk());
   EXPECT_TRUE(HasNote("animations_left_out"));
+}
+
+TEST_F(GltfSequenceTest, AnAnimationIsChosenByItsNameOrItsNumber) {
+  Animate(1, "weights", {0, 0.5f, 1}, {0, 0, 1, 0, 0.5f, 2});
+  json walk = gltf_.root["animations"][0];
+  gltf_.root.erase("animations");
+  Animate(1, "weights", {0, 0.5f}, {0, 0, 1, 1});
+  json jump = gltf_.root["animations"][0];
+  json still = {{"name", "still"}, {"channels", json::array()}, {"samplers", json::array()}};
+  walk["name"] = "walk";
+  jump["name"] = "0";  // a name goes before a number
+  gltf_.root["animations"] = {walk, jump, still};
+  for (const auto& [wanted, num_frames] : {std::pair("walk", 3), {"1", 2}, {"0", 2}}) {
+    PLEAT_ASSERT_OK_AND_ASSIGN(const MeshSequence sequence, Read({}, wanted));
+    EXPECT_EQ(sequence.num_frames(), num_frames) << wanted;
+    EXPECT_FALSE(HasNote("animations_left_out"));
+  }
+  EXPECT_THAT(Read({}, "run"),
+              HasStatus(absl::StatusCode::kNotFound,
+                        AllOf(HasSubstr("no animation 'run' in 3"), HasSubstr("0 'walk', 1 '0'"))));
+  EXPECT_THAT(Read({}, "3"), HasStatus(absl::StatusCode::kNotFound, HasSubstr("'3'")));
+  EXPECT_THAT(Read({}, "still"), HasStatus(kInvalid, HasSubstr("moves nothing")));
+  gltf_.root.erase("animations");
+  EXPECT_THAT(Read({}, "walk"),
+              HasStatus(absl::StatusCode::kNotFound, HasSubstr("in 0 animations")));
 }
 
 TEST(GltfSequence, DamagedFilesFailCleanly) {

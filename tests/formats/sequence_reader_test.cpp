@@ -192,11 +192,13 @@ TEST_F(SequenceReaderTest, AlembicArchivesAreReadAloneAndInAFolder) {
   EXPECT_THAT(Read("cache/renamed.obj"), HasStatus(kInvalid, HasSubstr("the ending .abc")));
 }
 
-TEST_F(SequenceReaderTest, ObjectsOfWhatIsNoArchiveAreANote) {
+TEST_F(SequenceReaderTest, ChoicesThatTheInputDoesNotHaveAreANote) {
   WriteBox("f0.obj", 0);
   for (const char* input : {"", "f0.obj", "*.obj"}) {
     EXPECT_THAT(Read(input, {.object = "/a"}), IsOk());
     EXPECT_THAT(Notes(), HasSubstr("object_ignored")) << input;
+    EXPECT_THAT(Read(input, {.animation = "walk"}), IsOk());
+    EXPECT_THAT(Notes(), HasSubstr("animation_ignored")) << input;
   }
 }
 

@@ -105,6 +105,17 @@ TEST(CoefficientFoldTest, BlocksRoundTrip) {
   EXPECT_EQ(DenseOf(found), DenseOf(expected));
 }
 
+TEST(CoefficientFoldTest, ABlockWithoutPlanesAddsNothing) {
+  std::vector<CoefficientFoldBlock> blocks = Blocks();
+  blocks[1].weights.values.resize(Eigen::NoChange, 0);
+  blocks[1].weights.components.clear();
+  blocks[1].weights.scales.clear();
+  PLEAT_ASSERT_OK_AND_ASSIGN(const CoefficientFold fold,
+                             CoefficientFold::FromBlocks(blocks, kNumInputs, kNumOutputs));
+  EXPECT_EQ(DenseOf(fold.blocks()), DenseOf(blocks));
+  EXPECT_EQ(fold.blocks()[1].weights.values.rows(), blocks[1].weights.values.rows());
+}
+
 TEST(CoefficientFoldTest, RefusesBlocksOutOfRange) {
   const auto refused = [](auto change) {
     std::vector<CoefficientFoldBlock> blocks = Blocks();

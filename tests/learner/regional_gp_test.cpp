@@ -144,8 +144,10 @@ TEST(RegionalGpTest, RefusesHostileParameters) {
   refused([](auto& p) { p.input_mean.conservativeResize(5); }, "mean or scales");
   refused([](auto& p) { p.input_scales[2] = 0; }, "mean or scales");
   refused([](auto& p) { p.input_scales[2] = kInf; }, "mean or scales");
-  refused([](auto& p) { p.inputs(4, 1) = kNan; }, "not finite");
-  refused([](auto& p) { p.output_mean[0] = kInf; }, "not finite");
+  refused([](auto& p) { p.inputs(4, 1) = kNan; }, "not a number or out of range");
+  refused([](auto& p) { p.inputs(4, 1) = 1e39; }, "out of range");
+  refused([](auto& p) { p.input_mean[3] = -kInf; }, "out of range");
+  refused([](auto& p) { p.output_mean[0] = kInf; }, "out of range");
   refused([](auto& p) { p.regions[0].alpha.conservativeResize(19, Eigen::NoChange); }, "19 x 2");
   refused([](auto& p) { p.regions[1].first_output = 3; }, "from 3 on, 2 of 4");
   refused([](auto& p) { p.regions[1].first_output = -1; }, "from -1 on");

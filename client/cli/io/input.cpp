@@ -21,6 +21,7 @@ absl::StatusOr<MeshSequence> ReadWithProgress(const Session& session, const std:
                                               const std::string& fps, InputReport* report) {
   ReadSequenceOptions options;
   options.object = session.object;
+  options.animation = session.animation;
   for (const std::string& key : session.npz_keys) {
     if (absl::Status status = SetNpzKey(key, &options.npz_keys); !status.ok()) {
       return UsageError(absl::StrCat("--key: ", status.message()));

@@ -32,6 +32,8 @@ void AddObjectFlag(CLI::App* verb, Session& session) {
   verb->add_option("--object", session.object,
                    "PATH of the mesh to read from an .abc, or of an object with meshes below it "
                    "[all meshes that move]");
+  verb->add_option("--animation", session.animation,
+                   "NAME or number of the animation to read from a .glb or .gltf [the first]");
   verb->add_option("--key", session.npz_keys,
                    "ROLE=NAME: an array of an .npz (positions, faces, face_sizes, frame_rate)");
 }

@@ -30,7 +30,7 @@ bool RunsOnService(const Session& session);
 // Adds --ttl-hours: how long a service keeps `what`. TtlOf gives its value; 0 hours are for ever.
 void AddTtlFlag(CLI::App* verb, const std::string& what, double* ttl_hours);
 absl::Duration TtlOf(double ttl_hours);
-// Adds --object and --key, for verbs that read sequences.
+// Adds --object, --animation and --key, for verbs that read sequences.
 void AddObjectFlag(CLI::App* verb, Session& session);
 // Adds --force, for verbs that write files.
 void AddForceFlag(CLI::App* verb, Session& session);

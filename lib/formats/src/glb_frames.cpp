@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "frame_times.h"
@@ -33,9 +34,30 @@ std::vector<float> TimesOfFrames(float begin, float end, FrameRate rate, int64_t
 std::string AnimationName(const GlbContainer& glb, size_t index) {
   const json& entry = glb.Entry("animations", index);
   const auto name = entry.is_object() ? entry.find("name") : entry.end();
-  return entry.is_object() && name != entry.end() && name->is_string()
-             ? EscapeControls(name->get<std::string>())
-             : std::string();
+  return entry.is_object() && name != entry.end() && name->is_string() ? name->get<std::string>()
+                                                                       : std::string();
+}
+
+// The number of the animation of that name, or the number that `wanted` is.
+absl::StatusOr<size_t> NumberOfAnimation(const GlbContainer& glb, std::string_view wanted) {
+  constexpr size_t kMaxListedAnimations = 12;
+  const size_t count = glb.List("animations").size();
+  std::string names;
+  for (size_t i = 0; i < count; ++i) {
+    const std::string name = AnimationName(glb, i);
+    if (name == wanted) return i;
+    if (i >= kMaxListedAnimations) continue;
+    absl::StrAppend(&names, i > 0 ? ", " : "", i, " '", EscapeControls(name), "'");
+  }
+  size_t number = 0;
+  if (absl::SimpleAtoi(absl::string_view(wanted.data(), wanted.size()), &number) &&
+      number < count) {
+    return number;
+  }
+  if (count > kMaxListedAnimations) absl::StrAppend(&names, ", ...");
+  return absl::NotFoundError(absl::StrCat("GLB: no animation '",
+                                          EscapeControls(std::string(wanted)), "' in ", count,
+                                          count > 0 ? ": " : " animations", names));
 }
 
 }  // namespace
@@ -72,17 +94,26 @@ GlbFrames ChooseGlbFrames(const GlbAnimation& animation, const GlbFrameOptions& 
 
 absl::StatusOr<std::optional<GlbAnimation>> ChooseGlbAnimation(const GlbContainer& glb,
                                                                const GlbNodes& nodes,
+                                                               std::string_view wanted,
                                                                InputReport* report) {
+  if (!wanted.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(const size_t number, NumberOfAnimation(glb, wanted));
+    PLEAT_ASSIGN_OR_RETURN(GlbAnimation animation, GlbAnimation::Read(glb, nodes, number));
+    if (animation.num_channels() > 0) return std::optional(std::move(animation));
+    return GlbFault(
+        absl::StrCat("animation '", EscapeControls(std::string(wanted)), "' moves nothing"));
+  }
   const size_t count = glb.List("animations").size();
   for (size_t i = 0; i < count; ++i) {
     PLEAT_ASSIGN_OR_RETURN(GlbAnimation animation, GlbAnimation::Read(glb, nodes, i));
     if (animation.num_channels() == 0) continue;
     if (count > 1) {
-      AddFramesNote(NoteSeverity::kWarning, "animations_left_out",
-                    absl::StrCat("the file holds ", count, " animations; number ", i, " '",
-                                 AnimationName(glb, i),
-                                 "' is read; export the others into files of their own"),
-                    report);
+      AddFramesNote(
+          NoteSeverity::kWarning, "animations_left_out",
+          absl::StrCat("the file holds ", count, " animations; number ", i, " '",
+                       EscapeControls(AnimationName(glb, i)),
+                       "' is read; --animation, with a name or a number, reads another one"),
+          report);
     }
     return std::optional(std::move(animation));
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -29,9 +30,12 @@ struct GlbFrameOptions {
 GlbFrames ChooseGlbFrames(const GlbAnimation& animation, const GlbFrameOptions& options,
                           InputReport* report);
 
-// The first animation with channels, none when there is none; a note says which others there are.
+// The animation of that name, else of that number. kNotFound, with the names that there are, when
+// it is none of them. An empty `wanted` takes the first animation with channels, none when there is
+// none; a note says then which others there are.
 absl::StatusOr<std::optional<GlbAnimation>> ChooseGlbAnimation(const GlbContainer& glb,
                                                                const GlbNodes& nodes,
+                                                               std::string_view wanted,
                                                                InputReport* report);
 
 }  // namespace pleat

@@ -153,7 +153,7 @@ absl::StatusOr<std::optional<JointClip>> DecodeGlbJoints(std::string_view bytes,
   PLEAT_ASSIGN_OR_RETURN(std::optional<GlbSkin> skin, FindSkin(glb, nodes, skeleton));
   if (!skin) return std::optional<JointClip>();
   PLEAT_ASSIGN_OR_RETURN(const std::optional<GlbAnimation> animation,
-                         ChooseGlbAnimation(glb, nodes, report));
+                         ChooseGlbAnimation(glb, nodes, {}, report));
   GlbFrames frames{{0.f}, frame_rate.value_or(FrameRate{})};
   if (animation) {
     frames = ChooseGlbFrames(*animation, {frame_rate, limits.max_frames}, report);

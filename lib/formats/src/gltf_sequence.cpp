@@ -125,11 +125,15 @@ absl::StatusOr<std::optional<MeshSequence>> DecodeGlbAnimation(std::string_view 
                                                                const InputReading& reading) {
   // What is no GLB is refused by the reader of still meshes, in the same words.
   absl::StatusOr<GlbContainer> glb = GlbContainer::Open(bytes, reading.options.limits);
-  if (!glb.ok() || glb->List("animations").empty()) return std::optional<MeshSequence>();
+  const std::string& wanted = reading.options.animation;
+  if (!glb.ok() || (glb->List("animations").empty() && wanted.empty())) {
+    return std::optional<MeshSequence>();
+  }
   absl::StatusOr<GlbNodes> nodes = GlbNodes::Read(*glb);
   if (!nodes.ok()) return WithContext(path, nodes.status());
   InputReport report;
-  absl::StatusOr<std::optional<GlbAnimation>> animation = ChooseGlbAnimation(*glb, *nodes, &report);
+  absl::StatusOr<std::optional<GlbAnimation>> animation =
+      ChooseGlbAnimation(*glb, *nodes, wanted, &report);
   if (!animation.ok()) return WithContext(path, animation.status());
   if (!*animation) return std::optional<MeshSequence>();
   absl::StatusOr<MeshSequence> sequence =

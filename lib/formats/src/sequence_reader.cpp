@@ -68,37 +68,59 @@ absl::Status UnknownExtension(const std::string& path) {
                    "'; known are ", kKnownExtensions, ", a folder of meshes, or a pattern (*, ?)"));
 }
 
-// Says that --object does not count for an input that is no archive.
-absl::StatusOr<MeshSequence> WithoutObject(absl::StatusOr<MeshSequence> sequence,
-                                           const std::string& input, const InputReading& reading) {
-  if (sequence.ok() && !reading.options.object.empty()) {
-    reading.report->notes.push_back(
-        {.kind = "object_ignored",
-         .text = absl::StrCat("'", input, "' is no Alembic archive, so it has no object '",
-                              reading.options.object, "' to choose"),
-         .refused_when_strict = true});
+void NoteUnusedChoice(const char* kind, std::string text, const InputReading& reading) {
+  reading.report->notes.push_back(
+      {.kind = kind, .text = std::move(text), .refused_when_strict = true});
+}
+
+// Says that --object counts for archives alone, and --animation for glTF files.
+void NoteUnusedChoices(const std::string& path, bool is_archive, bool is_gltf,
+                       const InputReading& reading) {
+  const ReadSequenceOptions& options = reading.options;
+  if (!options.object.empty() && !is_archive) {
+    NoteUnusedChoice("object_ignored",
+                     absl::StrCat("'", path, "' is no Alembic archive, so it has no object '",
+                                  options.object, "' to choose"),
+                     reading);
+  }
+  if (!options.animation.empty() && !is_gltf) {
+    NoteUnusedChoice("animation_ignored",
+                     absl::StrCat("'", path, "' is no single glTF file, so it has no animation '",
+                                  options.animation, "' to choose"),
+                     reading);
+  }
+}
+
+absl::StatusOr<MeshSequence> ReadKnownFile(const std::string& path, const InputReading& reading) {
+  const std::string extension = LowerExtension(path);
+  if (extension == ".abc") return ReadAlembicSequence(path, reading);
+  if (IsGltfFile(path)) return ReadGltfSequence(path, reading);
+  if (IsMeshFile(path)) {
+    return ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading);
+  }
+  if (extension == ".pc2") return ReadPointCacheSequence(path, reading);
+  if (extension == ".mdd") return ReadMddSequence(path, reading);
+  if (IsArrayFile(path)) return ReadArraySequence(path, reading);
+  if (extension != ".pseq") return UnknownExtension(path);
+  reading.report->has_frame_rate = true;
+  return ReadPleatSequence(path, reading.options);
+}
+
+absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
+  absl::StatusOr<MeshSequence> sequence = ReadKnownFile(path, reading);
+  if (sequence.ok()) {
+    NoteUnusedChoices(path, LowerExtension(path) == ".abc", IsGltfFile(path), reading);
   }
   return sequence;
 }
 
-absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputReading& reading) {
-  const std::string extension = LowerExtension(path);
-  if (extension == ".abc") return ReadAlembicSequence(path, reading);
-  if (IsGltfFile(path)) return WithoutObject(ReadGltfSequence(path, reading), path, reading);
-  if (IsMeshFile(path)) {
-    return WithoutObject(ReadFrameFiles({path}, fs::path(path).stem().string(), path, reading),
-                         path, reading);
-  }
-  if (extension == ".pc2") {
-    return WithoutObject(ReadPointCacheSequence(path, reading), path, reading);
-  }
-  if (extension == ".mdd") return WithoutObject(ReadMddSequence(path, reading), path, reading);
-  if (IsArrayFile(path)) return WithoutObject(ReadArraySequence(path, reading), path, reading);
-  if (extension == ".pseq") {
-    reading.report->has_frame_rate = true;
-    return WithoutObject(ReadPleatSequence(path, reading.options), path, reading);
-  }
-  return UnknownExtension(path);
+// Reads one frame from each file of a folder or a pattern, which `input` is.
+absl::StatusOr<MeshSequence> ReadFrames(const std::vector<std::string>& paths,
+                                        const std::string& name, const std::string& input,
+                                        const InputReading& reading) {
+  absl::StatusOr<MeshSequence> sequence = ReadFrameFiles(paths, name, input, reading);
+  if (sequence.ok()) NoteUnusedChoices(input, false, false, reading);
+  return sequence;
 }
 
 absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputReading& reading) {
@@ -139,8 +161,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
                          ? "; it is empty"
                          : absl::StrCat("; found only ", absl::StrJoin(other_extensions, ", "))));
   }
-  return WithoutObject(ReadFrameFiles(meshes, FolderName(folder), folder, reading), folder,
-                       reading);
+  return ReadFrames(meshes, FolderName(folder), folder, reading);
 }
 
 absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const InputReading& reading) {
@@ -150,7 +171,7 @@ absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const Input
     if (!IsMeshFile(path) && !IsGltfFile(path)) return UnknownExtension(path);
   }
   const std::string name = FolderName(fs::path(pattern).parent_path().string());
-  return WithoutObject(ReadFrameFiles(paths, name, pattern, reading), pattern, reading);
+  return ReadFrames(paths, name, pattern, reading);
 }
 
 }  // namespace

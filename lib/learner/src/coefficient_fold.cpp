@@ -47,7 +47,9 @@ absl::StatusOr<DetailBasis> InOrderOfBlocks(const DetailBasisParameters& weights
   DetailBasisParameters placed = weights;
   placed.mean = Eigen::VectorXf::Zero(padded);
   placed.values.setZero(padded, weights.values.cols());
-  for (int i = 0; i < num_outputs; ++i) placed.values.row(RowOf(i)) = weights.values.row(i);
+  for (Eigen::Index p = 0; p < weights.values.cols(); ++p) {  // a block may have no planes
+    for (int i = 0; i < num_outputs; ++i) placed.values(RowOf(i), p) = weights.values(i, p);
+  }
   return DetailBasis::FromParameters(placed);
 }
 
@@ -99,7 +101,9 @@ std::vector<CoefficientFoldBlock> CoefficientFold::blocks() const {
     DetailBasisParameters weights = block.weights.parameters();
     const DetailBasisParameters::Planes placed = std::move(weights.values);
     weights.values.resize(block.num_outputs, placed.cols());
-    for (int i = 0; i < block.num_outputs; ++i) weights.values.row(i) = placed.row(RowOf(i));
+    for (Eigen::Index p = 0; p < placed.cols(); ++p) {
+      for (int i = 0; i < block.num_outputs; ++i) weights.values(i, p) = placed(RowOf(i), p);
+    }
     weights.mean.setZero(block.num_outputs);
     blocks.push_back({block.first_input, block.targets, std::move(weights)});
   }

@@ -44,6 +44,12 @@ absl::Status RefuseRegions(const std::string& what) {
 
 bool IsPositive(double value) { return value > 0 && value < 1e30; }  // false for NaN
 
+// False for what is not a number.
+template <typename Values>
+bool IsWithin(const Values& values, double bound) {
+  return (values.array().abs() < bound).all();
+}
+
 absl::Status CheckScale(const RegionalGpParameters::Scale& scale, Eigen::Index num_inputs) {
   if (!IsFeatureSet(scale.columns, num_inputs)) {
     return RefuseRegions(absl::StrCat("the columns of a scale do not ascend below ", num_inputs));
@@ -66,8 +72,10 @@ absl::Status CheckRegions(const RegionalGpParameters& p) {
       !std::all_of(p.input_scales.begin(), p.input_scales.end(), IsPositive)) {
     return RefuseRegions("mean or scales of the inputs do not fit");
   }
-  if (!p.input_mean.allFinite() || !p.inputs.allFinite() || !p.output_mean.allFinite()) {
-    return RefuseRegions("an input or a mean is not finite");
+  // The square of an input is kept in single precision.
+  if (!IsWithin(p.inputs, 1e15) || !IsWithin(p.input_mean, 1e30) ||
+      !IsWithin(p.output_mean, 1e30)) {
+    return RefuseRegions("an input or a mean is not a number or out of range");
   }
   for (const RegionalGpParameters::Region& region : p.regions) {
     if (region.alpha.rows() != n || region.alpha.cols() < 1 || !region.alpha.allFinite()) {

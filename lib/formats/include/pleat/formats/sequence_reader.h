@@ -24,6 +24,9 @@ struct ReadSequenceOptions {
   // The object of an Alembic archive that is read: a mesh, or one with meshes below it. Empty: all
   // meshes that move. A note says when the input is no archive.
   std::string object{};
+  // The animation of a glTF file that is read: its name, or its number from 0. Empty: the first
+  // that moves something. A note says when the input is no glTF file.
+  std::string animation{};
   NpzKeys npz_keys{};  // the names of the arrays in an .npz
   MeshLimits limits{};
   // The threads that read folders and globs, 0 = one per core. The result does not depend on it.
