@@ -96,6 +96,13 @@ def colors():
 
 
 @step
+def wait():
+    from pleat_blender import live
+    shown = live.find(bpy.context.object)
+    return shown.shown_number < shown.number  # a mesh that is late: again
+
+
+@step
 def heat():
     shoot("blender_confidence.png")
 
@@ -106,7 +113,8 @@ def leave():
 
 
 def run():
-    steps.pop(0)()
+    if not steps[0]():
+        steps.pop(0)
     return .7 if steps else None
 
 

@@ -32,7 +32,8 @@ def main():
         print("skipped: blender is not on this machine")
         sys.exit(77)
     with tempfile.TemporaryDirectory() as folder, ServerProcess(BIN / "pleatd", f"{folder}/store") as server:
-        environment = dict(os.environ, HOME=folder, XDG_CONFIG_HOME=f"{folder}/config", PLEAT_SERVER=server.address)
+        environment = dict(os.environ, HOME=folder, PWD=folder, XDG_CONFIG_HOME=f"{folder}/config",
+                           PLEAT_SERVER=server.address)
 
         def run(*command):
             done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=600)

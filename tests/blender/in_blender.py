@@ -224,6 +224,32 @@ def check_bakes(rig, answer):
     refused("choose a file", bpy.ops.pleat.bake, target="PC2")
 
 
+def check_copy(rig):
+    """A copy of the character moves its own mesh."""
+    from pleat_blender import live
+    bpy.context.scene.frame_set(5)
+    before = shown_mm(rig.pleat.mesh)
+    for found in bpy.data.objects:
+        found.select_set(found in (rig, rig.pleat.mesh))
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    assert copy != rig and copy.type == "ARMATURE"
+    copy.pleat.live = True
+    assert copy.pleat.mesh != rig.pleat.mesh and copy.pleat.key != rig.pleat.key and not copy.pleat.problem
+    copy.animation_data_clear()
+    copy.pose.bones["head"].rotation_quaternion = (.9, .43, 0, 0)
+    bpy.context.view_layer.update()
+    assert np.abs(shown_mm(copy.pleat.mesh) - before).max() > 5
+    close("the original beside its copy", shown_mm(rig.pleat.mesh), before)
+    copy.name, rig.name = "another name", "renamed"
+    bpy.context.scene.frame_set(6)
+    assert live.find(copy).status == live.find(rig).status == ""
+    bpy.data.objects.remove(copy.pleat.mesh)
+    copy.pleat.live = False
+    bpy.data.objects.remove(copy)
+
+
 def check_saved_file(rig, skinned):
     """A file holds the rest pose and shows skinning by itself; opened again, the folds come back."""
     bpy.context.scene.frame_set(9)
@@ -292,6 +318,7 @@ def main():
         check_posing(rig, answer)
         check_heat(rig)
         check_bakes(rig, answer)
+        check_copy(rig)
         assert bpy.ops.pleat.connect() == {"FINISHED"}
         assert len(bpy.context.window_manager.pleat.models) == 1
         assert bpy.ops.pleat.download() == {"FINISHED"}

@@ -6,7 +6,7 @@ bl_info = {  # of Blender before 4.2; later ones read blender_manifest.toml
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
     "location": "3D View > Sidebar > Pleat",
-    "description": "Characters with learned folds: train, pose, see the detailed mesh",
+    "description": "Characters with learned folds: train, pose, bake",
     "category": "Animation",
 }
 

@@ -5,6 +5,8 @@ is there: at once when it comes within WAIT_SECONDS, so that playing shows the f
 otherwise. Where there is no mesh (no server, no library, an error) Blender's own skinning shows the character.
 """
 
+import uuid
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -28,7 +30,7 @@ class Live:
 
     def __init__(self, rig, preferences):
         settings = rig.pleat
-        self.key, self.character = settings.key, models.load(settings)
+        self.key, self.name, self.character = settings.key, rig.name, models.load(settings)
         missing = armature.missing_bones(rig, self.character)
         if missing:
             raise PleatError("FAILED_PRECONDITION", f"'{rig.name}' has no bones {', '.join(missing)}: the character's "
@@ -90,14 +92,36 @@ def find(rig):
 
 
 def _armature_of(key):
-    for rig in bpy.data.objects:  # names and pointers change, by undo for example
+    """The armature of a Live: pointers do not survive an undo, and names may change."""
+    live = _shown[key]
+    named = bpy.data.objects.get(live.name)
+    if named is not None and named.type == "ARMATURE" and named.pleat.key == key:
+        return named
+    for rig in bpy.data.objects:
         if rig.type == "ARMATURE" and rig.pleat.key == key:
+            live.name = rig.name
             return rig
     return None
 
 
+def _be_of_its_own(rig):
+    """A copy of a character has the key and the mesh of the original: it gets a key, and the mesh below it."""
+    settings = rig.pleat
+    if any(other != rig and other.type == "ARMATURE" and other.pleat.key == settings.key
+           for other in bpy.data.objects):
+        settings.key = uuid.uuid4().hex
+    if settings.mesh is None or settings.mesh.parent != rig:
+        below = [child for child in rig.children if child.type == "MESH" and armature.REST in child.data.attributes]
+        if not below:
+            raise PleatError("FAILED_PRECONDITION", f"'{rig.name}' has lost its mesh: bring the character in again")
+        settings.mesh = below[0]
+        if below[0].data.users > 1:  # a linked copy would show both poses
+            below[0].data = below[0].data.copy()
+
+
 def start(rig, preferences):
     """Raises PleatError when the model is not there or does not fit."""
+    _be_of_its_own(rig)
     stop(rig)
     _shown[rig.pleat.key] = Live(rig, preferences)
     refresh(rig)

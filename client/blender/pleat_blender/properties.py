@@ -25,7 +25,21 @@ class PleatPreferences(bpy.types.AddonPreferences):
         self.layout.prop(self, "token")
 
 
+_quiet = False  # while a property is set that shall start nothing
+
+
+def set_quietly(settings, name, value):
+    global _quiet
+    _quiet = True
+    try:
+        setattr(settings, name, value)
+    finally:
+        _quiet = False
+
+
 def _changed_live(settings, context):
+    if _quiet:
+        return
     rig = settings.id_data
     if not settings.live:
         live.stop(rig)
@@ -34,13 +48,13 @@ def _changed_live(settings, context):
         live.start(rig, preferences(context))
     except PleatError as error:
         settings.problem = str(error)
-        settings["live"] = False
+        set_quietly(settings, "live", False)
     else:
         settings.problem = ""
 
 
 def _changed_source(settings, context):
-    if settings.live:
+    if settings.live and not _quiet:
         _changed_live(settings, context)
 
 
@@ -82,7 +96,7 @@ def make_settings(rig, mesh, model_id, path="", address=""):
     settings = rig.pleat
     settings.key = uuid.uuid4().hex
     settings.model_id, settings.model_path, settings.mesh = model_id, path, mesh
-    settings["address"] = address
+    set_quietly(settings, "address", address)
     return settings
 
 

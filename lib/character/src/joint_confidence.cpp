@@ -42,9 +42,10 @@ absl::Status JointConfidence(const CharacterModel& model, const std::vector<cons
   const int num_joints = model.skeleton().num_joints();
   const int num_coordinates = NumCoordinates(model.options().rotations);
   const int num_values = (num_joints - 1) * num_coordinates;  // of one pose
-  if (stage.input_mean.size() != row.size()) {
-    return absl::InternalError(absl::StrCat("the learner reads ", stage.input_mean.size(),
-                                            " features of a pose, which has ", row.size()));
+  if (stage.input_mean.size() != row.size() || stage.inputs.rows() == 0) {
+    return absl::InternalError(absl::StrCat("the learner has ", stage.inputs.rows(), " rows of ",
+                                            stage.input_mean.size(), " features, and a pose has ",
+                                            row.size()));
   }
   row = (row - stage.input_mean).cwiseQuotient(stage.input_scales);
   const double inverse_width = KernelValuesOf(stage.kernel_options, stage.kernel).g;

@@ -209,6 +209,8 @@ TEST_F(ServerHandleTest, ATakeGoesUpWhole) {
           if (request.has_header()) out->mutable_sequence()->set_id(request.header().id());
           arrived += request.data();
         }
+        out->mutable_sequence()->mutable_frame_rate()->set_numerator(1);
+        out->mutable_sequence()->mutable_frame_rate()->set_denominator(1);
         return grpc::Status::OK;
       });
   const std::vector<uint32_t> sizes = {3}, corners = {0, 1, 2};
