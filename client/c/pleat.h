@@ -139,6 +139,44 @@ PLEAT_API pleat_code pleat_model_copy_texcoords(const pleat_model* model, float*
 PLEAT_API pleat_code pleat_model_copy_corner_texcoords(const pleat_model* model, int32_t* indices,
                                                        size_t num_values, pleat_error* error);
 
+/* What a package of its own needs to show the character without this library: its skin and what the
+ * training has recorded. */
+
+/* positions: 3 V, the mesh in the rest pose. */
+PLEAT_API pleat_code pleat_model_copy_rest_positions(const pleat_model* model, float* positions,
+                                                     size_t num_values, pleat_error* error);
+/* The strongest `per_vertex` bones of every vertex, 1 to 8, the strongest first, with weights that
+ * sum to 1; both lists have V * per_vertex values, and what is left over is bone 0 with weight 0.
+ * Bone b ends in joint b and turns about the joint above it. */
+PLEAT_API pleat_code pleat_model_copy_influences(const pleat_model* model, uint32_t per_vertex,
+                                                 uint32_t* bones, float* weights, size_t num_values,
+                                                 pleat_error* error);
+
+/* Distances of vertices on the training frames, in % of the diagonal. */
+typedef struct pleat_errors {
+  double mean_percent;
+  double rms_percent;
+  double p95_percent; /* 95th percentile over all vertices of all frames */
+  double max_percent;
+  double mean_mm;
+} pleat_errors;
+
+typedef struct pleat_model_record {
+  size_t struct_size;
+  const char* learner; /* that the training has chosen; lives as long as the model */
+  uint32_t num_frames;
+  uint32_t num_warnings;
+  double rig_residual; /* under .03 the rig can be trusted */
+  double diagonal_m;
+  pleat_errors skinned;  /* the rig alone */
+  pleat_errors detailed; /* the whole model */
+} pleat_model_record;
+
+PLEAT_API pleat_code pleat_model_get_record(const pleat_model* model, pleat_model_record* record,
+                                            pleat_error* error);
+/* What the user should look at, in words; NULL where there is no such warning. */
+PLEAT_API const char* pleat_model_warning(const pleat_model* model, uint32_t warning);
+
 /* Poses -------------------------------------------------------------------------------------- */
 
 /* One pose. Rotations are unit quaternions x, y, z, w, joint by joint in the model's order,
@@ -206,6 +244,13 @@ PLEAT_API pleat_code pleat_evaluator_reserve(pleat_evaluator* evaluator, size_t 
  * must have the same struct_size. */
 PLEAT_API pleat_code pleat_evaluate(pleat_evaluator* evaluator, pleat_query* queries,
                                     size_t num_queries, pleat_error* error);
+
+/* Where on the body a pose is unlike the training. confidence: J values for the joints of poses[0],
+ * 1 where a training frame has the joint as it is now, 0 where none is near. The poses are as in
+ * pleat_query. For pictures: it is no part of an evaluation. */
+PLEAT_API pleat_code pleat_joint_confidence(const pleat_model* model, const pleat_pose* poses,
+                                            size_t num_poses, double* confidence, size_t num_joints,
+                                            pleat_error* error);
 
 /* Parameters of a stream --------------------------------------------------------------------- */
 

@@ -62,6 +62,12 @@ enum {
  * apart. */
 PLEAT_API pleat_code pleat_session_send(pleat_session* session, uint64_t number,
                                         const pleat_pose* pose, uint32_t flags, pleat_error* error);
+/* The same with a history of its own: poses[0] is shown, poses[h] is the pose h intervals of the
+ * training earlier, at most 8 in all. Later poses go on from these. For an editor, whose timeline
+ * jumps. */
+PLEAT_API pleat_code pleat_session_send_poses(pleat_session* session, uint64_t number,
+                                              const pleat_pose* poses, size_t num_poses,
+                                              uint32_t flags, pleat_error* error);
 /* Says that no pose will follow. */
 PLEAT_API void pleat_session_send_done(pleat_session* session);
 

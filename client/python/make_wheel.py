@@ -21,6 +21,9 @@ Summary: Mesh animations as characters: rig, learn, pose, compress
 License: Apache-2.0
 Requires-Python: >=3.11
 Requires-Dist: numpy
+Provides-Extra: server
+Requires-Dist: grpcio >=1.51 ; extra == 'server'
+Requires-Dist: protobuf <6,>=4.21 ; extra == 'server'
 Classifier: Typing :: Typed
 Description-Content-Type: text/markdown
 
@@ -56,7 +59,7 @@ def main():
     folder, version, strip = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     tag = tag_of_this_python()
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
-    files = {f"pleat/{path.name}": path.read_bytes() for path in sorted((folder / "pleat").iterdir())
+    files = {str(path.relative_to(folder)): path.read_bytes() for path in sorted((folder / "pleat").rglob("*"))
              if path.suffix in (".py", ".pyi") or path.name == "py.typed"}
     files[f"pleat/_pleat{suffix}"] = stripped(folder / f"pleat/_pleat{suffix}", strip)
     info = f"pleat-{version}.dist-info"

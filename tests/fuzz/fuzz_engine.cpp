@@ -98,8 +98,30 @@ void Evaluate(const pleat_model* model, const pleat_model_info& info, Numbers& n
     for (float& coefficient : coefficients) coefficient = numbers.Next<float>();
   }
   pleat_show(evaluator, &parameters, &query, &error);
+  std::vector<double> confidence(num_joints);
+  pleat_joint_confidence(model, query.poses, query.num_poses, confidence.data(), num_joints,
+                         &error);
   pleat_motion_destroy(motion);
   pleat_evaluator_destroy(evaluator);
+}
+
+void CopyRig(const pleat_model* model, const pleat_model_info& info, Numbers& numbers) {
+  pleat_error error;
+  const uint32_t per_vertex = 1 + numbers.Next<uint8_t>() % 8;
+  std::vector<float> rest(size_t{3} * info.num_vertices),
+      weights(size_t{per_vertex} * info.num_vertices);
+  std::vector<uint32_t> bones(weights.size());
+  pleat_model_record record{};
+  record.struct_size = sizeof(record);
+  if (pleat_model_copy_rest_positions(model, rest.data(), rest.size(), &error) != PLEAT_OK ||
+      pleat_model_copy_influences(model, per_vertex, bones.data(), weights.data(), bones.size(),
+                                  &error) != PLEAT_OK ||
+      pleat_model_get_record(model, &record, &error) != PLEAT_OK) {
+    __builtin_trap();
+  }
+  for (const uint32_t bone : bones) {
+    if (bone >= info.num_joints) __builtin_trap();
+  }
 }
 
 }  // namespace
@@ -122,6 +144,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     __builtin_trap();
   }
   Numbers numbers(data, size);
+  CopyRig(model, info, numbers);
   Evaluate(model, info, numbers);
   pleat_model_destroy(model);
   return 0;

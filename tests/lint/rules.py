@@ -82,7 +82,8 @@ RULES = (
     Rule("server-decodes-no-draco", "the server decodes no Draco; client/draco_child does, with limits", "include",
          r"^pleat/stream/draco_file\.h$", where=("server/", "lib/local/", "lib/jobs/", "lib/store/")),
     Rule("c-interface", "the headers of the C interface are C, and include nothing but each other", "include",
-         r"^(?!std(?:def|int)\.h$|pleat(?:_session)?\.h$).", where=("client/c/pleat.h", "client/c/pleat_session.h")),
+         r"^(?!std(?:def|int)\.h$|pleat(?:_session|_server)?\.h$).",
+         where=("client/c/pleat.h", "client/c/pleat_server.h", "client/c/pleat_session.h")),
     # What library code does not do.
     Rule("prints", "library code never prints", "code",
          r"\bstd::(?:cout|cerr|clog)\b|\b(?:printf|puts|fprintf|perror)\s*\(", where=("lib/",)),

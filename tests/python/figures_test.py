@@ -28,6 +28,14 @@ class FiguresTest(unittest.TestCase):
             for name in pleat.experiment_names():
                 rows = json.loads((folder / "out" / f"{name}.json").read_text())
                 self.assertGreaterEqual(len(rows), 1, name)
+            pictures = {path.stem for path in (folder / "out").glob("*.png")}
+            try:
+                import matplotlib  # noqa: F401
+            except ImportError:
+                print("the pictures are skipped: python3-matplotlib is not on this machine")
+                return
+            self.assertLessEqual({"character", "edits"}, pictures)
+            self.assertGreaterEqual(len(pictures), 2 + len(pleat.experiment_names()))
 
 
 if __name__ == "__main__":

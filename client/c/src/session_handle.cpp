@@ -11,27 +11,19 @@
 #include "pleat_session.h"
 #include "pose_argument.h"
 #include "query_argument.h"
+#include "server_argument.h"
 
 struct pleat_session {
   std::unique_ptr<pleat::RemoteCharacterService> service;  // declared first: the session uses it
   std::unique_ptr<pleat::LiveSession> live;
   int num_vertices = 0;
-  pleat::Pose pose;         // the one that is being sent
-  pleat::LiveFrame answer;  // the one that is being received
+  pleat::Pose pose;                  // the one that is being sent
+  std::vector<pleat::Pose> history;  // of its own
+  pleat::LiveFrame answer;           // the one that is being received
 };
 
 namespace pleat {
 namespace {
-
-std::string TextOrEmpty(const char* text) { return text == nullptr ? "" : text; }
-
-RemoteOptions TakeRemoteOptions(const pleat_session_options& options) {
-  RemoteOptions remote{.token = TextOrEmpty(options.token)};
-  if (options.connect_seconds > 0) remote.connect_seconds = options.connect_seconds;
-  remote.tls = options.tls_root_certificates != nullptr;
-  remote.tls_root_certificates = TextOrEmpty(options.tls_root_certificates);
-  return remote;
-}
 
 absl::StatusOr<LiveSessionOptions> TakeLiveOptions(const pleat_session_options& options) {
   LiveSessionOptions live{.latest_wins = options.latest_wins != 0};
@@ -49,16 +41,6 @@ absl::StatusOr<LiveSessionOptions> TakeLiveOptions(const pleat_session_options& 
     return absl::InvalidArgumentError(absl::StrCat("content ", options.content, " is not known"));
   }
   return live;
-}
-
-// What an error of a server means that knows none of our calls.
-absl::Status NameOtherServers(absl::Status status, const char* address) {
-  if (status.code() != absl::StatusCode::kUnimplemented) return status;
-  return absl::UnimplementedError(
-      absl::StrCat("the server at ", address,
-                   " does not have what version " PLEAT_VERSION
-                   " asks for (pleat.v1): it is no Pleat server, or one of another version: ",
-                   status.message()));
 }
 
 absl::Status Start(const pleat_session_options& options, pleat_session* session) {
@@ -91,25 +73,39 @@ absl::Status Open(const pleat_session_options* options, pleat_session** session)
   if (options->address == nullptr) return IsNull("address");
   if (options->model_id == nullptr) return IsNull("model_id");
   auto opened = std::make_unique<pleat_session>();
-  PLEAT_ASSIGN_OR_RETURN(opened->service, RemoteCharacterService::Connect(
-                                              options->address, TakeRemoteOptions(*options)));
+  PLEAT_ASSIGN_OR_RETURN(
+      opened->service,
+      RemoteCharacterService::Connect(
+          options->address, TakeRemoteOptions(options->token, options->tls_root_certificates,
+                                              options->connect_seconds)));
   PLEAT_RETURN_IF_ERROR(NameOtherServers(Start(*options, opened.get()), options->address));
   *session = opened.release();
   return absl::OkStatus();
 }
 
-absl::Status Send(pleat_session* session, uint64_t number, const pleat_pose& pose, uint32_t flags) {
+absl::Status Send(pleat_session* session, uint64_t number, const pleat_pose* poses,
+                  size_t num_poses, uint32_t flags) {
   if ((flags & ~uint32_t{PLEAT_SEND_RESTART | PLEAT_SEND_KEYFRAME}) != 0) {
     return absl::InvalidArgumentError(absl::StrCat("flags ", flags, " are not known"));
   }
-  // The server knows the skeleton, so it checks the number of joints; here it is only bounded.
-  constexpr size_t kMostJoints = 1 << 16;
-  if (pose.num_joints > kMostJoints) {
-    return absl::InvalidArgumentError(absl::StrCat("the pose has ", pose.num_joints, " joints"));
+  constexpr size_t kMostPoses = 8;  // what the server takes
+  if (num_poses == 0 || num_poses > kMostPoses) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(num_poses, " poses; one is shown, and at most 7 come before it"));
   }
-  PLEAT_RETURN_IF_ERROR(TakePose(pose, static_cast<int>(pose.num_joints), &session->pose));
-  return session->live->Send(number, session->pose, {}, (flags & PLEAT_SEND_RESTART) != 0,
-                             (flags & PLEAT_SEND_KEYFRAME) != 0);
+  session->history.resize(num_poses - 1);
+  for (size_t h = 0; h < num_poses; ++h) {
+    // The server knows the skeleton, so it checks the number of joints; here it is only bounded.
+    constexpr size_t kMostJoints = 1 << 16;
+    if (poses[h].num_joints > kMostJoints) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("the pose has ", poses[h].num_joints, " joints"));
+    }
+    PLEAT_RETURN_IF_ERROR(TakePose(poses[h], static_cast<int>(poses[h].num_joints),
+                                   h == 0 ? &session->pose : &session->history[h - 1]));
+  }
+  return session->live->Send(number, session->pose, session->history,
+                             (flags & PLEAT_SEND_RESTART) != 0, (flags & PLEAT_SEND_KEYFRAME) != 0);
 }
 
 absl::Status Receive(pleat_session* session, pleat_frame* frame) {
@@ -162,7 +158,17 @@ pleat_code pleat_session_send(pleat_session* session, uint64_t number, const ple
   return Guarded(error, [&]() -> absl::Status {
     if (session == nullptr) return IsNull("session");
     if (pose == nullptr) return IsNull("pose");
-    return pleat::Send(session, number, *pose, flags);
+    return pleat::Send(session, number, pose, 1, flags);
+  });
+}
+
+pleat_code pleat_session_send_poses(pleat_session* session, uint64_t number,
+                                    const pleat_pose* poses, size_t num_poses, uint32_t flags,
+                                    pleat_error* error) {
+  return Guarded(error, [&]() -> absl::Status {
+    if (session == nullptr) return IsNull("session");
+    if (poses == nullptr) return IsNull("poses");
+    return pleat::Send(session, number, poses, num_poses, flags);
   });
 }
 

@@ -41,6 +41,9 @@ class Sequence:
     def __len__(self) -> int: ...
     def frame(self, t: int) -> _Floats: ...  # V x 3, a copy
     def subset(self, frames: list[int]) -> Sequence: ...
+    def to_bytes(self) -> bytes: ...  # a sequence file
+    @staticmethod
+    def from_bytes(data: bytes) -> Sequence: ...
 
 class Rig:
     @property
@@ -118,6 +121,14 @@ class Character:
     def show(self, root_positions: npt.ArrayLike, rotations: npt.ArrayLike, coefficients: npt.ArrayLike, *,
              bone_scales: npt.ArrayLike = ..., out: _Floats | None = None) -> _Floats:
         """These -> positions, to the same bits on every machine."""
+
+class StreamDecoder:
+    """Frames of one stream of a server, in their order; pleat.server uses it."""
+    def __init__(self, encoding: int, num_vertices: int, num_points: int, num_triangles: int,
+                 origin: tuple[float, float, float], range: float, bits: int, topology: bytes,
+                 vertex_order: npt.ArrayLike) -> None: ...
+    def decode(self, draco: bytes, difference: bool = False, checksum: int = 0, *,
+               out: _Floats | None = None) -> _Floats: ...  # V x 3
 
 def read(path: str, fps: float | Fraction | None, object: str, progress: _Progress) -> tuple[Sequence, list[str]]: ...
 def performer(num_frames: int, num_vertices: int, seed: int) -> Sequence: ...

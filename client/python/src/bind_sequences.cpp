@@ -3,11 +3,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "arrays.h"
 #include "bindings.h"
+#include "pleat/formats/sequence_file.h"
 #include "pleat/formats/sequence_reader.h"
 #include "pleat/performer/performer.h"
 #include "python_error.h"
@@ -96,6 +98,21 @@ py::tuple Read(const std::string& path, const std::optional<py::object>& fps,
   return py::make_tuple(std::move(taken), texts);
 }
 
+py::bytes BytesOf(const MeshSequence& sequence) {
+  std::string bytes;
+  {
+    const py::gil_scoped_release unlock;
+    bytes = EncodeSequence(sequence);
+  }
+  return py::bytes(bytes);
+}
+
+MeshSequence SequenceOf(const py::bytes& data) {
+  const std::string_view bytes = data;
+  const py::gil_scoped_release unlock;  // the caller holds `data`
+  return ValueOrThrow(DecodeSequence(bytes));
+}
+
 MeshSequence MakePerformer(int num_frames, int num_vertices, uint64_t seed) {
   const py::gil_scoped_release unlock;
   return ValueOrThrow(GeneratePerformer(
@@ -135,6 +152,8 @@ void BindSequences(py::module_& module) {
       .def_property_readonly("num_frames", &MeshSequence::num_frames)
       .def_property_readonly("num_vertices", &MeshSequence::num_vertices)
       .def("__len__", &MeshSequence::num_frames)
+      .def("to_bytes", &BytesOf)
+      .def_static("from_bytes", &SequenceOf, py::arg("data"))
       .def("frame",
            [](const MeshSequence& sequence, int t) {
              if (t < 0 || t >= sequence.num_frames()) throw py::index_error("no such frame");

@@ -11,5 +11,6 @@ void BindMotions(pybind11::module_& module);      // Motion
 void BindCharacters(pybind11::module_& module);   // Character, train
 void BindCodec(pybind11::module_& module);        // compress, decompress
 void BindExperiments(pybind11::module_& module);  // experiment, experiment_names
+void BindStreams(pybind11::module_& module);      // StreamDecoder
 
 }  // namespace pleat

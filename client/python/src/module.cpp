@@ -11,4 +11,5 @@ PYBIND11_MODULE(_pleat, module) {
   pleat::BindCharacters(module);
   pleat::BindCodec(module);
   pleat::BindExperiments(module);
+  pleat::BindStreams(module);
 }

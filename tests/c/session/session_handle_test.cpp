@@ -116,6 +116,30 @@ TEST_F(SessionHandleTest, PosesGoOutAndFramesComeBackIntoTheCallersRows) {
   EXPECT_EQ(poses_[0].pose().root_position().x(), .5);
 }
 
+TEST_F(SessionHandleTest, APoseMayBringItsHistory) {
+  Serve(frames_.header(), AnswerAll());
+  const CSession session = Open(Options());
+  ASSERT_NE(session, nullptr);
+  const CPose now(PoseAt(.5)), before(PoseAt(.25));
+  const std::vector<pleat_pose> poses = {now.shown, before.shown};
+  ASSERT_EQ(pleat_session_send_poses(session.get(), 1, poses.data(), 2, 0, &error_), PLEAT_OK)
+      << error_.message;
+  pleat_frame frame{};
+  frame.struct_size = sizeof(frame);
+  ASSERT_EQ(pleat_session_receive(session.get(), &frame, &error_), PLEAT_OK) << error_.message;
+  ASSERT_EQ(poses_.size(), 1u);
+  EXPECT_EQ(poses_[0].pose().root_position().x(), .5);
+  ASSERT_EQ(poses_[0].history_size(), 1);
+  EXPECT_EQ(poses_[0].history(0).root_position().x(), .25);
+  EXPECT_EQ(pleat_session_send_poses(session.get(), 2, poses.data(), 0, 0, &error_),
+            PLEAT_INVALID_ARGUMENT);
+  EXPECT_EQ(pleat_session_send_poses(session.get(), 2, poses.data(), 9, 0, &error_),
+            PLEAT_INVALID_ARGUMENT);
+  EXPECT_THAT(error_.message, HasSubstr("at most 7"));
+  EXPECT_EQ(pleat_session_send_poses(session.get(), 2, nullptr, 1, 0, &error_),
+            PLEAT_INVALID_ARGUMENT);
+}
+
 TEST_F(SessionHandleTest, ARejectionConcernsOnePose) {
   Serve(frames_.header(), [this](LiveStream* stream) {
     v1::LiveSessionRequest request;
