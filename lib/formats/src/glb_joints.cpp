@@ -37,6 +37,18 @@ absl::StatusOr<std::optional<GlbSkin>> FindSkin(const GlbContainer& glb, const G
   return std::optional<GlbSkin>();
 }
 
+// The first of the skins with the most joints.
+absl::StatusOr<std::optional<GlbSkin>> FindLargestSkin(const GlbContainer& glb,
+                                                       const GlbNodes& nodes) {
+  std::optional<GlbSkin> largest;
+  for (size_t s = 0; s < glb.List("skins").size(); ++s) {
+    PLEAT_ASSIGN_OR_RETURN(GlbSkin skin, ReadGlbSkin(glb, nodes, s));
+    if (largest && skin.joint_nodes.size() <= largest->joint_nodes.size()) continue;
+    largest = std::move(skin);
+  }
+  return largest;
+}
+
 class JointsReader {
  public:
   JointsReader(const GlbContainer& glb, GlbNodes nodes, GlbSkin skin)
@@ -141,16 +153,10 @@ class JointsReader {
   JointClip clip_;
 };
 
-}  // namespace
-
-absl::StatusOr<std::optional<JointClip>> DecodeGlbJoints(std::string_view bytes,
-                                                         const Skeleton& skeleton,
-                                                         const std::optional<FrameRate>& frame_rate,
-                                                         const MeshLimits& limits,
-                                                         InputReport* report) {
-  PLEAT_ASSIGN_OR_RETURN(const GlbContainer glb, GlbContainer::Open(bytes, limits));
-  PLEAT_ASSIGN_OR_RETURN(GlbNodes nodes, GlbNodes::Read(glb));
-  PLEAT_ASSIGN_OR_RETURN(std::optional<GlbSkin> skin, FindSkin(glb, nodes, skeleton));
+absl::StatusOr<std::optional<JointClip>> ReadSkin(const GlbContainer& glb, GlbNodes nodes,
+                                                  std::optional<GlbSkin> skin,
+                                                  const std::optional<FrameRate>& frame_rate,
+                                                  const MeshLimits& limits, InputReport* report) {
   if (!skin) return std::optional<JointClip>();
   PLEAT_ASSIGN_OR_RETURN(const std::optional<GlbAnimation> animation,
                          ChooseGlbAnimation(glb, nodes, {}, report));
@@ -168,6 +174,28 @@ absl::StatusOr<std::optional<JointClip>> DecodeGlbJoints(std::string_view bytes,
   PLEAT_ASSIGN_OR_RETURN(JointClip clip, JointsReader(glb, std::move(nodes), *std::move(skin))
                                              .Read(animation ? &*animation : nullptr, frames));
   return std::optional(std::move(clip));
+}
+
+}  // namespace
+
+absl::StatusOr<std::optional<JointClip>> DecodeGlbJoints(std::string_view bytes,
+                                                         const Skeleton& skeleton,
+                                                         const std::optional<FrameRate>& frame_rate,
+                                                         const MeshLimits& limits,
+                                                         InputReport* report) {
+  PLEAT_ASSIGN_OR_RETURN(const GlbContainer glb, GlbContainer::Open(bytes, limits));
+  PLEAT_ASSIGN_OR_RETURN(GlbNodes nodes, GlbNodes::Read(glb));
+  PLEAT_ASSIGN_OR_RETURN(std::optional<GlbSkin> skin, FindSkin(glb, nodes, skeleton));
+  return ReadSkin(glb, std::move(nodes), std::move(skin), frame_rate, limits, report);
+}
+
+absl::StatusOr<std::optional<JointClip>> DecodeLargestGlbSkin(
+    std::string_view bytes, const std::optional<FrameRate>& frame_rate, const MeshLimits& limits,
+    InputReport* report) {
+  PLEAT_ASSIGN_OR_RETURN(const GlbContainer glb, GlbContainer::Open(bytes, limits));
+  PLEAT_ASSIGN_OR_RETURN(GlbNodes nodes, GlbNodes::Read(glb));
+  PLEAT_ASSIGN_OR_RETURN(std::optional<GlbSkin> skin, FindLargestSkin(glb, nodes));
+  return ReadSkin(glb, std::move(nodes), std::move(skin), frame_rate, limits, report);
 }
 
 }  // namespace pleat

@@ -22,4 +22,9 @@ absl::StatusOr<std::optional<JointClip>> DecodeGlbJoints(std::string_view bytes,
                                                          const MeshLimits& limits,
                                                          InputReport* report);
 
+// Does the same with the skin that has the most joints, whatever they are called.
+absl::StatusOr<std::optional<JointClip>> DecodeLargestGlbSkin(
+    std::string_view bytes, const std::optional<FrameRate>& frame_rate, const MeshLimits& limits,
+    InputReport* report);
+
 }  // namespace pleat

@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "motion_json.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
 
@@ -22,6 +23,7 @@ using nlohmann::json;
 
 constexpr const char* kMotionSchema = "pleat.motion/1";
 constexpr double kMaxMotionFps = 1000;
+constexpr double kMaxDetailStrength = 2;
 constexpr double kNormTolerance = 0.01;  // normalizing by more than this is worth a warning
 
 absl::Status MotionFault(const std::string& what) { return absl::InvalidArgumentError(what); }
@@ -40,7 +42,8 @@ absl::StatusOr<int> FindJoint(const Skeleton& skeleton, const std::string& name,
 }
 
 // Fills `numbers` from a JSON array of exactly that many finite numbers.
-absl::Status ReadNumbers(const json& value, const std::string& where, std::span<double> numbers) {
+absl::Status ReadMotionNumbers(const json& value, const std::string& where,
+                               std::span<double> numbers) {
   if (!value.is_array() || value.size() != numbers.size()) {
     return MotionFault(absl::StrCat(where, " must be a list of ", numbers.size(), " numbers"));
   }
@@ -72,6 +75,7 @@ class MotionParser {
     PLEAT_RETURN_IF_ERROR(ParseJoints());
     PLEAT_RETURN_IF_ERROR(ParseFrames());
     PLEAT_RETURN_IF_ERROR(ParseBoneScales());
+    PLEAT_RETURN_IF_ERROR(ParseStrengths());
     PLEAT_RETURN_IF_ERROR(ParseClipStarts());
     Warn();
     PLEAT_ASSIGN_OR_RETURN(motion_.track, PoseTrack::Create(std::move(track_)));
@@ -152,8 +156,9 @@ class MotionParser {
 
   absl::Status ParsePose(size_t t, const json& translation, const json& rotations) {
     Pose pose = Pose::Rest(skeleton_);
-    PLEAT_RETURN_IF_ERROR(ReadNumbers(translation, absl::StrCat("frame ", t, ", root_translation"),
-                                      std::span(pose.root_position.data(), 3)));
+    PLEAT_RETURN_IF_ERROR(ReadMotionNumbers(translation,
+                                            absl::StrCat("frame ", t, ", root_translation"),
+                                            std::span(pose.root_position.data(), 3)));
     if (!rotations.is_array() || rotations.size() != columns_.size()) {
       return MotionFault(absl::StrCat("frame ", t, " has ",
                                       rotations.is_array() ? rotations.size() : 0,
@@ -163,7 +168,7 @@ class MotionParser {
       const std::string& name = skeleton_.joint(columns_[i]).name;
       const std::string where = absl::StrCat("frame ", t, ", rotation of '", name, "'");
       std::array<double, 4> wxyz;
-      PLEAT_RETURN_IF_ERROR(ReadNumbers(rotations[i], where, wxyz));
+      PLEAT_RETURN_IF_ERROR(ReadMotionNumbers(rotations[i], where, wxyz));
       const double norm = std::hypot(std::hypot(wxyz[0], wxyz[1]), std::hypot(wxyz[2], wxyz[3]));
       if (!(norm > 1e-6) || !std::isfinite(norm)) {
         return MotionFault(absl::StrCat(where, " has length ", norm,
@@ -194,6 +199,42 @@ class MotionParser {
     return absl::OkStatus();
   }
 
+  absl::Status ParseStrengths() {
+    const auto named = root_.find("detail_strengths");
+    if (named != root_.end()) {
+      if (!named->is_object())
+        return MotionFault("field 'detail_strengths' must map joints to factors");
+      motion_.detail_strengths.assign(static_cast<size_t>(skeleton_.num_joints()), 1.0);
+      for (const auto& [name, value] : named->items()) {
+        PLEAT_ASSIGN_OR_RETURN(const int joint, FindJoint(skeleton_, name, "detail_strengths"));
+        PLEAT_ASSIGN_OR_RETURN(motion_.detail_strengths[static_cast<size_t>(joint)],
+                               ReadStrength(value, absl::StrCat("detail_strengths: '", name, "'")));
+      }
+    }
+    const auto painted = root_.find("vertex_strengths");
+    if (painted == root_.end()) return absl::OkStatus();
+    if (!painted->is_array())
+      return MotionFault("field 'vertex_strengths' must be a list of factors");
+    if (static_cast<int64_t>(painted->size()) > limits_.max_vertices) {
+      return absl::ResourceExhaustedError(absl::StrCat("vertex_strengths has ", painted->size(),
+                                                       " entries, the limit is ",
+                                                       limits_.max_vertices));
+    }
+    for (size_t v = 0; v < painted->size(); ++v) {
+      PLEAT_ASSIGN_OR_RETURN(
+          const double strength,
+          ReadStrength((*painted)[v], absl::StrCat("vertex_strengths[", v, "]")));
+      motion_.vertex_strengths.push_back(static_cast<float>(strength));
+    }
+    return absl::OkStatus();
+  }
+
+  static absl::StatusOr<double> ReadStrength(const json& value, const std::string& where) {
+    const double strength = value.is_number() ? value.get<double>() : -1;
+    if (strength >= 0 && strength <= kMaxDetailStrength) return strength;
+    return MotionFault(absl::StrCat(where, " must be a factor from 0 to ", kMaxDetailStrength));
+  }
+
   absl::Status ParseClipStarts() {
     const auto starts = root_.find("clip_starts");
     if (starts == root_.end()) return absl::OkStatus();
@@ -219,9 +260,19 @@ class MotionParser {
       motion_.warnings.push_back(
           absl::StrCat(num_rescaled_, " rotations were not of length 1 and were normalized"));
     }
-    static const std::set<std::string> kFields = {
-        "schema",           "fps",       "joints",      "frames",
-        "root_translation", "rotations", "bone_scales", "clip_starts"};
+    static const std::set<std::string> kFields = {"schema",
+                                                  "fps",
+                                                  "joints",
+                                                  "frames",
+                                                  "root_translation",
+                                                  "rotations",
+                                                  "bone_scales",
+                                                  "detail_strengths",
+                                                  "vertex_strengths",
+                                                  "clip_starts",
+                                                  "skeleton",
+                                                  "edits",
+                                                  "source"};
     for (const auto& [name, value] : root_.items()) {
       if (kFields.contains(name)) continue;
       motion_.warnings.push_back(
@@ -264,8 +315,8 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
   return MotionParser(root, skeleton, limits).Parse();
 }
 
-std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
-                         const std::vector<double>& bone_scales) {
+nlohmann::ordered_json MotionToJson(const Skeleton& skeleton, const PoseTrack& track,
+                                    const std::vector<double>& bone_scales) {
   assert(CheckJointCount(track, skeleton.num_joints()).ok());
   nlohmann::ordered_json root;
   root["schema"] = kMotionSchema;
@@ -285,7 +336,39 @@ std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
     root["bone_scales"][skeleton.joint(static_cast<int>(j)).name] = bone_scales[j];
   }
   if (track.clip_starts().size() > 1) root["clip_starts"] = track.clip_starts();
+  return root;
+}
+
+nlohmann::ordered_json MotionToJson(const Skeleton& skeleton, const Motion& motion) {
+  nlohmann::ordered_json root = MotionToJson(skeleton, motion.track, motion.bone_scales);
+  for (size_t j = 0; j < motion.detail_strengths.size(); ++j) {
+    root["detail_strengths"][skeleton.joint(static_cast<int>(j)).name] = motion.detail_strengths[j];
+  }
+  // Five digits tell a painted factor well enough, and keep the file small.
+  for (const float strength : motion.vertex_strengths) {
+    root["vertex_strengths"].push_back(std::round(1e5 * strength) / 1e5);
+  }
+  root["skeleton"] = nlohmann::ordered_json::array();
+  for (const Joint& joint : skeleton.joints()) {
+    const Eigen::Vector3d& rest = joint.rest_position;
+    root["skeleton"].push_back({{"name", joint.name},
+                                {"parent", joint.parent},
+                                {"rest_position", {rest.x(), rest.y(), rest.z()}}});
+  }
+  return root;
+}
+
+std::string DumpMotion(const nlohmann::ordered_json& root) {
   return root.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
+                         const std::vector<double>& bone_scales) {
+  return DumpMotion(MotionToJson(skeleton, track, bone_scales));
+}
+
+std::string EncodeMotionWithSkeleton(const Skeleton& skeleton, const Motion& motion) {
+  return DumpMotion(MotionToJson(skeleton, motion));
 }
 
 absl::Status WriteMotion(const std::string& path, const Skeleton& skeleton, const PoseTrack& track,

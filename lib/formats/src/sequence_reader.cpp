@@ -115,9 +115,9 @@ absl::StatusOr<MeshSequence> ReadOneFile(const std::string& path, const InputRea
 }
 
 // Reads one frame from each file of a folder or a pattern, which `input` is.
-absl::StatusOr<MeshSequence> ReadFrames(const std::vector<std::string>& paths,
-                                        const std::string& name, const std::string& input,
-                                        const InputReading& reading) {
+absl::StatusOr<MeshSequence> ReadEachFile(const std::vector<std::string>& paths,
+                                          const std::string& name, const std::string& input,
+                                          const InputReading& reading) {
   absl::StatusOr<MeshSequence> sequence = ReadFrameFiles(paths, name, input, reading);
   if (sequence.ok()) NoteUnusedChoices(input, false, false, reading);
   return sequence;
@@ -161,7 +161,7 @@ absl::StatusOr<MeshSequence> ReadFolder(const std::string& folder, const InputRe
                          ? "; it is empty"
                          : absl::StrCat("; found only ", absl::StrJoin(other_extensions, ", "))));
   }
-  return ReadFrames(meshes, FolderName(folder), folder, reading);
+  return ReadEachFile(meshes, FolderName(folder), folder, reading);
 }
 
 absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const InputReading& reading) {
@@ -171,7 +171,7 @@ absl::StatusOr<MeshSequence> ReadPattern(const std::string& pattern, const Input
     if (!IsMeshFile(path) && !IsGltfFile(path)) return UnknownExtension(path);
   }
   const std::string name = FolderName(fs::path(pattern).parent_path().string());
-  return ReadFrames(paths, name, pattern, reading);
+  return ReadEachFile(paths, name, pattern, reading);
 }
 
 }  // namespace

@@ -14,8 +14,12 @@
 namespace pleat {
 
 struct Motion {
-  PoseTrack track;                    // with all joints of the skeleton
-  std::vector<double> bone_scales;    // J, or empty when the file has none
+  PoseTrack track;                  // with all joints of the skeleton
+  std::vector<double> bone_scales;  // J, or empty when the file has none
+  // How strong the learned detail is, 0 to 2: J factors by the bones that move a vertex, and V
+  // factors painted on the vertices. Empty: 1.
+  std::vector<double> detail_strengths{};
+  std::vector<float> vertex_strengths{};
   std::vector<std::string> warnings;  // joints left at rest, ignored fields, rescaled quaternions
 };
 
@@ -29,6 +33,9 @@ absl::StatusOr<Motion> DecodeMotion(std::string_view text, const Skeleton& skele
 // entries or empty.
 std::string EncodeMotion(const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales = {});
+// Does the same with everything that the motion has, and with the skeleton in its rest, which later
+// edits need (DecodeMotionSkeleton).
+std::string EncodeMotionWithSkeleton(const Skeleton& skeleton, const Motion& motion);
 absl::Status WriteMotion(const std::string& path, const Skeleton& skeleton, const PoseTrack& track,
                          const std::vector<double>& bone_scales = {});
 
