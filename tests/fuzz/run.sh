@@ -13,8 +13,9 @@ shift
 failed=0
 printf '%-14s %10s %8s  %s\n' fuzzer runs coverage result
 for name in "$@"; do
-  seeds=(tests/fuzz/seeds/"$name" tests/golden)  # golden files are models, sequences and compressed ones
-  [ -d "${seeds[0]}" ] || seeds=(tests/golden)
+  seeds=()
+  [ -d tests/fuzz/seeds/"$name" ] && seeds+=(tests/fuzz/seeds/"$name")
+  case $name in engine|model|sequence|compressed) seeds+=(tests/golden) ;; esac
   findings=build/fuzz/findings/$name corpus=build/fuzz/corpus/$name log=build/fuzz/$name.log
   mkdir -p "$findings" "$corpus"
   result=clean
