@@ -190,6 +190,10 @@ TEST(DetailBasisTest, RefusesWhatDoesNotFit) {
         DetailBasis::Quantize(truth.mean, hole, Eigen::VectorXd::Ones(kNumComponents)).status(),
         HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("finite")));
   }
+  EXPECT_THAT(DetailBasis::Quantize(Eigen::VectorXf(), Eigen::MatrixXd::Zero(0, 3),
+                                    Eigen::VectorXd::Ones(3))
+                  .status(),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("no details")));
 }
 
 }  // namespace

@@ -131,7 +131,9 @@ TEST_F(ApplyEditsTest, LimitsHoldAndLeaveWhatIsWithinThemAlone) {
     };
     EXPECT_LT(angle(limited), 15.001);
     was_beyond = was_beyond || angle(motion_) > 16;
-    if (angle(motion_) < 14.9) EXPECT_NEAR(angle(limited), angle(motion_), 1e-6);
+    if (angle(motion_) < 14.9) {
+      EXPECT_NEAR(angle(limited), angle(motion_), 1e-6);
+    }
   }
   EXPECT_TRUE(was_beyond);
   const Motion wide =

@@ -29,8 +29,12 @@ TEST(FootContactsTest, StandingFramesAreFound) {
   const FootContacts contacts = DetectContacts(Walk(0), 60);
   for (size_t t = 0; t < 200; ++t) {
     const size_t phase = t % 40;
-    if (phase >= 2 && phase < 17) EXPECT_TRUE(contacts.ball[t] && contacts.heel[t]) << t;
-    if (phase >= 22 && phase < 38) EXPECT_FALSE(contacts.AnyAt(t)) << t;
+    if (phase >= 2 && phase < 17) {
+      EXPECT_TRUE(contacts.ball[t] && contacts.heel[t]) << t;
+    }
+    if (phase >= 22 && phase < 38) {
+      EXPECT_FALSE(contacts.AnyAt(t)) << t;
+    }
   }
 }
 

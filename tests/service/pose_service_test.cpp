@@ -82,7 +82,11 @@ TEST_F(StreamClipTest, AStreamOfParametersMustHaveThem) {
 }
 
 TEST_F(StreamClipTest, AsksForTheClipAsTheQueryAndTheEncodingSay) {
-  ClipQuery query{.model_id = "m", .track = {}, .bone_scales = {1, 2}, .skinned_only = true};
+  ClipQuery query{.model_id = "m",
+                  .track = {},
+                  .bone_scales = {1, 2},
+                  .skinned_only = true,
+                  .strengths = {.joints = {1, .5}}};
   const FrameEncoderOptions encoding{.encoding = FrameEncoding::kDracoMesh, .position_bits = 15};
   EXPECT_CALL(poses_, OpenClip("m", _, _))
       .WillOnce(
@@ -90,6 +94,7 @@ TEST_F(StreamClipTest, AsksForTheClipAsTheQueryAndTheEncodingSay) {
               const PoseSessionOptions& options) -> absl::StatusOr<std::unique_ptr<ClipSession>> {
             EXPECT_EQ(options.bone_scales, query.bone_scales);
             EXPECT_TRUE(options.skinned_only);
+            EXPECT_EQ(options.strengths.joints, query.strengths.joints);
             EXPECT_EQ(options.encoder.encoding, FrameEncoding::kDracoMesh);
             EXPECT_EQ(options.encoder.position_bits, 15);
             return absl::NotFoundError("no such model");

@@ -317,7 +317,11 @@ TEST(RefusalTest, CharactersAndParametersHaveAtMostAsManyEntriesAsTheWireAllows)
   const v1::Character character = ToProto(CharacterQuery{kId, {}, false});
   ExpectRefused<v1::Character>(
       character, {{"character.model_id", [](v1::Character& c) { c.set_model_id("latest"); }},
-                  {"character.bone_scales has 1025", [&](v1::Character& c) { scales(c, 1025); }}});
+                  {"character.bone_scales has 1025", [&](v1::Character& c) { scales(c, 1025); }},
+                  {"character.detail_strengths has 1025",
+                   [](v1::Character& c) { c.mutable_detail_strengths()->Resize(1025, 1); }},
+                  {"character.vertex_strengths has 4000001",
+                   [](v1::Character& c) { c.mutable_vertex_strengths()->Resize(4'000'001, 1); }}});
   ExpectAccepted<v1::Character>(character, {[&](v1::Character& c) { scales(c, 1024); }});
 
   using Parameters = v1::FrameParameters;

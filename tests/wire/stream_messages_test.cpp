@@ -54,10 +54,12 @@ TEST(StreamMessagesTest, StreamsComeBack) {
   EXPECT_EQ(FromProto(v1::StreamOptions())->content, StreamContent::kMesh);
   EXPECT_FALSE(FromProto(static_cast<v1::StreamContent>(99)).ok());
 
-  const CharacterQuery query{kId, {1, 1.5}, true};
+  const CharacterQuery query{kId, {1, 1.5}, true, {.joints = {1, .5}, .vertices = {0, 2, .25f}}};
   PLEAT_ASSERT_OK_AND_ASSIGN(const CharacterQuery q, FromProto(Reparse(ToProto(query))));
   EXPECT_EQ(q.bone_scales, query.bone_scales);
   EXPECT_TRUE(q.skinned_only);
+  EXPECT_EQ(q.strengths.joints, query.strengths.joints);
+  EXPECT_EQ(q.strengths.vertices, query.strengths.vertices);
   EXPECT_FALSE(FromProto(v1::Character()).ok());
 }
 

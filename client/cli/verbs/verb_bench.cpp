@@ -127,6 +127,7 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
                            LoadModel(session, report.model_id));
     PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options.motion, options.fps, *model, session));
     character.bone_scales = std::move(motion.bone_scales);
+    character.strengths = {std::move(motion.detail_strengths), std::move(motion.vertex_strengths)};
     poses = std::move(motion.track).Take().poses;
   }
   if (poses.empty()) return absl::InvalidArgumentError("the motion has no frames");

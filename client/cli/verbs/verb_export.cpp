@@ -81,7 +81,7 @@ absl::StatusOr<int> ParseInfluences(const std::string& text, ExportFormat format
 }
 
 absl::Status LoadTrack(const ExportOptions& options, const CharacterModel& model,
-                       const Session& session, CharacterFile* file) {
+                       const Session& session, CharacterFile* file, DetailStrengths* strengths) {
   file->frame_rate = model.frame_rate();
   if (options.motion.empty()) return absl::OkStatus();
   PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options.motion, options.fps, model, session));
@@ -95,6 +95,13 @@ absl::Status LoadTrack(const ExportOptions& options, const CharacterModel& model
                      ": its bone_scales stretch bones, which joints of other programs cannot; "
                      "write the meshes with 'pleat pose', or take bone_scales out"));
   }
+  *strengths = {std::move(motion.detail_strengths), std::move(motion.vertex_strengths)};
+  if (!strengths->empty() && (options.num_targets > 0 || options.max_error_mm > 0)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(options.motion,
+                     ": its strengths of the detail are not in morph targets; write the meshes "
+                     "with --points or 'pleat pose', or undo the edits"));
+  }
   if (motion.track.clip_starts().size() > 1) {
     *session.err << "note: the " << motion.track.clip_starts().size()
                  << " clips of the motion become one, since these files know no clips\n";
@@ -105,7 +112,8 @@ absl::Status LoadTrack(const ExportOptions& options, const CharacterModel& model
 }
 
 absl::Status AddFolds(const ExportOptions& options,
-                      const std::shared_ptr<const CharacterModel>& model, const Progress& progress,
+                      const std::shared_ptr<const CharacterModel>& model,
+                      const DetailStrengths& strengths, const Progress& progress,
                       CharacterFile* file) {
   if (options.num_targets > 0 || options.max_error_mm > 0) {
     PLEAT_ASSIGN_OR_RETURN(file->morphs,
@@ -117,6 +125,7 @@ absl::Status AddFolds(const ExportOptions& options,
   if (!options.points) return absl::OkStatus();
   const Progress stage = progress.Stage("pose", 0, 1);
   PoseEvaluator evaluator(model);
+  PLEAT_RETURN_IF_ERROR(evaluator.SetDetailStrengths(strengths));
   return evaluator.EvaluateClip(file->track, {}, [&](int t, const EvaluatedFrame& frame) {
     file->points.push_back(frame.positions);
     return stage.Report((t + 1.) / file->track.num_frames());
@@ -196,12 +205,14 @@ absl::Status RunExport(const ExportOptions& options, const Session& session) {
   result.file.topology = model->topology();
   result.file.appearance = model->parts().appearance;
   result.file.rig = model->rig();
-  PLEAT_RETURN_IF_ERROR(LoadTrack(options, *model, session, &result.file));
+  DetailStrengths strengths;
+  PLEAT_RETURN_IF_ERROR(LoadTrack(options, *model, session, &result.file, &strengths));
   result.most_influences = influences;
   result.file.rig.weights = CutInfluences(model->rig().weights, influences);
   result.cut = MeasureInfluenceCut(model->rig(), result.file.rig.weights, result.file.track);
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
-  PLEAT_RETURN_IF_ERROR(AddFolds(options, model, InterruptibleProgress(&display), &result.file));
+  PLEAT_RETURN_IF_ERROR(
+      AddFolds(options, model, strengths, InterruptibleProgress(&display), &result.file));
   PLEAT_RETURN_IF_ERROR(WriteExport(format, options.output, result.file));
   display.Finish();
   PrintExport(options, result, session);

@@ -72,6 +72,7 @@ absl::StatusOr<ClipQuery> ReadQuery(const PoseVerbOptions& options, const Skelet
                          ParseJointFactors(JointNames(skeleton), options.bone_scales));
   ClipQuery query;
   query.track = std::move(motion.track);
+  query.strengths = {std::move(motion.detail_strengths), std::move(motion.vertex_strengths)};
   query.bone_scales = scales.empty() ? std::move(motion.bone_scales) : std::move(scales);
   query.skinned_only = options.skinned_only;
   return query;
@@ -82,6 +83,7 @@ using ConsumeFrame = std::function<absl::Status(int t, const EvaluatedFrame& fra
 absl::Status EvaluateHere(std::shared_ptr<const CharacterModel> model, const ClipQuery& query,
                           const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
+  PLEAT_RETURN_IF_ERROR(evaluator.SetDetailStrengths(query.strengths));
   return query.skinned_only ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
                             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }
@@ -157,6 +159,7 @@ absl::StatusOr<int> WriteStream(const PoseVerbOptions& options, PoseService& pos
 absl::Status EvaluateByParameters(PoseService& poses, std::shared_ptr<const CharacterModel> model,
                                   const ClipQuery& query, const ConsumeFrame& consume) {
   PoseEvaluator evaluator(std::move(model));
+  PLEAT_RETURN_IF_ERROR(evaluator.SetDetailStrengths(query.strengths));
   EvaluatedFrame frame;
   ClipStreamSink sink;
   sink.on_parameters = [&](int t, const FrameParameters& parameters) -> absl::Status {

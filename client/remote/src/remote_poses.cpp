@@ -16,7 +16,8 @@ namespace pleat {
 namespace {
 
 v1::Character CharacterOf(const std::string& model_id, const PoseSessionOptions& options) {
-  return ToProto(CharacterQuery{model_id, options.bone_scales, options.skinned_only});
+  return ToProto(
+      CharacterQuery{model_id, options.bone_scales, options.skinned_only, options.strengths});
 }
 
 absl::StatusOr<EncodedFrame> FrameOf(v1::Frame* message, StreamContent content) {

@@ -27,10 +27,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "bone_scales.h"
 #include "pleat/base/status.h"
 #include "pleat/fitting/details.h"
 #include "pleat/learner/detail_model.h"
-#include "pleat/skeleton/pose_history.h"
 #include "pleat/skinning/frame_skinning.h"
 
 namespace pleat {
@@ -50,33 +50,16 @@ struct PoseEvaluator::Scratch {
   Eigen::VectorXf coefficients;  // r
   DetailModel::Workspace workspace;
   PartedBasis::Query expansion;
-  std::vector<float> details;  // the details of one tile, block by block
+  std::vector<float> details;             // the details of one tile, block by block
+  const float* lane_strengths = nullptr;  // of the query's evaluator, or null: 1
 };
 
 namespace {
-
-constexpr double kMinBoneScale = 0.05, kMaxBoneScale = 20;
 
 // Checks a pose that comes from outside and belongs to no valid track.
 absl::Status CheckFits(const Pose& pose, int num_joints) {
   PLEAT_RETURN_IF_ERROR(CheckJointCount(pose, num_joints));
   return CheckPose(pose);
-}
-
-absl::Status CheckBoneScales(const std::vector<double>& bone_scales, int num_joints) {
-  if (bone_scales.empty()) return absl::OkStatus();
-  if (static_cast<int>(bone_scales.size()) != num_joints) {
-    return absl::InvalidArgumentError(absl::StrCat(bone_scales.size(), " bone scales for ",
-                                                   num_joints, " joints; give all or none"));
-  }
-  for (int j = 0; j < num_joints; ++j) {
-    if (!(bone_scales[j] >= kMinBoneScale && bone_scales[j] <= kMaxBoneScale)) {
-      return absl::InvalidArgumentError(absl::StrCat("bone scale ", bone_scales[j], " of joint ", j,
-                                                     " is outside ", kMinBoneScale, " to ",
-                                                     kMaxBoneScale));
-    }
-  }
-  return absl::OkStatus();
 }
 
 // Copies without an allocation once `target` has the right size.
@@ -114,6 +97,16 @@ void MoveAllWithRoot(BoneTransforms* transforms) {
   }
 }
 
+// Multiplies the details of whole blocks, which hold x of their lanes, then y, then z.
+void ScaleDetails(const float* strengths, int num_blocks, float* details) {
+  for (int block = 0; block < num_blocks; ++block) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int lane = 0; lane < kSkinningLanes; ++lane) *details++ *= strengths[lane];
+    }
+    strengths += kSkinningLanes;
+  }
+}
+
 // The largest number of queries that go through the steps together. Larger batches are cut, so that
 // lists of queries fit into arrays on the stack.
 constexpr size_t kMostTogether = 16;
@@ -142,6 +135,14 @@ PoseEvaluator::PoseEvaluator(PoseEvaluator&&) noexcept = default;
 PoseEvaluator& PoseEvaluator::operator=(PoseEvaluator&&) noexcept = default;
 
 const CharacterModel& PoseEvaluator::model() const { return *model_; }
+
+absl::Status PoseEvaluator::SetDetailStrengths(const DetailStrengths& strengths) {
+  PLEAT_RETURN_IF_ERROR(
+      CheckDetailStrengths(strengths, model_->skeleton().num_joints(), model_->num_vertices()));
+  lane_strengths_.clear();
+  if (!strengths.empty()) lane_strengths_ = LaneStrengths(*model_, strengths);
+  return absl::OkStatus();
+}
 
 absl::Status PoseEvaluator::Evaluate(const std::vector<const Pose*>& poses,
                                      const std::vector<double>& bone_scales,
@@ -199,6 +200,9 @@ void PoseEvaluator::EvaluateChecked(std::span<PoseQuery> queries) {
         if (!queries[q].status.ok()) continue;
         PoseEvaluator* const lender = queries[q].scratch_of;
         Scratch* scratch = lender != nullptr ? lender->ScratchAt(0) : ScratchAt(num_own++);
+        const PoseEvaluator& owner = lender != nullptr ? *lender : *this;
+        scratch->lane_strengths =
+            owner.lane_strengths_.empty() ? nullptr : owner.lane_strengths_.data();
         Prepare(queries[q], scratch);
         taken[count] = &queries[q];
         scratches[count++] = scratch;
@@ -307,6 +311,7 @@ absl::Status PoseEvaluator::Show(const FrameParameters& parameters,
     return absl::InvalidArgumentError("a detail coefficient is not finite");
   }
   Scratch* scratch = ScratchAt(0);
+  scratch->lane_strengths = lane_strengths_.empty() ? nullptr : lane_strengths_.data();
   CopyNormalized(parameters.pose, &scratch->history[0]);
   scratch->has_details = coefficients.size() > 0;
   scratch->confidence = parameters.confidence;
@@ -340,61 +345,15 @@ void PoseEvaluator::FillFrames(std::span<Scratch* const> scratches,
     model_->full_basis().ExpandBlocks({expansions.data(), num_detailed}, block, count,
                                       {details.data(), num_detailed});
     for (size_t q = 0; q < scratches.size(); ++q) {
-      const Scratch& s = *scratches[q];
+      Scratch& s = *scratches[q];
+      if (s.has_details && s.lane_strengths != nullptr) {
+        ScaleDetails(s.lane_strengths + static_cast<size_t>(block) * kSkinningLanes, count,
+                     s.details.data());
+      }
       model_->skinning().SkinBlocks(s.motions, block, count,
                                     s.has_details ? s.details.data() : nullptr, positions[q]);
     }
   }
-}
-
-absl::Status PoseEvaluator::EvaluateClip(
-    const PoseTrack& track, const std::vector<double>& bone_scales,
-    const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
-    const Progress& progress, std::span<const VertexRows> rows) {
-  const int num_joints = model_->skeleton().num_joints();
-  PLEAT_RETURN_IF_ERROR(CheckJointCount(track, num_joints));
-  PLEAT_RETURN_IF_ERROR(CheckBoneScales(bone_scales, num_joints));
-  constexpr int kBatch = 8;
-  PoseHistory history(track, model_->frame_rate().fps(), model_->options().history);
-  // The poses are copied, because what PoseHistory returns is valid only until the next call.
-  std::vector<std::vector<Pose>> poses(kBatch);
-  std::vector<std::vector<const Pose*>> pointers(kBatch);
-  std::vector<EvaluatedFrame> frames(kBatch);
-  std::vector<PoseQuery> queries(kBatch);
-  for (int begin = 0; begin < track.num_frames(); begin += kBatch) {
-    const int count = std::min(kBatch, track.num_frames() - begin);
-    for (int i = 0; i < count; ++i) {
-      history.At(begin + i, &pointers[i]);
-      poses[i].resize(pointers[i].size());
-      for (size_t h = 0; h < poses[i].size(); ++h) {
-        poses[i][h] = *pointers[i][h];
-        pointers[i][h] = &poses[i][h];
-      }
-      queries[i] = {
-          .poses = &pointers[i], .bone_scales = &bone_scales, .frame = &frames[i], .status = {}};
-      if (!rows.empty()) queries[i].rows = rows[static_cast<size_t>(begin + i)];
-    }
-    EvaluateChecked({queries.data(), static_cast<size_t>(count)});
-    for (int i = 0; i < count; ++i) {
-      PLEAT_RETURN_IF_ERROR(consume(begin + i, frames[i]));
-      PLEAT_RETURN_IF_ERROR(progress.Report((begin + i + 1.0) / track.num_frames()));
-    }
-  }
-  return absl::OkStatus();
-}
-
-absl::Status PoseEvaluator::EvaluateSkinnedClip(
-    const PoseTrack& track, const std::vector<double>& bone_scales,
-    const std::function<absl::Status(int, const EvaluatedFrame&)>& consume,
-    const Progress& progress) {
-  EvaluatedFrame frame;
-  for (int t = 0; t < track.num_frames(); ++t) {
-    PLEAT_RETURN_IF_ERROR(WithContext(absl::StrCat("frame ", t),
-                                      EvaluateSkinned(track.pose(t), bone_scales, &frame)));
-    PLEAT_RETURN_IF_ERROR(consume(t, frame));
-    PLEAT_RETURN_IF_ERROR(progress.Report((t + 1.0) / track.num_frames()));
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace pleat

@@ -59,6 +59,7 @@ static_assert(DetailBasis::kBlockDetails == kPlaneRows);
 absl::StatusOr<DetailBasis> DetailBasis::Quantize(
     const Eigen::Ref<const Eigen::VectorXf>& mean, const Eigen::Ref<const Eigen::MatrixXd>& basis,
     const Eigen::Ref<const Eigen::VectorXd>& largest_steps) {
+  if (basis.rows() < 1 || basis.cols() < 1) return RefuseBasis("no details or no components");
   if (!basis.cast<float>().allFinite()) return RefuseBasis("a number to round is not finite");
   DetailBasisParameters p;
   p.mean = mean;

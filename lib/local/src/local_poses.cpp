@@ -24,6 +24,7 @@ absl::Status LocalPoses::EvaluateClip(
   PLEAT_ASSIGN_OR_RETURN(std::shared_ptr<const CharacterModel> model,
                          models_->Acquire(query.model_id));
   PoseEvaluator evaluator(std::move(model));
+  PLEAT_RETURN_IF_ERROR(evaluator.SetDetailStrengths(query.strengths));
   return query.skinned_only ? evaluator.EvaluateSkinnedClip(query.track, query.bone_scales, consume)
                             : evaluator.EvaluateClip(query.track, query.bone_scales, consume);
 }

@@ -15,7 +15,8 @@ absl::Status StreamClip(PoseService& poses, const ClipQuery& query,
                          poses.OpenClip(query.model_id, query.track,
                                         {.bone_scales = query.bone_scales,
                                          .skinned_only = query.skinned_only,
-                                         .encoder = encoding}));
+                                         .encoder = encoding,
+                                         .strengths = query.strengths}));
   if (sink.on_header) PLEAT_RETURN_IF_ERROR(sink.on_header(clip->header()));
   while (!clip->done()) {
     const int t = clip->next_frame();

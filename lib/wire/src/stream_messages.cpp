@@ -4,6 +4,7 @@
 #include "packed_coefficients.h"
 #include "pleat/base/content_id.h"
 #include "pleat/base/status.h"
+#include "pleat/mesh/mesh_limits.h"
 #include "pleat/wire/skeleton_messages.h"
 
 namespace pleat {
@@ -17,6 +18,9 @@ v1::Character ToProto(const CharacterQuery& query) {
   message.set_model_id(query.model_id);
   for (const double scale : query.bone_scales) message.add_bone_scales(scale);
   message.set_skinned_only(query.skinned_only);
+  for (const double strength : query.strengths.joints) message.add_detail_strengths(strength);
+  message.mutable_vertex_strengths()->Add(query.strengths.vertices.begin(),
+                                          query.strengths.vertices.end());
   return message;
 }
 
@@ -27,10 +31,24 @@ absl::StatusOr<CharacterQuery> FromProto(const v1::Character& message) {
                                                    message.bone_scales_size(),
                                                    " entries, the limit is ", kMaxWireJoints));
   }
+  if (message.detail_strengths_size() > kMaxWireJoints) {
+    return absl::InvalidArgumentError(absl::StrCat("character.detail_strengths has ",
+                                                   message.detail_strengths_size(),
+                                                   " entries, the limit is ", kMaxWireJoints));
+  }
+  if (message.vertex_strengths_size() > MeshLimits().max_vertices) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("character.vertex_strengths has ", message.vertex_strengths_size(),
+                     " entries, the limit is ", MeshLimits().max_vertices));
+  }
   CharacterQuery query;
   query.model_id = message.model_id();
   query.bone_scales.assign(message.bone_scales().begin(), message.bone_scales().end());
   query.skinned_only = message.skinned_only();
+  query.strengths.joints.assign(message.detail_strengths().begin(),
+                                message.detail_strengths().end());
+  query.strengths.vertices.assign(message.vertex_strengths().begin(),
+                                  message.vertex_strengths().end());
   return query;
 }
 

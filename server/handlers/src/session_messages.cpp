@@ -19,6 +19,7 @@ absl::StatusOr<SessionRequest> FromProto(const v1::Character& character,
   request.model_id = std::move(query.model_id);
   request.options.bone_scales = std::move(query.bone_scales);
   request.options.skinned_only = query.skinned_only;
+  request.options.strengths = std::move(query.strengths);
   PLEAT_ASSIGN_OR_RETURN(request.options.encoder, FromProto(options));
   return request;
 }

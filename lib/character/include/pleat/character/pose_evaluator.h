@@ -11,6 +11,7 @@
 #include "absl/status/status.h"
 #include "pleat/base/progress.h"
 #include "pleat/character/character_model.h"
+#include "pleat/character/detail_strengths.h"
 #include "pleat/mesh/vertex_rows.h"
 #include "pleat/skeleton/pose_track.h"
 
@@ -58,6 +59,12 @@ class PoseEvaluator {
   PoseEvaluator& operator=(PoseEvaluator&&) noexcept;
 
   const CharacterModel& model() const;
+
+  // How strong the learned detail is in all that this evaluator shows from now on; queries of a
+  // batch follow the evaluator whose scratch memory they use. Empty: as it was learned, with the
+  // bits of an evaluator that was never told. Parameters carry no strengths: who shows them has its
+  // own. kInvalidArgument as CheckDetailStrengths.
+  absl::Status SetDetailStrengths(const DetailStrengths& strengths);
 
   // poses[0] is the pose to show, poses[h] the pose h training-frame intervals earlier. When there
   // are fewer than the model looks at, the oldest one is repeated. bone_scales: J factors on the
@@ -125,6 +132,7 @@ class PoseEvaluator {
   std::shared_ptr<const CharacterModel> model_;
   std::vector<std::unique_ptr<Scratch>> scratches_;  // as many as were needed at once so far
   std::vector<const Pose*> one_pose_;                // the list that EvaluateSkinned passes on
+  std::vector<float> lane_strengths_;                // LaneStrengths, or empty
 };
 
 }  // namespace pleat

@@ -23,12 +23,14 @@ struct ClipQuery {
   PoseTrack track;
   std::vector<double> bone_scales;  // J or empty
   bool skinned_only = false;
+  DetailStrengths strengths{};  // of the learned detail
 };
 
 struct PoseSessionOptions {
   std::vector<double> bone_scales{};  // J or empty
   bool skinned_only = false;
   FrameEncoderOptions encoder{};
+  DetailStrengths strengths{};  // of the learned detail; parameters do not carry them
 };
 
 struct EncodedFrame {

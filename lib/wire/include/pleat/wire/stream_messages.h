@@ -19,6 +19,7 @@ struct CharacterQuery {
   std::string model_id;
   std::vector<double> bone_scales;  // J or empty
   bool skinned_only = false;
+  DetailStrengths strengths{};
 };
 
 v1::Character ToProto(const CharacterQuery& query);
