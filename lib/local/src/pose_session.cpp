@@ -28,7 +28,8 @@ absl::StatusOr<std::unique_ptr<LocalPoseSession>> LocalPoseSession::Open(
 absl::StatusOr<std::unique_ptr<LocalPoseSession>> LocalPoseSession::Open(
     std::shared_ptr<const CharacterModel> model, PoseSessionOptions options,
     std::unique_ptr<EncoderPool::Lease> encoder) {
-  // Evaluates the rest pose, so that wrong scales and strengths fail now and not with the first pose.
+  // Evaluates the rest pose, so that wrong scales and strengths fail now and not with the first
+  // pose.
   PoseEvaluator evaluator(model);
   EvaluatedFrame frame;
   PLEAT_RETURN_IF_ERROR(evaluator.SetDetailStrengths(options.strengths));
