@@ -40,12 +40,15 @@ page.on('pageerror', (error) => problems.push(String(error)));
 page.on('request', (request) => requests.push(request.url()));
 const shot = async (name) => { if (values.shots) await page.screenshot({path: join(values.shots, `${name}.png`)}); };
 // The frame that belongs to the last change has come when the session is at rest.
-const settle = () => page.waitForFunction(() => {
-  const {frames} = window.studio.statistics;
-  const at = performance.now();
-  if (window.settled?.frames !== frames) window.settled = {frames, at};
-  return frames > 0 && at - window.settled.at > 400;
-}, null, {polling: 50});
+const settle = async () => {
+  await page.evaluate(() => { window.settled = undefined; });
+  await page.waitForFunction(() => {
+    const {frames} = window.studio.statistics;
+    const at = performance.now();
+    if (window.settled?.frames !== frames) window.settled = {frames, at};
+    return frames > 0 && at - window.settled.at > 400;
+  }, null, {polling: 50});
+};
 const positions = () => page.evaluate(() => Array.from(window.studio.viewport.surfaces.edited.positions));
 
 try {
