@@ -46,6 +46,22 @@ absl::Status ServeMetrics(const std::string& address, LocalCharacterService* ser
   return status;
 }
 
+// Null when no pages are asked for.
+absl::StatusOr<std::unique_ptr<StudioServer>> ServeStudio(StudioOptions options,
+                                                          LocalCharacterService* service,
+                                                          GrpcServer* server) {
+  if (options.listen.empty()) return nullptr;
+  options.memory = &service->memory().all;
+  absl::StatusOr<std::unique_ptr<StudioServer>> studio =
+      StudioServer::Start(std::move(options), server);
+  if (studio.ok()) {
+    // As the address of gRPC below.
+    std::printf("studio at http://%s/\n", (*studio)->address().c_str());
+    spdlog::info("studio at http://{}/", (*studio)->address());
+  }
+  return studio;
+}
+
 // Every thread blocks these signals, so that only sigwait sees them.
 sigset_t BlockSignals() {
   sigset_t signals;
@@ -102,6 +118,9 @@ int Run(const ServerOptions& options) {
       !status.ok()) {
     return Fail(status);
   }
+  const absl::StatusOr<std::unique_ptr<StudioServer>> studio =
+      ServeStudio(options.studio, service->get(), server->get());
+  if (!studio.ok()) return Fail(studio.status());
   const std::string address = Address(options.grpc, (*server)->port());
   // This line goes to standard output, so that a script can wait for it and read the port.
   std::printf("listening on %s\n", address.c_str());
@@ -116,6 +135,7 @@ int Run(const ServerOptions& options) {
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
   (*service)->Shutdown();  // jobs are queued again, their watchers end
   spdlog::info("jobs have stopped");
+  if (*studio != nullptr) (*studio)->Shutdown();
   (*server)->Shutdown(options.drain_seconds);
   metrics.StopServing();
   spdlog::info("pleatd has ended");

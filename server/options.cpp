@@ -145,6 +145,23 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
       ->check(CLI::ExistingFile);
 }
 
+void AddStudioFlags(CLI::App* app, StudioOptions* studio) {
+  app->add_option(
+      "--http", studio->listen,
+      "HOST:PORT that serves the studio, Pleat in a browser, in plain text; port 0 = any "
+      "free one, printed at the start [nobody is served]");
+  app->add_option("--http-host", studio->hosts,
+                  "A further name under which browsers reach it, such as studio.example.com behind "
+                  "a proxy; may be repeated");
+}
+
+// What the studio takes from the other flags.
+void CompleteStudio(ServerOptions* options) {
+  options->studio.limits = options->service.limits;
+  options->studio.scratch_dir = options->service.data_dir + "/studio-uploads";
+  options->studio.version = PLEAT_VERSION;
+}
+
 void AddAccessFlags(CLI::App* app, ServerOptions* options) {
   app->add_option("--token-file", options->token_file,
                   "Tokens of 'pleat token'; as soon as there is one, each call needs one "
@@ -169,7 +186,14 @@ absl::Status CheckAccess(ServerOptions* options) {
   exposure.is_root = geteuid() == 0;
   PLEAT_ASSIGN_OR_RETURN(const std::vector<Token> tokens, ReadTokens(options->token_file));
   exposure.knows_callers = !options->grpc.tls.client_ca.empty() || !tokens.empty();
-  return CheckExposure(exposure);
+  PLEAT_RETURN_IF_ERROR(CheckExposure(exposure));
+  if (options->studio.listen.empty()) return absl::OkStatus();
+  // Browsers show no certificates here, and nothing is encrypted.
+  Exposure pages = exposure;
+  pages.listen = options->studio.listen;
+  pages.encrypted = false;
+  pages.knows_callers = !tokens.empty();
+  return CheckExposure(pages);
 }
 
 }  // namespace
@@ -177,6 +201,7 @@ absl::Status CheckAccess(ServerOptions* options) {
 CommandLine ParseCommandLine(int argc, const char* const* argv) {
   CommandLine line;
   line.options.grpc.listen = "127.0.0.1:7320";
+  line.options.studio.listen.clear();
   line.options.service.memory.memory_bytes = MachineMemoryBytes() / 4 * 3;
   CLI::App app("pleatd: trains animated characters and streams their frames over gRPC.", "pleatd");
   app.set_version_flag("--version", PLEAT_VERSION);
@@ -197,6 +222,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
   AddAccessFlags(&app, &line.options);
+  AddStudioFlags(&app, &line.options.studio);
   app.add_option("--metrics-listen", line.options.metrics_listen,
                  "HOST:PORT that answers GET /metrics for Prometheus, in plain text");
   app.add_option("--slow-call-seconds", line.options.slow_call_seconds,
@@ -220,6 +246,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
   line.options.service.sweep_seconds = kSweepSeconds;
   line.options.service.retention = RulesOf(retention);
   line.options.service.jobs_in_idle_time = job_priority == "idle";
+  CompleteStudio(&line.options);
   if (line.options.token_file.empty()) {
     line.options.token_file = TokenPath(line.options.service.data_dir);
   }

@@ -7,6 +7,7 @@
 #include "absl/status/statusor.h"
 #include "exposure.h"
 #include "pleat/grpc/grpc_server.h"
+#include "pleat/http/studio_server.h"
 #include "pleat/local/local_character_service.h"
 #include "pleat/observe/logging.h"
 
@@ -16,6 +17,7 @@ struct ServerOptions {
   LocalServiceOptions service;
   GrpcServerOptions grpc;
   LoggingOptions logging;
+  StudioOptions studio;          // an empty address: no pages are served
   std::string metrics_listen;    // HOST:PORT, empty = no metrics
   std::string token_file;        // who may call; it need not exist
   std::string audit_log;         // empty = none

@@ -37,6 +37,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddCompressVerb(*app, session);
   AddDecompressVerb(*app, session);
   AddGenerateVerb(*app, session);
+  AddStudioVerb(*app, session);
   AddUploadVerb(*app, session);
   AddSequencesVerb(*app, session);
   AddJobsVerb(*app, session);

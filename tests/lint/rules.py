@@ -51,7 +51,7 @@ BRITISH = (
 RULES = (
     # Who may see which package.
     Rule("protobuf", "Protocol Buffers stay in lib/wire, lib/store and the RPC layers", "include", PROTOBUF,
-         rooms=("lib/wire/", "lib/store/", *RPC_ROOMS, "server/observe/", "client/remote/", "tests/")),
+         rooms=("lib/wire/", "lib/store/", *RPC_ROOMS, "server/observe/", "server/http/", "client/remote/", "tests/")),
     Rule("store-schema", "what is stored has its own schema: lib/store includes pleat/store/v1 only", "include",
          r"^(?!pleat/store/v1/).*\.pb\.h$", where=("lib/store/",)),
     Rule("draco", "Draco stays in lib/stream", "include", r"^draco/", rooms=("lib/stream/", "tests/")),

@@ -81,6 +81,19 @@ TEST_P(StreamDoorsContractTest, ACompressedSequenceArrivesInPiecesAndLeavesInPie
   EXPECT_THAT(compressed.OpenDownload(unknown_, 0), HasStatus(absl::StatusCode::kNotFound, _));
 }
 
+TEST_P(StreamDoorsContractTest, ASequenceLeavesInPiecesAsItCame) {
+  const MeshSequence tube = MakeSwayingTube(5, "tube", 40, 30);
+  const std::string bytes = EncodeSequence(tube);
+  SequenceService& sequences = service_.sequences();
+  const std::string id = sequences.Upload(tube, {})->id;
+  EXPECT_EQ(sequences.OpenDownload(id, 0).value()->size_bytes(), bytes.size());
+  EXPECT_TRUE(ReadRest(sequences.OpenDownload(id, 0)) == bytes);
+  EXPECT_TRUE(ReadRest(sequences.OpenDownload(id, 100)) == bytes.substr(100));
+  EXPECT_THAT(sequences.OpenDownload(id, bytes.size() + 1),
+              HasStatus(absl::StatusCode::kOutOfRange, _));
+  EXPECT_THAT(sequences.OpenDownload(unknown_, 0), HasStatus(absl::StatusCode::kNotFound, _));
+}
+
 TEST_P(StreamDoorsContractTest, AModelLeavesInPieces) {
   const std::string id = running_.TrainModel(MakeSwayingTube(5, "tube", 40, 30));
   const std::string bytes = service_.models().Download(id, {}).value();

@@ -49,6 +49,8 @@ class MockSequenceService : public SequenceService {
   MOCK_METHOD(absl::Status, Delete, (const std::string& id), (override));
   MOCK_METHOD(absl::Status, SetPinned, (const std::string& id, bool pinned), (override));
   MOCK_METHOD(absl::Status, DeleteUpload, (const std::string& id), (override));
+  MOCK_METHOD(absl::StatusOr<std::unique_ptr<ContentDownload>>, OpenDownload,
+              (const std::string& id, uint64_t offset_bytes), (override));
   MOCK_METHOD(absl::StatusOr<UploadStatus>, QueryUpload, (const std::string& id), (override));
   MOCK_METHOD(absl::StatusOr<std::unique_ptr<SequenceUpload>>, BeginUpload,
               (const std::string& id, uint64_t size_bytes, uint64_t offset_bytes,

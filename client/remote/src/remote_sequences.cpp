@@ -60,6 +60,16 @@ class RemoteSequences final : public SequenceService {
     return Call(&v1::SequenceService::Stub::DeleteUpload, request, &response);
   }
 
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override {
+    const StartDownload<v1::DownloadSequenceRequest, v1::DownloadSequenceResponse> start =
+        [stub = state_->sequences.get()](grpc::ClientContext* context,
+                                         const v1::DownloadSequenceRequest& request) {
+          return stub->DownloadSequence(context, request);
+        };
+    return OpenRemoteDownload(state_->options, start, id, offset_bytes);
+  }
+
   absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) override {
     v1::QueryUploadRequest request;
     v1::QueryUploadResponse response;

@@ -80,8 +80,7 @@ absl::StatusOr<PointCache> DecodePc2(std::string_view bytes, const MeshLimits& l
   return cache;
 }
 
-// The header, then a view of each frame. header: where the bytes of the first are kept.
-std::vector<std::string_view> PartsOf(const PointCache& cache, std::string* header) {
+std::string EncodePc2Header(const PointCache& cache) {
   assert(!cache.frames.empty());
   ByteWriter writer;
   writer.WriteRaw(kPc2Magic);
@@ -90,8 +89,12 @@ std::vector<std::string_view> PartsOf(const PointCache& cache, std::string* head
   writer.Write(cache.start_frame);
   writer.Write(cache.sample_rate);
   writer.Write(static_cast<int32_t>(cache.frames.size()));
-  *header = writer.Release();
-  std::vector<std::string_view> parts = {*header};
+  return writer.Release();
+}
+
+// Views of the header and of each frame.
+std::vector<std::string_view> PartsOf(const std::string& header, const PointCache& cache) {
+  std::vector<std::string_view> parts = {header};
   for (const Eigen::Matrix3Xf& frame : cache.frames) {
     assert(frame.cols() == cache.frames[0].cols());
     parts.emplace_back(reinterpret_cast<const char*>(frame.data()),
@@ -113,8 +116,8 @@ absl::StatusOr<PointCache> ReadPointCache(const std::string& path, const MeshLim
 }
 
 std::string EncodePointCache(const PointCache& cache) {
-  std::string header;
-  const std::vector<std::string_view> parts = PartsOf(cache, &header);
+  const std::string header = EncodePc2Header(cache);
+  const std::vector<std::string_view> parts = PartsOf(header, cache);
   std::string bytes;
   bytes.reserve(header.size() + (parts.size() - 1) * parts[1].size());
   for (const std::string_view part : parts) bytes.append(part);
@@ -122,8 +125,8 @@ std::string EncodePointCache(const PointCache& cache) {
 }
 
 absl::Status WritePointCache(const std::string& path, const PointCache& cache) {
-  std::string header;
-  return WriteFileParts(path, PartsOf(cache, &header));
+  const std::string header = EncodePc2Header(cache);
+  return WriteFileParts(path, PartsOf(header, cache));
 }
 
 }  // namespace pleat

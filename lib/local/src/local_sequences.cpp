@@ -78,6 +78,11 @@ absl::Status LocalSequences::SetPinned(const std::string& id, bool pinned) {
   return files_->catalog().SetPinned(EntryKind::kSequence, id, pinned);
 }
 
+absl::StatusOr<std::unique_ptr<ContentDownload>> LocalSequences::OpenDownload(
+    const std::string& id, uint64_t offset_bytes) {
+  return files_->OpenDownload(EntryKind::kSequence, id, offset_bytes);
+}
+
 absl::Status LocalSequences::DeleteUpload(const std::string& id) {
   PLEAT_ASSIGN_OR_RETURN(UploadArea* const uploads, files_->uploads());
   return uploads->Remove(id);

@@ -62,7 +62,7 @@ class ListeningInterceptor final : public grpc::experimental::Interceptor {
   void NoteCaller() {
     if (entry_) return;
     const CallOrigin origin = OriginOf(*call_);
-    facts_.peer = call_->peer();
+    facts_.peer = PeerOf(*call_);
     facts_.token_id = origin.token_id;
     const auto chosen = call_->client_metadata().find("x-request-id");
     facts_.request_id =

@@ -24,9 +24,11 @@
 #include "absl/strings/str_cat.h"
 #include "call_listening.h"
 #include "certificate_check.h"
+#include "channel_gateway.h"
 #include "connection_listener.h"
 #include "health_watch.h"
 #include "pleat/base/status.h"
+#include "pleat/reactors/admission.h"
 #include "revocation_watch.h"
 #include "services.h"
 #include "tls_version.h"
@@ -165,6 +167,10 @@ class GrpcServerImpl final : public GrpcServer {
           acceptor_->HandleNewConnection(&connection);
         },
         [](const std::string& what) { spdlog::warn("{}", what); });
+    // The messages of this server, whose sizes have been checked where they were made.
+    grpc::ChannelArguments arguments;
+    arguments.SetMaxReceiveMessageSize(-1);
+    gateway_ = MakeChannelGateway(server_->InProcessChannel(arguments));
     health_.emplace(server_->GetHealthCheckService(), options.probe);
     if (options.tokens != nullptr)
       revocation_.emplace(options.tokens, &context_.calls->running_calls);
@@ -181,6 +187,12 @@ class GrpcServerImpl final : public GrpcServer {
     return CertificateFileExpiry(certificate_);
   }
   uint64_t num_refused_connections() const override { return listener_->num_refused(); }
+
+  CallGateway& gateway() override { return *gateway_; }
+  absl::StatusOr<AdmittedServices> Admit(const std::string& token, const char* rpc) override {
+    PLEAT_ASSIGN_OR_RETURN(HandlerContext* const of, AdmitToken(&context_, token, rpc));
+    return AdmittedServices{.models = of->models, .poses = of->poses};
+  }
 
   std::shared_ptr<grpc::Channel> InProcessChannel() override {
     return server_->InProcessChannel(grpc::ChannelArguments());
@@ -267,6 +279,7 @@ class GrpcServerImpl final : public GrpcServer {
   std::unique_ptr<ConnectionListener> listener_;
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<CallGateway> gateway_;
   std::optional<RevocationWatch> revocation_;
   std::optional<HealthWatch> health_;
 };

@@ -56,6 +56,7 @@ class SequenceServiceImpl final : public v1::SequenceService::CallbackService {
         context_, *call, "UploadSequence",
         [&](HandlerContext* of) { return pleat::UploadSequence(of, response); });
   }
+  PLEAT_SERVER_STREAM(DownloadSequence)
 
  private:
   HandlerContext* context_;

@@ -14,6 +14,7 @@ constexpr RpcRule kRules[] = {
     {"QueryUpload", Scope::kTrain, false},
     {"UploadSequence", Scope::kTrain, true},
     {"GetSequence", Scope::kRead, false},
+    {"DownloadSequence", Scope::kRead, true},
     {"ListSequences", Scope::kRead, false},
     {"DeleteSequence", Scope::kAdmin, true},
     {"PinSequence", Scope::kAdmin, true},
@@ -62,15 +63,13 @@ std::string ShownToken(const grpc::ServerContextBase& call) {
   return std::string(value);
 }
 
-namespace {
-
-absl::StatusOr<HandlerContext*> FindContext(HandlerContext* context,
-                                            const grpc::ServerContextBase& call, const char* rpc) {
+absl::StatusOr<HandlerContext*> AdmitToken(HandlerContext* context, const std::string& token_text,
+                                           const char* rpc) {
   ServerCalls& calls = *context->calls;
   if (calls.tokens == nullptr || !calls.tokens->required()) return context;
   const RpcRule* rule = FindRpcRule(rpc);
   if (rule == nullptr) return absl::InternalError(absl::StrCat("nobody says who may call ", rpc));
-  PLEAT_ASSIGN_OR_RETURN(const Token token, calls.tokens->Authenticate(ShownToken(call)));
+  PLEAT_ASSIGN_OR_RETURN(const Token token, calls.tokens->Authenticate(token_text));
   if (!token.scopes.Has(rule->scope)) {
     return absl::PermissionDeniedError(absl::StrCat("the token '", token.name, "' allows ",
                                                     ScopesText(token.scopes), "; ", rpc, " needs ",
@@ -79,11 +78,10 @@ absl::StatusOr<HandlerContext*> FindContext(HandlerContext* context,
   return calls.of_project ? calls.of_project(token.project) : context;
 }
 
-}  // namespace
-
 absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
                                       const char* rpc) {
-  PLEAT_ASSIGN_OR_RETURN(HandlerContext* const admitted, FindContext(context, call, rpc));
+  PLEAT_ASSIGN_OR_RETURN(HandlerContext* const admitted,
+                         AdmitToken(context, ShownToken(call), rpc));
   context->calls->running_calls.NoteProject(call, admitted->project);
   return admitted;
 }

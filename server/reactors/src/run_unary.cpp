@@ -115,7 +115,7 @@ grpc::ServerUnaryReactor* RunUnary(const UnaryCall& call, UnaryHandler handler) 
   RequestTag request{.id = call.context->calls->running_calls.RequestIdOf(*call.call)};
   const RequestScope scope(request);
   const uint64_t flow =
-      std::hash<std::string>()(call.call->peer()) | 1;  // one per connection, never 0
+      std::hash<std::string>()(PeerOf(*call.call)) | 1;  // one per connection, never 0
   absl::StatusOr<HandlerContext*> admitted = Admit(call.context, *call.call, call.rpc);
   if (admitted.ok()) request.project = (*admitted)->project;
   return StartReactor<UnaryReactor>(call, std::move(admitted), flow, std::move(handler));

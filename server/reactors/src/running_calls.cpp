@@ -18,10 +18,18 @@ std::string HostOfPeer(const std::string& peer) {
 
 }  // namespace
 
+std::string PeerOf(const grpc::ServerContextBase& call) {
+  std::string peer = call.peer();
+  if (!peer.starts_with("inproc")) return peer;
+  const auto said = call.client_metadata().find(kForeignPeerKey);
+  if (said == call.client_metadata().end()) return peer;
+  return std::string(said->second.data(), said->second.size());
+}
+
 CallOrigin OriginOf(const grpc::ServerContextBase& call) {
   const std::string shown = ShownToken(call);
   const std::optional<TokenText> token = ParseTokenText(shown);
-  if (!token) return {.client = HostOfPeer(call.peer()), .token_id = {}};
+  if (!token) return {.client = HostOfPeer(PeerOf(call)), .token_id = {}};
   return {.client = absl::StrCat("token:", ToHex(ComputeSha256(shown))), .token_id = token->id};
 }
 

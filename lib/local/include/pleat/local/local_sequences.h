@@ -23,6 +23,8 @@ class LocalSequences final : public SequenceService {
   absl::StatusOr<Page<SequenceInfo>> ListPage(const PageRequest& request) override;
   absl::Status Delete(const std::string& id) override;
   absl::Status SetPinned(const std::string& id, bool pinned) override;
+  absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                uint64_t offset_bytes) override;
   absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) override;
   absl::StatusOr<std::unique_ptr<SequenceUpload>> BeginUpload(const std::string& id,
                                                               uint64_t size_bytes,

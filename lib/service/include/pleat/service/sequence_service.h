@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/progress.h"
 #include "pleat/mesh/mesh_sequence.h"
+#include "pleat/service/content_download.h"
 #include "pleat/service/content_upload.h"
 #include "pleat/service/entry_life.h"
 #include "pleat/service/list_page.h"
@@ -50,6 +51,11 @@ class SequenceService {
   virtual absl::Status Delete(const std::string& id) = 0;
   // A pinned one is never removed by retention, only by Delete.
   virtual absl::Status SetPinned(const std::string& id, bool pinned) = 0;
+
+  // The sequence file in pieces, from `offset_bytes` on. kOutOfRange when that is behind its end,
+  // kDataLoss when the file has changed.
+  virtual absl::StatusOr<std::unique_ptr<ContentDownload>> OpenDownload(const std::string& id,
+                                                                        uint64_t offset_bytes) = 0;
 
   // What has arrived of the file `id`, sequence or compressed sequence: where to go on.
   virtual absl::StatusOr<UploadStatus> QueryUpload(const std::string& id) = 0;

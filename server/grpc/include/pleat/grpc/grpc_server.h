@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "pleat/base/executor.h"
 #include "pleat/base/memory_budget.h"
+#include "pleat/grpc/call_gateway.h"
 #include "pleat/identity/token_registry.h"
 #include "pleat/service/character_service.h"
 
@@ -98,6 +99,12 @@ struct GrpcServerOptions {
   int max_streams_per_client = 256;
 };
 
+// What a caller that was let in may use; it lives as long as the server.
+struct AdmittedServices {
+  ModelService* models = nullptr;
+  PoseService* poses = nullptr;
+};
+
 class GrpcServer {
  public:
   // Serves `service`, which must outlive the server. kUnavailable when the address cannot be bound
@@ -117,6 +124,11 @@ class GrpcServer {
     uint64_t requests = 0, streams = 0, messages = 0;
   };
   virtual MemoryUse memory_use() const = 0;
+  // The way in for calls that come from elsewhere, such as from browsers.
+  virtual CallGateway& gateway() = 0;
+  // The services of the project of a token, for work that is no RPC but needs the same permission
+  // as `rpc`. The errors are those of Admit (admission.h).
+  virtual absl::StatusOr<AdmittedServices> Admit(const std::string& token, const char* rpc) = 0;
   // A channel that needs no network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
   // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then

@@ -15,6 +15,8 @@ namespace pleat {
 
 grpc::ServerReadReactor<v1::UploadSequenceRequest>* UploadSequence(
     HandlerContext* context, v1::UploadSequenceResponse* response);
+grpc::ServerWriteReactor<v1::DownloadSequenceResponse>* DownloadSequence(
+    HandlerContext* context, const v1::DownloadSequenceRequest& request);
 grpc::ServerWriteReactor<v1::WatchJobResponse>* WatchJob(HandlerContext* context,
                                                          const v1::WatchJobRequest& request);
 grpc::ServerWriteReactor<v1::DownloadModelResponse>* DownloadModel(

@@ -38,6 +38,10 @@ std::string ShownToken(const grpc::ServerContextBase& call);
 absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
                                       const char* rpc);
 
+// The same for what is no call of gRPC: the page of a browser, which shows its token otherwise.
+absl::StatusOr<HandlerContext*> AdmitToken(HandlerContext* context, const std::string& token_text,
+                                           const char* rpc);
+
 // The same for a stream. kResourceExhausted when its client has too many others.
 absl::StatusOr<HandlerContext*> AdmitStream(HandlerContext* context,
                                             const grpc::ServerContextBase& call, const char* rpc);

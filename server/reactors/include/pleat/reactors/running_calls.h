@@ -18,6 +18,11 @@ struct CallOrigin {
   std::string client;
   std::string token_id;  // as the call says; empty: it shows none
 };
+// Metadata in which a call of this process says for whom it is made (call_gateway.h).
+inline constexpr char kForeignPeerKey[] = "x-pleat-peer";
+// The address that a call comes from. A call of this process says for whom it is made, and is
+// believed; what others say with the same key is not looked at.
+std::string PeerOf(const grpc::ServerContextBase& call);
 CallOrigin OriginOf(const grpc::ServerContextBase& call);
 
 // A call can be cancelled from here while another thread ends it. Each has a lock of its own for

@@ -1,0 +1,69 @@
+// Reads a sequence file (docs/formats/sequence_file.md) while it arrives: the connectivity first, then
+// frame after frame, so that the first ones can be shown at once.
+import {request} from './calls';
+
+export interface Shape { numVertices: number; numFrames: number; triangles: Uint32Array }
+
+// Bytes in the order in which they come.
+class ByteSource {
+  private pieces: Uint8Array[] = [];
+  private length = 0;
+  constructor(private readonly reader: ReadableStreamDefaultReader<Uint8Array>) {}
+  async take(count: number): Promise<Uint8Array> {
+    while (this.length < count) {
+      const {done, value} = await this.reader.read();
+      if (done) throw new Error('the sequence file is cut off');
+      this.pieces.push(value);
+      this.length += value.length;
+    }
+    const bytes = new Uint8Array(count);
+    for (let filled = 0; filled < count;) {
+      const piece = this.pieces[0]!;
+      const used = Math.min(piece.length, count - filled);
+      bytes.set(piece.subarray(0, used), filled);
+      filled += used;
+      if (used === piece.length) this.pieces.shift();
+      else this.pieces[0] = piece.subarray(used);
+    }
+    this.length -= count;
+    return bytes;
+  }
+  async text(): Promise<string> {
+    const size = new DataView((await this.take(4)).buffer).getUint32(0, true);
+    return new TextDecoder().decode(await this.take(size));
+  }
+}
+
+// Faces as triangles: each is a fan around its first corner.
+export function fan(sizes: Int32Array, corners: Int32Array): Uint32Array {
+  const triangles: number[] = [];
+  let first = 0;
+  for (const size of sizes) {
+    for (let k = 2; k < size; ++k) triangles.push(corners[first]!, corners[first + k - 1]!, corners[first + k]!);
+    first += size;
+  }
+  return Uint32Array.from(triangles);
+}
+
+export async function readSequence(id: string, signal: AbortSignal, onShape: (shape: Shape) => void,
+                                   onFrame: (frame: number, positions: Float32Array) => void): Promise<void> {
+  const response = await request('/rpc/SequenceService/DownloadSequence', {
+    method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({id}), signal,
+  });
+  const source = new ByteSource(response.body!.getReader());
+  const head = new DataView((await source.take(48)).buffer);
+  if (head.getUint32(8, true) !== 1) throw new Error('the sequence file is of another version; reload the page');
+  const count = (at: number): number => head.getUint32(at, true);
+  const [numVertices, numFaces, numCorners, numFrames] = [count(12), count(16), count(20), count(24)];
+  const [numTexcoords, numMaterials, flags] = [count(36), count(40), count(44)];
+  for (let i = 0; i < 2 + numMaterials; ++i) await source.text();
+  const sizes = new Int32Array((await source.take(4 * numFaces)).buffer);
+  const corners = new Int32Array((await source.take(4 * numCorners)).buffer);
+  await source.take(8 * numTexcoords);
+  if (flags & 1) await source.take(4 * numCorners);
+  if (flags & 2) await source.take(4 * numFaces);
+  onShape({numVertices, numFrames, triangles: fan(sizes, corners)});
+  for (let t = 0; t < numFrames; ++t) {
+    onFrame(t, new Float32Array((await source.take(12 * numVertices)).buffer));
+  }
+}
