@@ -89,7 +89,7 @@ std::string EncodePc2Header(const PointCache& cache) {
   writer.Write(cache.start_frame);
   writer.Write(cache.sample_rate);
   writer.Write(static_cast<int32_t>(cache.frames.size()));
-  return writer.Release();
+  return writer.bytes();  // gcc 12 takes a short string that is moved for one without an end
 }
 
 // Views of the header and of each frame.
