@@ -15,7 +15,9 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 JointMap SmallMap() {
-  JointMap map{.up = ClipUp::kZ, .scale = .01};
+  JointMap map;
+  map.up = ClipUp::kZ;
+  map.scale = .01;
   map.joints = {{"hips", "Hips", "Hips", BoneAlignment::kRotation},
                 {"head", "", ""},
                 {"leftFoot", "LeftAnkle", "LeftKnee", BoneAlignment::kDirection},

@@ -50,11 +50,11 @@ TEST(RequestTargetTest, PathsStayInsideTheirFolder) {
 
 // Whatever comes, what is let in has no way out of the folder and no byte that a file may not have.
 TEST(RequestTargetTest, HostileBytesAreRefusedOrHarmless) {
-  const std::string letters("/.%?&=+\\a0fF \n\0\xff\xc3", 20);
+  const std::string letters("/.%?&=+\\a0fF \n\0\xff\xc3", 17);
   Random random(7);
   for (int round = 0; round < 20'000; ++round) {
     std::string text = "/";
-    for (int i = 0; i < 24; ++i) text.push_back(letters[random.UniformInt(20)]);
+    for (int i = 0; i < 24; ++i) text.push_back(letters[random.UniformInt(17)]);
     const auto target = ParseTarget(text);
     if (!target.ok()) continue;
     for (const std::string& segment : target->segments) {
@@ -62,7 +62,9 @@ TEST(RequestTargetTest, HostileBytesAreRefusedOrHarmless) {
       EXPECT_EQ(segment.find('\n'), std::string::npos);
     }
     const auto path = CheckRelativePath(text.substr(1));
-    if (path.ok()) EXPECT_EQ(path->find(".."), path->find("..", 1)) << *path;
+    if (path.ok()) {
+      EXPECT_EQ(("/" + *path + "/").find("/../"), std::string::npos) << *path;
+    }
   }
 }
 
