@@ -68,7 +68,8 @@ TEST(FullMessagesTest, EveryFieldCrossesTheWire) {
   many.coefficients = Eigen::VectorXf::LinSpaced(300, -.5f, .5f);
   ExpectEveryFieldCrosses(many, {"coefficients"});
   ExpectEveryFieldCrosses(FullTrack());
-  ExpectEveryFieldCrosses(CharacterQuery{kId, {1, 2}, true});
+  ExpectEveryFieldCrosses(
+      CharacterQuery{kId, {1, 2}, true, {.joints = {1, .5}, .vertices = {0, 2, .25f}}});
   ExpectEveryFieldCrosses(FrameEncoderOptions{.content = StreamContent::kControlMesh, .speed = 0},
                           {"max_error_mm"});
   ExpectEveryFieldCrosses(FrameEncoderOptions{.max_error_mm = 2, .speed = 9}, {"position_bits"});
@@ -133,7 +134,7 @@ TEST(DamagedMessagesTest, AreRefusedOrAreValues) {
   DamageEveryByte(FullHeader());
   DamageEveryByte(FullParameters());
   DamageEveryByte(FullTrack());
-  DamageEveryByte(CharacterQuery{kId, {1, 2}, true});
+  DamageEveryByte(CharacterQuery{kId, {1, 2}, true, {.joints = {1, .5}, .vertices = {0, 2, .25f}}});
   DamageEveryByte(FrameEncoderOptions{.max_error_mm = 2});
 }
 

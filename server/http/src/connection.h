@@ -155,7 +155,8 @@ class Connection {
       parser.get().body().data = piece_.data();
       parser.get().body().size = piece_.size();
       const error_code error = Await(options_.step_seconds, [&](auto done) {
-        http::async_read(*stream_, buffer_, parser, std::move(done));
+        // What has arrived, so that a body that is too large is refused before its end.
+        http::async_read_some(*stream_, buffer_, parser, std::move(done));
       });
       if (error && error != http::error::need_buffer) {
         return absl::InvalidArgumentError(absl::StrCat("the body is cut off: ", error.message()));
