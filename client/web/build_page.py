@@ -75,7 +75,7 @@ def main():
         bundle(arguments, folder)
     else:
         missing = "node" if not has_node else "the packages of the page, which npm brings"
-        (folder / "index.html").write_text(WORDS.format(missing=html.escape(missing)))
+        (folder / "index.html").write_text(WORDS.replace("{missing}", html.escape(missing)))
         print(f"studio: without {missing}: pleatd serves a page that says so", file=sys.stderr)
     write_sources(folder, packed, out / "page_files.cpp")
 
