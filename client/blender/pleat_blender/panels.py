@@ -13,6 +13,14 @@ class Sidebar:
     bl_category = "Pleat"
 
 
+class CharacterSidebar(Sidebar):
+    """What is shown where the armature of a character is chosen."""
+
+    @classmethod
+    def poll(cls, context):
+        return operators.rig_of(context) is not None
+
+
 def _say(layout, text, icon="NONE", width=46):
     """A text on as many lines as it needs."""
     line = ""
@@ -65,13 +73,9 @@ class PLEAT_PT_train(Sidebar, bpy.types.Panel):
             layout.operator("pleat.cancel", icon="CANCEL")
 
 
-class PLEAT_PT_character(Sidebar, bpy.types.Panel):
+class PLEAT_PT_character(CharacterSidebar, bpy.types.Panel):
     bl_idname = "PLEAT_PT_character"
     bl_label = "Character"
-
-    @classmethod
-    def poll(cls, context):
-        return operators.rig_of(context) is not None
 
     def draw(self, context):
         layout, rig = self.layout, operators.rig_of(context)
@@ -109,13 +113,9 @@ class PLEAT_PT_character(Sidebar, bpy.types.Panel):
             _say(layout, warning, "INFO")
 
 
-class PLEAT_PT_bake(Sidebar, bpy.types.Panel):
+class PLEAT_PT_bake(CharacterSidebar, bpy.types.Panel):
     bl_idname = "PLEAT_PT_bake"
     bl_label = "Bake"
-
-    @classmethod
-    def poll(cls, context):
-        return operators.rig_of(context) is not None
 
     def draw(self, context):
         column = self.layout.column(align=True)

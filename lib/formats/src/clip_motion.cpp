@@ -10,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
+#include "pleat/formats/joint_names.h"
 #include "pleat/math/rigid.h"
 #include "pleat/mesh/bounds.h"
 
@@ -23,19 +24,6 @@ constexpr double kMaxRestDistance = .02;
 constexpr double kMaxStray = .005;
 
 absl::Status ClipFault(const std::string& what) { return absl::InvalidArgumentError(what); }
-
-std::string NamesOf(const JointClip& clip) {
-  std::vector<std::string> names;
-  for (const ClipJoint& joint : clip.joints) {
-    if (joint.is_end) continue;
-    if (names.size() == kMaxNamed) {
-      names.emplace_back("...");
-      break;
-    }
-    names.push_back(EscapeControls(joint.name));
-  }
-  return absl::StrJoin(names, ", ");
-}
 
 bool IsAbove(const JointClip& clip, int above, int joint) {
   while (joint >= 0 && joint != above) joint = clip.joints[static_cast<size_t>(joint)].parent;
@@ -162,7 +150,8 @@ absl::StatusOr<std::vector<int>> MatchJoints(const JointClip& clip, const Skelet
     return ClipFault(absl::StrFormat(
         "the file is of another skeleton: of the character's joints it lacks %s; it has %s (its "
         "longest way from tip to tip is %.4g, as of a person in %s)",
-        absl::StrJoin(missing, ", "), NamesOf(clip), guess.size, guess.name));
+        absl::StrJoin(missing, ", "), ListJointNames(clip.joints, kMaxNamed), guess.size,
+        guess.name));
   }
   for (int j = 1; j < skeleton.num_joints(); ++j) {
     const int parent = skeleton.parent(j);

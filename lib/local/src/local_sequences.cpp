@@ -7,6 +7,7 @@
 #include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 #include "pleat/formats/sequence_file.h"
+#include "pleat/service/file_limits.h"
 #include "stored_infos.h"
 
 namespace pleat {
@@ -15,15 +16,6 @@ namespace {
 // What checking a sequence takes at most, in sizes of its file: the bytes, the frames out of them,
 // and room for what the allocator keeps of the upload before.
 constexpr uint64_t kCheckFactor = 3;
-
-MeshLimits FileLimits(const ServiceLimits& limits) {
-  const auto max_bytes = static_cast<uint64_t>(limits.max_upload_bytes);
-  return {.max_file_bytes = max_bytes,
-          .max_vertices = limits.max_vertices,
-          .max_faces = 2 * limits.max_vertices,
-          .max_frames = limits.max_frames,
-          .max_sequence_bytes = 2 * max_bytes};
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include "absl/strings/str_join.h"
 #include "pleat/base/status.h"
 #include "pleat/base/utf8.h"
+#include "pleat/formats/joint_names.h"
 
 namespace pleat {
 namespace {
@@ -14,19 +15,6 @@ namespace {
 constexpr size_t kMaxNamed = 60;  // joints in a message
 
 absl::Status RetargetFault(const std::string& what) { return absl::InvalidArgumentError(what); }
-
-std::string NamesOf(const std::vector<BodyJoint>& joints) {
-  std::vector<std::string> names;
-  for (const BodyJoint& joint : joints) {
-    if (joint.is_end) continue;
-    if (names.size() == kMaxNamed) {
-      names.emplace_back("...");
-      break;
-    }
-    names.push_back(EscapeControls(joint.name));
-  }
-  return absl::StrJoin(names, ", ");
-}
 
 // What each skeleton must have, since the size and the place of the body come from it.
 absl::Status CheckLegs(const Landmarks& landmarks, const std::vector<BodyJoint>& joints,
@@ -37,9 +25,10 @@ absl::Status CheckLegs(const Landmarks& landmarks, const std::vector<BodyJoint>&
                                  kRightLowerLeg, kRightFoot, kHips}) {
     if (landmarks[joint] < 0) missing.push_back(HumanTemplate().joint(joint).name);
   }
-  return RetargetFault(absl::StrCat(
-      whose, " has no joints that are known as ", absl::StrJoin(missing, ", "), "; it has ",
-      NamesOf(joints), ": write a map with 'pleat motion map', edit it, and give it by --map"));
+  return RetargetFault(
+      absl::StrCat(whose, " has no joints that are known as ", absl::StrJoin(missing, ", "),
+                   "; it has ", ListJointNames(joints, kMaxNamed),
+                   ": write a map with 'pleat motion map', edit it, and give it by --map"));
 }
 
 bool HasTemplateNames(const Landmarks& landmarks, const std::vector<BodyJoint>& joints) {
@@ -186,7 +175,7 @@ absl::StatusOr<std::vector<ResolvedBone>> ResolveJointMap(const JointMap& map,
     if (bone.bone < 0) {
       return RetargetFault(absl::StrCat("joint map: the character has no joint '",
                                         EscapeControls(entry.joint), "'; it has ",
-                                        NamesOf(BodyJointsOf(skeleton))));
+                                        ListJointNames(BodyJointsOf(skeleton), kMaxNamed)));
     }
     bone.from = FindBodyJoint(source, entry.from);
     const std::string& turns_with = entry.turns_with.empty() ? entry.from : entry.turns_with;
@@ -198,7 +187,8 @@ absl::StatusOr<std::vector<ResolvedBone>> ResolveJointMap(const JointMap& map,
     if (bone.from < 0 || bone.turns < 0) {
       return RetargetFault(absl::StrCat("joint map: '", EscapeControls(entry.joint), "': '",
                                         EscapeControls(bone.from < 0 ? entry.from : turns_with),
-                                        "' is no joint of the clip, which has ", NamesOf(source)));
+                                        "' is no joint of the clip, which has ",
+                                        ListJointNames(source, kMaxNamed)));
     }
     from_of[static_cast<size_t>(bone.bone)] = bone.from;
     bones.push_back(bone);

@@ -168,9 +168,9 @@ class Aligner {
     return Frame(SourceLeft(), up) * Frame(TargetLeft(), up).transpose();
   }
 
-  // Of a clip whose rest says nothing: pelvis and trunk are upright on average, and each bone of
-  // the trunk has on average the rotation of the one above. Frames count by how upright the body
-  // is.
+  // The rotation where the rest of the clip says nothing: pelvis and trunk are upright on average,
+  // and each bone of the trunk has on average the rotation of the one above. Frames count by how
+  // upright the body is.
   Eigen::Matrix3d Average(size_t i) const {
     const ResolvedBone& bone = in_.bones[i];
     const int above = i == 0 ? -1 : AboveOf(i);

@@ -124,7 +124,7 @@ const std::vector<ExportFormat>& Formats() {
   return formats;
 }
 
-// The rate of a motion as a fraction: those of films and of television are recognized.
+// The rate of a motion as a fraction: that of the model where they agree, else in thousandths.
 FrameRate RateOf(double fps, const FrameRate& of_model) {
   if (std::abs(fps - of_model.fps()) < 1e-3) return of_model;
   return {static_cast<int>(std::lround(1000 * fps)), 1000};

@@ -14,6 +14,7 @@
 #include "pleat/base/limit_refusal.h"
 #include "pleat/base/status.h"
 #include "pleat/http/http_server.h"
+#include "pleat/service/file_limits.h"
 #include "request_guard.h"
 #include "request_target.h"
 #include "rpc_routes.h"
@@ -36,15 +37,6 @@ double MonotonicSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-MeshLimits LimitsOf(const ServiceLimits& limits) {
-  const auto max_bytes = static_cast<uint64_t>(limits.max_upload_bytes);
-  return {.max_file_bytes = max_bytes,
-          .max_vertices = limits.max_vertices,
-          .max_faces = 2 * limits.max_vertices,
-          .max_frames = limits.max_frames,
-          .max_sequence_bytes = 2 * max_bytes};
-}
-
 class Studio final : public HttpHandler {
  public:
   Studio(const StudioOptions& options, GrpcServer* server)
@@ -59,7 +51,7 @@ class Studio final : public HttpHandler {
                                   const char* rpc) { return server->Admit(token, rpc); },
                 .uploads = &uploads_,
                 .memory = options.memory,
-                .limits = LimitsOf(options.limits)} {}
+                .limits = FileLimits(options.limits)} {}
 
   // Call it before the first request.
   void ServeHosts(std::vector<std::string> hosts) { hosts_ = std::move(hosts); }
@@ -164,7 +156,7 @@ class Studio final : public HttpHandler {
       const auto name = target.query.find("name");
       const absl::StatusOr<std::string> json =
           StoreTake(gateway_, caller, *folder, name == target.query.end() ? "" : name->second,
-                    LimitsOf(options_.limits), options_.memory);
+                    FileLimits(options_.limits), options_.memory);
       uploads_.Remove(caller.token, id);
       return json.ok() ? JsonResponse(*json) : ErrorResponse(json.status());
     });
