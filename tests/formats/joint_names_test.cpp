@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 namespace pleat {
 namespace {
 
@@ -12,8 +15,8 @@ struct NamedJoint {
 
 TEST(JointNamesTest, TipsAreLeftOutAndLongListsCut) {
   const std::vector<NamedJoint> joints = {{"hips"}, {"a\nb"}, {"tip", true}, {"head"}};
-  EXPECT_EQ(ListJointNames(joints, 3), "hips, a\\nb, head");
-  EXPECT_EQ(ListJointNames(joints, 2), "hips, a\\nb, ...");
+  EXPECT_EQ(ListJointNames(joints, 3), "hips, a\\x0ab, head");
+  EXPECT_EQ(ListJointNames(joints, 2), "hips, a\\x0ab, ...");
   EXPECT_EQ(ListJointNames(std::vector<NamedJoint>(), 2), "");
 }
 
