@@ -10,7 +10,9 @@
 
 #include "call_observers.h"
 #include "options.h"
+#include "pleat/base/status.h"
 #include "pleat/metrics/server_metrics.h"
+#include "pleat/service/shared_service.h"
 #include "service_gauges.h"
 
 namespace pleat {
@@ -46,11 +48,16 @@ absl::Status ServeMetrics(const std::string& address, LocalCharacterService* ser
   return status;
 }
 
-// Null when no pages are asked for.
+// Null when no pages are asked for. shared_model: its id, or empty.
 absl::StatusOr<std::unique_ptr<StudioServer>> ServeStudio(StudioOptions options,
+                                                          const std::string& shared_model,
                                                           LocalCharacterService* service,
                                                           GrpcServer* server) {
   if (options.listen.empty()) return nullptr;
+  if (!shared_model.empty()) {
+    PLEAT_ASSIGN_OR_RETURN(options.shared,
+                           WithContext("--share", ContentOfModel(service, shared_model)));
+  }
   options.memory = &service->memory().all;
   absl::StatusOr<std::unique_ptr<StudioServer>> studio =
       StudioServer::Start(std::move(options), server);
@@ -119,7 +126,7 @@ int Run(const ServerOptions& options) {
     return Fail(status);
   }
   const absl::StatusOr<std::unique_ptr<StudioServer>> studio =
-      ServeStudio(options.studio, service->get(), server->get());
+      ServeStudio(options.studio, options.shared_model, service->get(), server->get());
   if (!studio.ok()) return Fail(studio.status());
   const std::string address = Address(options.grpc, (*server)->port());
   // This line goes to standard output, so that a script can wait for it and read the port.

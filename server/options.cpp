@@ -145,14 +145,19 @@ void AddNetworkFlags(CLI::App* app, GrpcServerOptions* grpc) {
       ->check(CLI::ExistingFile);
 }
 
-void AddStudioFlags(CLI::App* app, StudioOptions* studio) {
-  app->add_option(
+void AddStudioFlags(CLI::App* app, ServerOptions* options) {
+  StudioOptions* const studio = &options->studio;
+  CLI::Option* const http = app->add_option(
       "--http", studio->listen,
       "HOST:PORT that serves the studio, Pleat in a browser, in plain text; port 0 = any "
       "free one, printed at the start [nobody is served]");
   app->add_option("--http-host", studio->hosts,
                   "A further name under which browsers reach it, such as studio.example.com behind "
                   "a proxy; may be repeated");
+  app->add_option("--share", options->shared_model,
+                  "Id of a model: whoever opens the studio without a token sees it and the "
+                  "sequences that it was trained on, nothing else, and can change nothing")
+      ->needs(http);
 }
 
 // What the studio takes from the other flags.
@@ -192,7 +197,8 @@ absl::Status CheckAccess(ServerOptions* options) {
   Exposure pages = exposure;
   pages.listen = options->studio.listen;
   pages.encrypted = false;
-  pages.knows_callers = !tokens.empty();
+  // Whoever opens a shared page without a token sees what is shared and no more.
+  pages.knows_callers = !tokens.empty() || !options->shared_model.empty();
   return CheckExposure(pages);
 }
 
@@ -222,7 +228,7 @@ CommandLine ParseCommandLine(int argc, const char* const* argv) {
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
   AddAccessFlags(&app, &line.options);
-  AddStudioFlags(&app, &line.options.studio);
+  AddStudioFlags(&app, &line.options);
   app.add_option("--metrics-listen", line.options.metrics_listen,
                  "HOST:PORT that answers GET /metrics for Prometheus, in plain text");
   app.add_option("--slow-call-seconds", line.options.slow_call_seconds,

@@ -18,6 +18,7 @@ struct ServerOptions {
   GrpcServerOptions grpc;
   LoggingOptions logging;
   StudioOptions studio;          // an empty address: no pages are served
+  std::string shared_model;      // id of the model that the studio shows to everybody; empty = none
   std::string metrics_listen;    // HOST:PORT, empty = no metrics
   std::string token_file;        // who may call; it need not exist
   std::string audit_log;         // empty = none

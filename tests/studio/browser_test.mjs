@@ -3,78 +3,29 @@
 //
 //   node browser_test.mjs --bin build/bin --chromium /usr/bin/chromium --packages build/npm --source . [--take samba]
 import assert from 'node:assert/strict';
-import {existsSync, readFileSync, writeFileSync} from 'node:fs';
-import {join} from 'node:path';
 import {parseArgs} from 'node:util';
-import {findPlaywright, openBrowser, Server, skip, takeFiles} from './harness.mjs';
+import {cacheFrame, farthest, StudioPage, takeFiles} from './harness.mjs';
 
 const {values} = parseArgs({options: {
   bin: {type: 'string'}, chromium: {type: 'string'}, packages: {type: 'string'}, source: {type: 'string'},
   take: {type: 'string', default: 'dancer'}, shots: {type: 'string'},
 }});
-if (!values.chromium || !existsSync(values.chromium)) skip('chromium is not there (./dev setup --all installs it)');
-const playwright = findPlaywright(values.packages);
+const studio = await StudioPage.open(values);
+const {server, browser, page, problems, requests} = studio;
+const shot = (name) => studio.shot(name), settle = () => studio.settle(), positions = () => studio.positions();
 
-// The positions of one frame of a point cache.
-function cacheFrame(path, frame) {
-  const bytes = readFileSync(path);
-  const numVertices = bytes.readInt32LE(16);
-  return Array.from({length: 3 * numVertices}, (_, i) => bytes.readFloatLE(32 + 12 * numVertices * frame + 4 * i));
-}
-const farthest = (a, b) => {
-  assert.equal(a.length, b.length);
-  let most = 0;
-  for (let i = 0; i < a.length; ++i) most = Math.max(most, Math.abs(a[i] - b[i]));
-  return most;
-};
-
-const server = new Server(values.bin);
-await server.start();
-const port = Number(new URL(server.page).port);
-const browser = await openBrowser(playwright, values.chromium);
-const page = await browser.newPage({viewport: {width: 1280, height: 800}});
-page.setDefaultTimeout(240_000);  // a machine may be busy with other tests
-const problems = [], requests = [];
-page.on('console', (message) => { if (message.type() === 'error') problems.push(message.text()); });
-page.on('pageerror', (error) => problems.push(String(error)));
-page.on('request', (request) => requests.push(request.url()));
-const shot = async (name) => { if (values.shots) await page.screenshot({path: join(values.shots, `${name}.png`)}); };
-// The frame that belongs to the last change has come when the session is at rest.
-const settle = async () => {
-  await page.evaluate(() => { window.settled = undefined; });
-  await page.waitForFunction(() => {
-    const {frames} = window.studio.statistics;
-    const at = performance.now();
-    if (window.settled?.frames !== frames) window.settled = {frames, at};
-    return frames > 0 && at - window.settled.at > 400;
-  }, null, {polling: 50});
-};
-const positions = () => page.evaluate(() => Array.from(window.studio.viewport.surfaces.edited.positions));
-
-try {
-  await page.goto(server.page);
+await studio.run(async () => {
   await page.waitForSelector('#empty:not([hidden])');
   await shot('empty');
 
   // A take comes in.
-  await page.setInputFiles('#files', takeFiles(server, values.source, values.take));
-  await page.waitForFunction(() => window.studio.document.takes.current?.done);
-  await page.waitForFunction(() => window.studio.viewport.surfaces.input.mesh.visible);
+  await studio.bring(takeFiles(server, values.source, values.take));
   await shot('take');
 
   // It is trained.
   await page.click('#train');
-  await page.check('input[value=quick]');
-  await shot('train');
-  await page.click('dialog button.main');
-  await page.waitForSelector('#work:not([hidden])', {timeout: 240_000});
-  await shot('training');
-  await page.waitForFunction(() => window.studio.document.model && window.studio.viewport.surfaces.edited.mesh.visible,
-    null, {timeout: 600_000});
-  await page.waitForFunction(() => !window.studio.measuring.running);
-  await settle();
+  await studio.trainQuickly();
   await shot('character');
-  const before = await positions();
 
   // The left hand is dragged.
   await page.evaluate(() => {
@@ -84,42 +35,17 @@ try {
   });
   await settle();
   const unposed = await positions();
-  const hand = await page.evaluate(() => {
-    const {document: doc, viewport} = window.studio;
-    const [x, y, z] = doc.placed().positions[doc.joint];
-    const point = viewport.camera.position.clone().set(x, y, z).project(viewport.camera);
-    const box = window.document.getElementById('editor').getBoundingClientRect();
-    return {x: box.left + (point.x + 1) / 2 * box.width, y: box.top + (1 - point.y) / 2 * box.height};
-  });
+  const hand = await studio.jointOnScreen(await page.evaluate(() => window.studio.document.joint));
   await page.evaluate(() => { window.studio.viewport.gizmo.detach(); });  // the ball itself is dragged
-  await page.mouse.move(hand.x, hand.y);
-  await page.mouse.down();
-  for (let i = 1; i <= 12; ++i) await page.mouse.move(hand.x + 5 * i, hand.y - 8 * i);
-  await page.mouse.up();
+  await studio.drag(hand, 60, -96);
   await settle();
   const posed = await positions();
   assert.ok(farthest(posed, unposed) > .05, 'the hand has not moved');
   await shot('posed');
 
   // The vertices are those of the command line for the same pose, within half a step of the grid.
-  const motion = join(server.folder, 'edited.json');
-  writeFileSync(motion, JSON.stringify(await page.evaluate(() => window.studio.document.motionFile())));
   const modelId = await page.evaluate(() => window.studio.document.model.id);
-  const model = join(server.folder, 'model.pleat');
-  const bytes = await page.evaluate(async (id) => {
-    const response = await fetch('/rpc/ModelService/DownloadModel', {method: 'POST',
-      headers: {'X-Pleat-Studio': '1', 'Content-Type': 'application/json'}, body: JSON.stringify({id})});
-    return Array.from(new Uint8Array(await response.arrayBuffer()));
-  }, modelId);
-  writeFileSync(model, Uint8Array.from(bytes));
-  const cache = join(server.folder, 'edited.pc2');
-  server.pleat('pose', model, '--motion', motion, '-o', cache);
-  const header = await page.evaluate(() => {
-    const {positions: p} = window.studio.viewport.surfaces.edited;
-    return {numVertices: p.length / 3};
-  });
-  const truth = cacheFrame(cache, 12);
-  assert.equal(header.numVertices * 3, truth.length);
+  const truth = await studio.posedByPleat(await studio.downloadModel(), 12);
   const grid = .0012;  // at most a step of 12 bits on a person; half of it is allowed
   const error = farthest(posed, truth);
   console.log(`page against pleat pose: ${(1e3 * error).toFixed(3)} mm at most`);
@@ -134,15 +60,11 @@ try {
   assert.ok(farthest(await positions(), posed) < 1e-3, 'redo did not');
   await page.keyboard.press('Home');
   await settle();
-  void before;
 
   // What is exported reads back as the frames of the command line.
-  const exported = await page.evaluate(async () => Array.from(new Uint8Array(await (await window.studio.exported('pc2')).arrayBuffer())));
-  writeFileSync(join(server.folder, 'page.pc2'), Uint8Array.from(exported));
-  assert.ok(farthest(cacheFrame(join(server.folder, 'page.pc2'), 12), truth) < 1e-5, 'the export has other vertices');
-  const glb = await page.evaluate(async () => Array.from(new Uint8Array(await (await window.studio.exported('glb')).arrayBuffer())));
-  const glbPath = join(server.folder, 'page.glb');
-  writeFileSync(glbPath, Uint8Array.from(glb));
+  const exported = await studio.fileFrom('page.pc2', () => window.takingAway.animation('pc2'));
+  assert.ok(farthest(cacheFrame(exported, 12), truth) < 1e-5, 'the export has other vertices');
+  const glbPath = await studio.fileFrom('page.glb', () => window.takingAway.animation('glb'));
   const numFrames = await page.evaluate(() => window.studio.document.numFrames);
   assert.equal(JSON.parse(server.pleat('inspect', glbPath, '--json')).num_frames, numFrames);
 
@@ -211,18 +133,22 @@ try {
     }
   }
 
+  // A link to the character: it can be posed, and there is nothing else.
+  await server.stop();
+  await server.start(port, '--share', modelId);
+  const visitor = await browser.newPage({viewport: {width: 1280, height: 800}});
+  await visitor.goto(server.page);
+  await visitor.waitForFunction(() => window.studio?.viewport.surfaces.edited.mesh.visible);
+  assert.equal(await visitor.evaluate(() => window.studio.models.length + window.studio.takes.length), 2);
+  assert.equal(await visitor.locator('#train').isVisible(), false, 'a visitor could train');
+  const refused = await visitor.evaluate(async (id) => (await fetch('/rpc/ModelService/DeleteModel', {method: 'POST',
+    headers: {'X-Pleat-Studio': '1', 'Content-Type': 'application/json'}, body: JSON.stringify({id})})).status, modelId);
+  assert.equal(refused, 403, 'a visitor could delete the character');
+  if (values.shots) await visitor.screenshot({path: `${values.shots}/shared.png`});
+  await visitor.close();
+
   const foreign = requests.filter((url) => !url.startsWith(server.page) && !/^(blob|data):/.test(url));
   assert.deepEqual(foreign, [], 'the page asks others');
   const unexpected = problems.filter((text) => !/ERR_CONNECTION|net::|WebSocket|Failed to load resource/.test(text));
   assert.deepEqual(unexpected, [], 'the console has errors');
-  console.log('passed');
-} catch (error) {
-  await shot('failure');
-  console.error(problems.join('\n'));
-  console.error(await page.evaluate(() => document.getElementById('messages')?.innerText).catch(() => ''));
-  throw error;
-} finally {
-  await browser.close();
-  await server.stop().catch(() => {});
-  server.remove();
-}
+});

@@ -20,9 +20,11 @@ async function load(path) {
   const {outputFiles} = await esbuild.build({entryPoints: [join(web, 'src', path)], bundle: true, format: 'esm', write: false});
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
 }
-const [quaternion, skeleton, ik, motion, {History}, colors, hierarchy, delta, {fan}] = await Promise.all([
+const [quaternion, skeleton, ik, motion, {History}, {RestSkeleton, symmetryPlane}, colors, hierarchy, delta, {fan},
+  {nextRange, forgetFar}] = await Promise.all([
   'math/quaternion.ts', 'math/skeleton.ts', 'math/inverse_kinematics.ts', 'store/motion.ts', 'store/history.ts',
-  'scene/colors.ts', 'worker/hierarchy.ts', 'worker/delta.ts', 'api/sequence_stream.ts'].map(load));
+  'store/rest_skeleton.ts',  'scene/colors.ts', 'worker/hierarchy.ts', 'worker/delta.ts', 'api/sequence_stream.ts',
+  'store/compressed_take.ts'].map(load));
 
 const near = (a, b, epsilon = 1e-6) => a.forEach((x, i) => assert.ok(Math.abs(x - b[i]) < epsilon, `${a} is not ${b}`));
 const kJoints = [
@@ -88,6 +90,71 @@ test('keys hold a change, blend between each other, and go away again', () => {
   assert.equal(motion.motionFromFile(file, kJoints).frames.length, 11);
 });
 
+test('a key is dragged in time and to another angle, no further than its neighbors', () => {
+  const take = motion.restMotion(kJoints, 21, 30);
+  const turned = (degrees) => ({turn: quaternion.fromDegrees([0, 0, degrees])});
+  let edits = {...motion.kNoEdits, turns: new Map([[3, [0, 10, 20].map((frame) => ({frame, ...turned(frame)}))]])};
+  edits = motion.changeKey(edits, 3, 10, 14, turned(40));
+  assert.deepEqual([...motion.keyedFrames(edits, 3)], [0, 14, 20]);
+  near(quaternion.toDegrees(motion.poseAt(take, edits, 14).rotations[3]), [0, 0, 40], .01);
+  assert.deepEqual([...motion.keyedFrames(motion.changeKey(edits, 3, 14, 99, turned(0)), 3)], [0, 19, 20]);
+  assert.deepEqual([...motion.keyedFrames(motion.changeKey(edits, 3, 0, -5, turned(0)), 3)], [0, 14, 20]);
+  const moved = motion.changeKey({...motion.kNoEdits, moves: [{frame: 2, move: [0, 0, 0]}]}, 0, 2, 5, {move: [1, 2, 3]});
+  near(motion.poseAt(take, moved, 8).root, [1, 3, 3]);
+});
+
+test('a key that eases starts and ends at rest', () => {
+  const take = motion.restMotion(kJoints, 11, 30);
+  let edits = {...motion.kNoEdits, turns: new Map([[3, [0, 10].map((frame) => ({frame, turn: quaternion.fromDegrees([0, 0, 6 * frame])}))]])};
+  const angle = (frame) => quaternion.toDegrees(motion.poseAt(take, edits, frame).rotations[3])[2];
+  edits = motion.toggleEase(edits, 3, 4);
+  near([angle(0), angle(1), angle(5), angle(9), angle(10)], [0, 60 * .028, 30, 60 * .972, 60], 1e-6);
+  assert.deepEqual(motion.editsFromJson(motion.editsToJson(edits)), edits);
+  edits = motion.toggleEase(edits, 3, 9);
+  near([angle(1)], [6], 1e-6);
+});
+
+test('the strength of the folds is an edit, and a motion keeps what it says of it and of its proportions', () => {
+  const file = {schema: 'pleat.motion/1', fps: 24, joints: ['hips'], frames: [{root_translation: [0, 1, 0], rotations: [[1, 0, 0, 0]]}],
+    bone_scales: {leftHand: 2}, detail_strengths: {chest: .5}, vertex_strengths: [0, 1, 2]};
+  const dropped = motion.motionFromFile(file, kJoints);
+  assert.equal(motion.lookWith(dropped, motion.kNoEdits), dropped.look);
+  assert.deepEqual(dropped.look.jointStrengths, [1, .5, 1, 1, 1]);
+  let edits = motion.withStrength(motion.kNoEdits, [3, 4], 0);
+  assert.ok(motion.isEdited(edits));
+  const look = motion.lookWith(dropped, edits);
+  assert.deepEqual(look.jointStrengths, [1, .5, 1, 0, 0]);
+  assert.equal(motion.lookWith(dropped, edits), look, 'the look changes without a change');
+  const written = motion.motionToFile(dropped, edits, kJoints);
+  assert.deepEqual(written.vertex_strengths, [0, 1, 2]);
+  assert.deepEqual(written.bone_scales, {hips: 1, chest: 1, leftUpperArm: 1, leftLowerArm: 1, leftHand: 2});
+  assert.equal(written.detail_strengths.leftHand, 0);
+  assert.deepEqual(motion.editsFromJson(motion.editsToJson(edits)), edits);
+  assert.ok(!motion.isEdited(motion.resetJoint(motion.resetJoint(edits, 3), 4)));
+  const long = skeleton.scaledJoints(kJoints, dropped.look.boneScales);
+  near(long[4].rest, [1, 1.4, .1]);
+  assert.equal(skeleton.scaledJoints(kJoints, []), kJoints);
+});
+
+test('the rest skeleton is moved, mirrored and undone', () => {
+  const joints = [...kJoints, {name: 'rightUpperArm', parent: 1, rest: [-.2, 1.4, 0]},
+    {name: 'rightLowerArm', parent: 5, rest: [-.5, 1.4, 0]}, {name: 'rightHand', parent: 6, rest: [-.75, 1.4, .05]}];
+  near(symmetryPlane(joints).normal, [1, 0, 0]);
+  const moved = new RestSkeleton(joints, 7, () => {});
+  assert.ok(!moved.mirror(4), 'there is nothing to mirror yet');
+  moved.move(4, [.7, 1.3, .1], 'move left hand', 'drag1');
+  assert.ok(!moved.mirror(7), 'the right side was not moved');
+  assert.ok(moved.mirror(3));
+  near(moved.positions[7], [-.7, 1.3, .1]);
+  assert.equal(moved.text, 'leftHand=0.70000,1.30000,0.10000 rightHand=-0.70000,1.30000,0.10000');
+  moved.reset(7);
+  near(moved.positions[7], [-.75, 1.4, .05]);
+  moved.placed.undo();
+  moved.placed.undo();
+  moved.placed.undo();
+  assert.equal(moved.text, '');
+});
+
 test('one drag is one step of undo', () => {
   let changes = 0;
   const history = new History(0, () => ++changes);
@@ -139,4 +206,15 @@ test('differences restore a frame, and a lost one is noticed', () => {
 
 test('polygons become fans', () => {
   assert.deepEqual([...fan(Int32Array.of(4, 3), Int32Array.of(0, 1, 2, 3, 4, 5, 6))], [0, 1, 2, 0, 2, 3, 4, 5, 6]);
+});
+
+test('a compressed sequence is asked for ahead of what is shown, and forgotten far from it', () => {
+  const frames = new Array(100).fill(undefined), some = new Float32Array(3);
+  assert.deepEqual(nextRange(frames, 10, 20), [10, 30]);
+  frames.fill(some, 10, 30);
+  assert.equal(nextRange(frames, 15, 20), null);
+  assert.deepEqual(nextRange(frames, 25, 20), [30, 50]);
+  assert.deepEqual(nextRange(frames, 95, 20), [95, 100]);
+  forgetFar(frames, 29, 5);
+  assert.deepEqual(frames.flatMap((frame, t) => frame ? [t] : []), [25, 26, 27, 28, 29]);
 });

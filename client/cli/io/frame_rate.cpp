@@ -1,6 +1,5 @@
 #include "cli/io/frame_rate.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -40,16 +39,6 @@ std::string FormatFrameRate(FrameRate rate) {
   if (rate.denominator == 1) return absl::StrCat(rate.numerator);
   if (1000 % rate.denominator == 0) return absl::StrFormat("%.9g", rate.fps());
   return absl::StrCat(rate.numerator, "/", rate.denominator);
-}
-
-FrameRate FrameRateFromFps(double fps) {
-  const double ntsc = fps * 1001 / 1000;
-  if (std::abs(fps - std::round(fps)) > 1e-4 && std::abs(ntsc - std::round(ntsc)) < 1e-4) {
-    return {static_cast<int32_t>(std::lround(ntsc)) * 1000, 1001};
-  }
-  const int32_t thousandths = std::max<int32_t>(1, static_cast<int32_t>(std::lround(fps * 1000)));
-  const int32_t divisor = std::gcd(thousandths, 1000);
-  return {thousandths / divisor, 1000 / divisor};
 }
 
 }  // namespace pleat

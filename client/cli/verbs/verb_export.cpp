@@ -80,20 +80,14 @@ absl::StatusOr<int> ParseInfluences(const std::string& text, ExportFormat format
   return UsageError(absl::StrCat("--influences '", text, "': choose all or 1 to ", kMaxInfluences));
 }
 
-absl::Status LoadTrack(const ExportOptions& options, const CharacterModel& model,
-                       const Session& session, CharacterFile* file, DetailStrengths* strengths) {
-  file->frame_rate = model.frame_rate();
-  if (options.motion.empty()) return absl::OkStatus();
+// The character and its motion; what the motion says of the detail is in `strengths`.
+absl::StatusOr<CharacterFile> LoadCharacter(const ExportOptions& options,
+                                            const CharacterModel& model, int influences,
+                                            const Session& session, DetailStrengths* strengths) {
+  if (options.motion.empty()) return MakeCharacterFile(model, {}, influences);
   PLEAT_ASSIGN_OR_RETURN(Motion motion, LoadMotion(options.motion, options.fps, model, session));
   for (const std::string& warning : motion.warnings) {
     *session.err << "warning: " << EscapeControls(warning) << "\n";
-  }
-  for (const double scale : motion.bone_scales) {
-    if (scale == 1) continue;
-    return absl::InvalidArgumentError(
-        absl::StrCat(options.motion,
-                     ": its bone_scales stretch bones, which joints of other programs cannot; "
-                     "write the meshes with 'pleat pose', or take bone_scales out"));
   }
   *strengths = {std::move(motion.detail_strengths), std::move(motion.vertex_strengths)};
   if (!strengths->empty() && (options.num_targets > 0 || options.max_error_mm > 0)) {
@@ -106,9 +100,7 @@ absl::Status LoadTrack(const ExportOptions& options, const CharacterModel& model
     *session.err << "note: the " << motion.track.clip_starts().size()
                  << " clips of the motion become one, since these files know no clips\n";
   }
-  file->track = std::move(motion.track);
-  file->frame_rate = FrameRateFromFps(file->track.fps());
-  return absl::OkStatus();
+  return WithContext(options.motion, MakeCharacterFile(model, motion, influences));
 }
 
 absl::Status AddFolds(const ExportOptions& options,
@@ -201,14 +193,10 @@ absl::Status RunExport(const ExportOptions& options, const Session& session) {
   PLEAT_ASSIGN_OR_RETURN(const std::shared_ptr<const CharacterModel> model,
                          LoadModel(session, options.model));
   ExportResult result;
-  result.file.name = model->name();
-  result.file.topology = model->topology();
-  result.file.appearance = model->parts().appearance;
-  result.file.rig = model->rig();
   DetailStrengths strengths;
-  PLEAT_RETURN_IF_ERROR(LoadTrack(options, *model, session, &result.file, &strengths));
+  PLEAT_ASSIGN_OR_RETURN(result.file,
+                         LoadCharacter(options, *model, influences, session, &strengths));
   result.most_influences = influences;
-  result.file.rig.weights = CutInfluences(model->rig().weights, influences);
   result.cut = MeasureInfluenceCut(model->rig(), result.file.rig.weights, result.file.track);
   ProgressDisplay display(*session.err, ChooseProgressStyle(session), MonotonicSeconds);
   PLEAT_RETURN_IF_ERROR(

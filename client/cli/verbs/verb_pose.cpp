@@ -11,7 +11,6 @@
 #include "cli/exit_code.h"
 #include "cli/io/animation_writer.h"
 #include "cli/io/draco_folder.h"
-#include "cli/io/frame_rate.h"
 #include "cli/io/model_input.h"
 #include "cli/io/motion_edit.h"
 #include "cli/io/output_path.h"
@@ -24,6 +23,7 @@
 #include "pleat/character/pose_evaluator.h"
 #include "pleat/formats/model_file.h"
 #include "pleat/formats/motion_reader.h"
+#include "pleat/mesh/frame_rate.h"
 #include "pleat/stream/frame_encoder.h"
 
 namespace pleat {

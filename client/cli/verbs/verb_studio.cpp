@@ -28,7 +28,7 @@ namespace {
 constexpr int kPollMs = 100;  // how soon Ctrl-C is noticed
 
 struct StudioVerbOptions {
-  std::string input, fps, address = "127.0.0.1:7321";
+  std::string input, fps, shared_model, address = "127.0.0.1:7321";
   bool open = false;
 };
 
@@ -49,7 +49,7 @@ class OwnServer {
     }
   }
 
-  absl::Status Start(const std::string& data_dir, const std::string& page_address) {
+  absl::Status Start(const std::string& data_dir, const StudioVerbOptions& options) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) return ErrnoStatus(errno, "cannot make a pipe");
     output_ = ends[0];
@@ -57,8 +57,12 @@ class OwnServer {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
     const std::string program = ServerProgram();
-    std::vector<std::string> words{program,  "--data-dir", data_dir,      "--listen", "127.0.0.1:0",
-                                   "--http", page_address, "--log-level", "warning"};
+    std::vector<std::string> words{program,         "--data-dir",  data_dir,
+                                   "--listen",      "127.0.0.1:0", "--http",
+                                   options.address, "--log-level", "warning"};
+    if (!options.shared_model.empty()) {
+      words.insert(words.end(), {"--share", options.shared_model});
+    }
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -126,7 +130,7 @@ void OpenBrowser(const std::string& address) {
 
 absl::Status RunStudio(const StudioVerbOptions& options, Session session) {
   OwnServer server;
-  PLEAT_RETURN_IF_ERROR(server.Start(session.DataFolder(), options.address));
+  PLEAT_RETURN_IF_ERROR(server.Start(session.DataFolder(), options));
   if (!options.input.empty()) {
     PLEAT_ASSIGN_OR_RETURN(const MeshSequence sequence,
                            ReadInput(session, options.input, options.fps));
@@ -152,6 +156,8 @@ void AddStudioVerb(CLI::App& app, Session& session) {
   verb->add_option("INPUT", options->input, "an animation that is there when the page opens");
   verb->add_option("--http", options->address, "HOST:PORT of the page; port 0 = any free one")
       ->capture_default_str();
+  verb->add_option("--share", options->shared_model,
+                   "id of a model: the page shows it alone, and nobody can change anything");
   verb->add_flag("--open", options->open, "open the page in the browser of the desktop");
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
   verb->add_option(

@@ -1,17 +1,20 @@
 // Starts the page.
-import {call, request} from './api/calls';
+import {call, request, setToken} from './api/calls';
 import {filesOf, isMotion, readMotion, readTake, sendFiles, type NamedFile} from './api/upload';
-import {isFinal, type Job, type StoredTake} from './api/types';
-import {byId, confirmed, say, sayError} from './panels/dom';
+import {isFinal, type Job, type Sequence, type StoredTake} from './api/types';
+import {ask, byId, confirmed, say, sayError} from './panels/dom';
 import {command, key, listenToKeys, shifted, showHelp, type KeyAction} from './panels/help';
 import {showLibrary} from './panels/library';
+import {askCompression} from './panels/compressing';
 import {askTraining, showWork} from './panels/training';
 import {showWelcome} from './panels/welcome';
 import {ServerState} from './server_state';
 import {motionFromFile} from './store/motion';
 import {Studio} from './studio';
+import {TakingAway} from './taking_away';
 
 const studio = new Studio();
+const takingAway = new TakingAway(studio);
 let dismissed = '';  // the failed job whose card was closed
 let trainedHere = '';  // the job that this page has started last
 let busy = false;
@@ -20,8 +23,10 @@ const server = new ServerState(studio, (job) => {
   if (job.state === 'JOB_STATE_SUCCEEDED' && job.id === trainedHere) {
     say(`${job.name} is trained. Drag a hand.`);
     attempt(() => studio.openModel(job.resultId));
+  } else if (job.state === 'JOB_STATE_SUCCEEDED' && job.compression) {
+    say(`${job.name} is compressed.`);
   } else if (job.state === 'JOB_STATE_FAILED') {
-    say(`Training ${job.name} failed: ${job.error?.message ?? ''}`, 'error');
+    say(`${job.compression ? 'Compressing' : 'Training'} ${job.name} failed: ${job.error?.message ?? ''}`, 'error');
   }
 }, () => studio.refresh());
 
@@ -34,25 +39,30 @@ function attempt(work: () => Promise<unknown> | unknown): void {
 }
 
 studio.listsChanged = () => {
-  showLibrary({takes: studio.takes, models: studio.models, jobs: studio.jobs, takeId: studio.document.takeInfo?.id ?? '', modelId: studio.document.model?.id ?? ''}, {
+  showLibrary({takes: studio.takes, models: studio.models, jobs: studio.jobs, compressed: studio.compressed,
+    takeId: (studio.document.takeInfo ?? studio.document.compressed)?.id ?? '', modelId: studio.document.model?.id ?? ''}, {
     openTake: (id) => attempt(() => studio.openTake(id)),
     openModel: (id) => attempt(() => studio.openModel(id)),
     deleteTake: (take) => attempt(() => remove('SequenceService/DeleteSequence', take.id, `Delete the take ${take.name}?`, 'Models made from it stay, without their motion.')),
     deleteModel: (model) => attempt(() => remove('ModelService/DeleteModel', model.id, `Delete the model ${model.name}?`, 'It cannot be brought back; train the take again to have it.')),
+    openCompressed: (id) => studio.openCompressed(id),
+    deleteCompressed: (take) => attempt(() => remove('CompressedSequenceService/DeleteCompressedSequence', take.id, `Delete the compressed ${take.name}?`, 'It cannot be brought back; compress the take again to have it.')),
+    downloadCompressed: (take) => attempt(() => takingAway.download('CompressedSequenceService/DownloadCompressedSequence', take.id, `${take.name}.plt`)),
+    compress: (take) => attempt(() => compress(take)),
     cancelJob: (job) => attempt(() => server.cancel(job)),
     deleteJob: (job) => attempt(async () => {
       await call('JobService/DeleteJob', {id: job.id});
       await server.refresh();
     }),
-    downloadModel: (model) => attempt(() => studio.download('ModelService/DownloadModel', model.id, `${model.name}.pleat`)),
-    downloadTake: (take) => attempt(() => studio.download('SequenceService/DownloadSequence', take.id, `${take.name}.pseq`)),
+    downloadModel: (model) => attempt(() => takingAway.download('ModelService/DownloadModel', model.id, `${model.name}.pleat`)),
+    downloadTake: (take) => attempt(() => takingAway.download('SequenceService/DownloadSequence', take.id, `${take.name}.pseq`)),
   });
   const job = jobOnStage();
   showWork(job, {cancel: (running) => attempt(() => server.cancel(running)), close: () => {
     dismissed = job?.id ?? '';
     studio.refresh();
   }});
-  showWelcome(!studio.document.takeInfo && !studio.document.model && !busy, studio.takes.length + studio.models.length > 0, {choose, example: () => attempt(example)});
+  showWelcome(!studio.document.takeInfo && !studio.document.compressed && !studio.document.model && !busy, studio.takes.length + studio.models.length > 0, {choose, example: () => attempt(example)});
 };
 // The newest job of the take that is shown, while it runs or when it has failed.
 function jobOnStage(): Job | null {
@@ -67,13 +77,15 @@ function jobOnStage(): Job | null {
 async function remove(method: string, id: string, title: string, text: string): Promise<void> {
   if (!await confirmed(title, text, 'Delete')) return;
   await call(method, {id});
-  if (studio.document.takeInfo?.id === id || studio.document.model?.id === id) studio.closeAll();
+  const {takeInfo, compressed, model} = studio.document;
+  if ([takeInfo?.id, compressed?.id, model?.id].includes(id)) studio.closeAll();
   await server.refresh();
 }
 
 // --- bringing takes and motions -----------------------------------------------------------------
 async function bring(files: NamedFile[]): Promise<void> {
   if (files.length === 0) return;
+  if (studio.isShared) return say('This link shows one character; sign in to bring takes and motions.');
   busy = true;
   studio.refresh();
   try {
@@ -144,10 +156,15 @@ document.addEventListener('drop', (event) => {
 async function train(): Promise<void> {
   const take = studio.document.takeInfo;
   if (!take) return say('Open a take first.');
-  const id = await askTraining(take, studio.takes);
+  const {rest} = studio.document;
+  const id = await askTraining(take, studio.takes, rest && rest.placed.value.size > 0 ? rest : null);
   if (!id) return;
+  if (rest) studio.closeSkeleton();
   trainedHere = id;
   await server.refresh();
+}
+async function compress(take: Sequence): Promise<void> {
+  if (await askCompression(take)) await server.refresh();
 }
 function togglePanel(name: 'library' | 'side'): void {
   const open = document.body.classList.toggle(`no-${name}`) === false;
@@ -170,13 +187,13 @@ const actions: KeyAction[] = [
   key('r', 'R', 'Turn with the gizmo', () => studio.setGizmo('rotate')),
   key('j', 'J', 'Next joint', () => step(1)),
   shifted('j', 'Shift J', 'Joint before', () => step(-1)),
-  key('k', 'K', 'Set a key', () => studio.setKey()),
-  key('delete', 'Delete', 'Remove the key', () => studio.removeKey()),
-  key('z', 'Z', 'Undo', () => studio.undo()),
-  shifted('z', 'Shift Z', 'Redo', () => studio.redo()),
-  command('z', false, 'Ctrl Z', '', () => studio.undo()),
-  command('z', true, 'Ctrl Shift Z', '', () => studio.redo()),
-  command('y', false, 'Ctrl Y', '', () => studio.redo()),
+  key('k', 'K', 'Set a key', () => studio.editing.setKey()),
+  key('delete', 'Delete', 'Remove the key', () => studio.editing.removeKey()),
+  key('z', 'Z', 'Undo', () => studio.editing.undo()),
+  shifted('z', 'Shift Z', 'Redo', () => studio.editing.redo()),
+  command('z', false, 'Ctrl Z', '', () => studio.editing.undo()),
+  command('z', true, 'Ctrl Shift Z', '', () => studio.editing.redo()),
+  command('y', false, 'Ctrl Y', '', () => studio.editing.redo()),
   key('1', '1', 'Show the input', () => studio.toggleView('input')),
   key('2', '2', 'Show skinning alone', () => studio.toggleView('skinned')),
   key('3', '3', 'Show the hybrid', () => studio.toggleView('hybrid')),
@@ -187,32 +204,41 @@ const actions: KeyAction[] = [
   key('b', 'B', 'Show the skeleton', () => studio.set({showBones: !studio.settings.showBones})),
   key('n', 'N', 'Show the names of joints', () => studio.set({showNames: !studio.settings.showNames})),
   key('f', 'F', 'Look at all of it', () => studio.frameView()),
+  key('v', 'V', 'Show the curves of the joint', () => studio.set({showCurves: !studio.settings.showCurves})),
   key('l', 'L', 'Loop', () => studio.set({loop: !studio.settings.loop})),
   key('t', 'T', 'Train the take', () => attempt(train)),
-  key('x', 'X', 'Export', () => attempt(() => studio.exportAnimation())),
+  key('x', 'X', 'Export', () => attempt(() => takingAway.ask())),
   key('[', '[', 'Takes, models and jobs', () => togglePanel('library')),
   key(']', ']', 'Joint and quality', () => togglePanel('side')),
   key('?', '?', 'This list', () => showHelp(actions, studio.about.version)),
 ];
 listenToKeys(actions);
+studio.trainAgain = () => attempt(train);
 byId('help').addEventListener('click', () => showHelp(actions, studio.about.version));
 byId('train').addEventListener('click', () => attempt(train));
-byId('export').addEventListener('click', () => attempt(() => studio.exportAnimation()));
+byId('export').addEventListener('click', () => attempt(() => takingAway.ask()));
 byId('add').addEventListener('click', choose);
+byId('sign-in').addEventListener('click', () => attempt(async () => {
+  const token = await ask('Sign in', 'Token of this server', '');
+  if (!token) return;
+  setToken(token);
+  location.reload();
+}));
 byId('toggle-library').addEventListener('click', () => togglePanel('library'));
 byId('toggle-side').addEventListener('click', () => togglePanel('side'));
 
 // --- the start ------------------------------------------------------------------------------------
 const narrow = matchMedia('(max-width: 860px)').matches;
-if (narrow || !studio.settings.libraryOpen) togglePanel('library');
 if (narrow || !studio.settings.sideOpen) togglePanel('side');
 // For the console and for tests: what the page shows, as numbers.
-Object.assign(window, {studio});
+Object.assign(window, {studio, takingAway});
 const {takeId, modelId} = studio.settings;
 attempt(async () => {
   await server.refresh();
   server.keepLooking();
+  if (narrow || studio.isShared || !studio.settings.libraryOpen) togglePanel('library');
   if (studio.models.some((model) => model.id === modelId)) await studio.openModel(modelId);
+  else if (studio.isShared && studio.models.length > 0) await studio.openModel(studio.models[0]!.id);
   else if (studio.takes.some((take) => take.id === takeId)) await studio.openTake(takeId);
   else studio.refresh();
 });

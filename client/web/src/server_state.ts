@@ -1,5 +1,5 @@
 // The lists of the server, the jobs that are watched, and a server that goes away and comes back.
-import {call, CallError, listenToReach, listJobs, listModels, listSequences, request, setToken, stream} from './api/calls';
+import {call, CallError, listenToReach, listCompressed, listJobs, listModels, listSequences, request, setToken, stream} from './api/calls';
 import {isFinal, type About, type Job} from './api/types';
 import {ask, byId} from './panels/dom';
 import type {Studio} from './studio';
@@ -20,9 +20,9 @@ export class ServerState {
 
   async refresh(): Promise<void> {
     try {
-      const [about, takes, jobs, models] = await Promise.all([
-        request('/studio/about').then((response) => response.json() as Promise<About>), listSequences(), listJobs(), listModels()]);
-      Object.assign(this.studio, {about, takes, jobs, models});
+      const [about, takes, jobs, models, compressed] = await Promise.all([
+        request('/studio/about').then((response) => response.json() as Promise<About>), listSequences(), listJobs(), listModels(), listCompressed()]);
+      Object.assign(this.studio, {about, takes, jobs, models, compressed});
     } catch (error) {
       if (!(error instanceof CallError) || error.code !== 'UNAUTHENTICATED') throw error;
       if (await this.askToken(error.message)) return this.refresh();

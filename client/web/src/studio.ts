@@ -1,21 +1,22 @@
 // The studio as a whole: it joins the document, the server, the views and the panels.
-import {call, request, save} from './api/calls';
+import {currentToken} from './api/calls';
 import {Live} from './api/live';
-import type {About, Job, Model, Sequence} from './api/types';
+import type {About, CompressedSequence, Job, Model, Sequence} from './api/types';
 import {Dragging} from './scene/dragging';
 import {Bones} from './scene/bones';
 import {Viewport, type ViewName} from './scene/viewport';
-import {distancesMm, jointColorLinear, turboLinear} from './scene/surface';
 import {Document} from './store/document';
-import {insertKey, keyedFrames, removeKeys, resetJoint} from './store/motion';
+import {Editing} from './store/editing';
+import {keyedFrames, kPlainLook, strengthOf, type Look} from './store/motion';
 import {Measuring} from './store/measuring';
 import {loadSettings, saveSettings} from './store/settings';
-import {SidePanel, type Coloring} from './panels/side';
-import {askExport} from './panels/exporting';
+import {Colors, type Coloring} from './panels/coloring';
+import {SidePanel} from './panels/side';
+import {SkeletonPanel} from './panels/skeleton';
 import {showLegend} from './panels/legend';
 import {byId, say, sayError} from './panels/dom';
+import {Curves} from './timeline/curves';
 import {Timeline} from './timeline/timeline';
-import {fromDegrees, type Vector3} from './math/quaternion';
 import {readableName, type Joint} from './math/skeleton';
 
 const kLiveViews: readonly ViewName[] = ['skinned', 'hybrid', 'edited'];
@@ -24,25 +25,31 @@ export class Studio {
   readonly settings = loadSettings();
   readonly document = new Document(() => this.changed());
   readonly viewport = new Viewport(byId<HTMLCanvasElement>('canvas'), byId('editor'));
+  readonly editing = new Editing(this.document);
   readonly live: Live;
   readonly measuring: Measuring;
-  about: About = {version: '', formats: ['glb'], maxUploadBytes: 0, maxVertices: 0, maxFrames: 0};
+  about: About = {shared: [], version: '', formats: ['glb'], maxUploadBytes: 0, maxVertices: 0, maxFrames: 0};
   takes: Sequence[] = [];
   models: Model[] = [];
   jobs: Job[] = [];
+  compressed: CompressedSequence[] = [];
   playing = false;
   listsChanged: () => void = () => {};
+  trainAgain: () => void = () => {};  // with the rest skeleton as it was moved
   readonly statistics = {roundTripsMs: [] as number[], decodeUs: [] as number[], bytes: [] as number[], frames: 0};
   private readonly bones: Bones;
   private readonly dragging: Dragging;
   private readonly side: SidePanel;
+  private readonly skeleton: SkeletonPanel;
   private readonly timeline: Timeline;
+  private readonly curves: Curves;
   private readonly shownFrames = new Map<number, number>();  // frame of each number that was asked for
   private readonly frameOf: Partial<Record<ViewName, number>> = {};
   private confidence: Partial<Record<ViewName, number>> = {};
-  private weights: Uint16Array | null = null;  // the strongest bone of each vertex
+  private readonly colors = new Colors();
   private playStart = {time: 0, frame: 0};
   private framed = false;
+  private skinned: Look | null = null;
   private boned: readonly Joint[] = [];  // whose balls are in the view
 
   constructor() {
@@ -76,7 +83,7 @@ export class Studio {
         if (retrySeconds === null) say(`${message} (${code})`, 'error');
         else this.hint(`${message} The last picture stays; next try in ${Math.ceil(retrySeconds)} s.`);
       },
-    });
+    }, this.settings.frames);
     this.measuring = new Measuring(this.live, this.document, () => this.refresh());
     this.bones = new Bones(byId('labels'));
     this.viewport.overlay.add(this.bones.group);
@@ -84,17 +91,26 @@ export class Studio {
     this.side = new SidePanel({
       toggleView: (view) => this.toggleView(view), color: (by) => void this.color(by).catch(sayError),
       bones: (on) => this.set({showBones: on}), names: (on) => this.set({showNames: on}),
-      select: (joint) => this.select(joint), turn: (joint, degrees, gesture) => this.turn(joint, degrees, gesture),
-      key: () => this.setKey(), unkey: () => this.removeKey(), reset: () => this.resetJoint(),
-      gizmo: (mode) => this.setGizmo(mode), seek: (frame) => this.seek(frame), undo: () => this.undo(), redo: () => this.redo(),
+      select: (joint) => this.select(joint), turn: (joint, degrees, gesture) => this.editing.turn(joint, degrees, gesture),
+      key: () => this.editing.setKey(), unkey: () => this.editing.removeKey(), reset: () => this.editing.resetJoint(),
+      strength: (value, all, gesture) => this.editing.setStrength(value, all, gesture),
+      gizmo: (mode) => this.setGizmo(mode), seek: (frame) => this.seek(frame), undo: () => this.editing.undo(), redo: () => this.editing.redo(),
     });
+    this.skeleton = new SkeletonPanel({open: () => this.openSkeleton(), mirror: () => this.mirrorSkeleton(),
+      reset: () => this.document.rest?.reset(this.document.joint), train: () => this.trainAgain(), done: () => this.closeSkeleton()});
     this.timeline = new Timeline({seek: (frame) => this.seek(frame), play: () => this.togglePlay(),
-      loop: (on) => this.set({loop: on}), step: (by) => this.seek(this.document.frame + by)});
+      loop: (on) => this.set({loop: on}), curves: (on) => this.set({showCurves: on}), step: (by) => this.seek(this.document.frame + by)});
+    this.curves = new Curves({change: (edits, label, gesture) => this.document.edits.change(edits, label, gesture),
+      ease: () => this.editing.toggleEase(),
+      seek: (frame) => this.seek(frame)});
     this.viewport.drawn = (left, width, height) =>
       this.bones.placeLabels(this.settings.showNames && this.document.motion !== null, this.viewport.camera, left, width, height);
     this.applyColors();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.applyColors());
   }
+
+  // Whether the page is a link to one character, which nobody can change.
+  get isShared(): boolean { return this.about.shared.length > 0 && currentToken() === ''; }
 
   // --- what is open ---------------------------------------------------------------------------
   async openTake(id: string, report = this.document.report): Promise<void> {
@@ -123,6 +139,25 @@ export class Studio {
       this.refresh();
     });
   }
+  openCompressed(id: string): void {
+    const info = this.compressed.find((other) => other.id === id);
+    if (!info) return;
+    this.stop();
+    this.live.dropAll();
+    this.measuring.stop();
+    this.document.openCompressed(info);
+    this.set({modelId: '', takeId: ''});
+    this.framed = false;
+    const {takes} = this.document, surface = this.viewport.surfaces.input;
+    surface.hide();
+    takes.play(id, info.numFrames, (frame) => {
+      const {shape, frames} = takes.current!;
+      surface.setShape(shape.numVertices, shape.triangles);
+      if (frame === this.document.frame) this.showFrame();
+      this.frameOnce(frames[frame]!);
+    }, sayError);
+    this.setViews(['input']);
+  }
   async openModel(id: string): Promise<void> {
     const model = this.models.find((other) => other.id === id);
     if (!model) return say('This model is not on the server any more.', 'error');
@@ -131,7 +166,8 @@ export class Studio {
     this.live.dropAll();
     this.hint('Fitting the motion of the take…');
     await this.document.openModel(model, this.jobs, this.takes);
-    this.weights = null;
+    this.colors.forget();
+    kLiveViews.forEach((view) => this.viewport.surfaces[view].hide());
     this.set({modelId: id, takeId: this.document.takeInfo?.id ?? ''});
     this.framed = false;
     this.setViews(['edited']);
@@ -147,7 +183,7 @@ export class Studio {
     this.live.dropAll();
     this.measuring.stop();
     this.document.closeModel();
-    this.document.takeInfo = null;
+    this.document.takeInfo = this.document.compressed = null;
     this.document.takes.forget();
     Object.values(this.viewport.surfaces).forEach((surface) => surface.hide());
     this.set({modelId: '', takeId: ''});
@@ -156,13 +192,14 @@ export class Studio {
 
   // --- time -----------------------------------------------------------------------------------
   seek(frame: number): void {
+    if (this.document.rest) return this.hint('The skeleton is moved in its rest frame; Done goes back to the motion.');
     this.document.frame = Math.min(Math.max(0, Math.round(frame) || 0), Math.max(0, this.document.numFrames - 1));
     this.playStart = {time: performance.now(), frame: this.document.frame};
     this.changed();
   }
   togglePlay(): void {
     if (this.playing) return this.stop();
-    if (this.document.numFrames < 2) return;
+    if (this.document.numFrames < 2 || this.document.rest) return;
     if (this.document.frame === this.document.numFrames - 1) this.document.frame = 0;
     this.playing = true;
     this.playStart = {time: performance.now(), frame: this.document.frame};
@@ -194,30 +231,29 @@ export class Studio {
     this.document.joint = Math.min(Math.max(joint, 0), this.document.joints.length - 1);
     this.changed();
   }
-  turn(joint: number, degrees: Vector3, gesture: string): void {
-    const pose = this.document.pose(true);
-    if (!pose) return;
-    const rotations = [...pose.rotations];
-    rotations[joint] = fromDegrees(degrees);
-    this.document.setPose({root: pose.root, rotations}, `turn ${this.jointName(joint)}`, gesture);
-  }
-  setKey(): void { this.edit(insertKey(this.document.edits.value, this.document.frame, this.document.joint), 'set a key'); }
-  removeKey(): void { this.edit(removeKeys(this.document.edits.value, this.document.frame, this.document.joint), 'remove a key'); }
-  resetJoint(): void { this.edit(resetJoint(this.document.edits.value, this.document.joint), `reset ${this.jointName(this.document.joint)}`); }
-  undo(): void { if (!this.document.edits.undo()) say('There is nothing to undo.'); }
-  redo(): void { if (!this.document.edits.redo()) say('There is nothing to redo.'); }
   setGizmo(mode: 'rotate' | 'translate'): void {
     this.dragging.mode = mode;
     this.changed();
   }
-  private edit(edits: Parameters<typeof this.document.edits.change>[0], label: string): void {
-    if (this.document.motion && this.document.joint >= 0) this.document.edits.change(edits, label);
+
+  // --- the rest skeleton ------------------------------------------------------------------------
+  openSkeleton(): void {
+    if (!this.document.takes.current || !this.document.openRest()) return;
+    this.stop();
+    this.setViews(['input']);
+    this.setGizmo('translate');
   }
-  private jointName(joint: number): string { return readableName(this.document.joints[joint]?.name ?? ''); }
+  closeSkeleton(): void {
+    this.document.rest = null;
+    this.setViews(['edited']);
+  }
+  private mirrorSkeleton(): void {
+    if (!this.document.rest?.mirror(this.document.joint)) say('Select a joint of the side that you have moved.');
+  }
 
   // --- views ----------------------------------------------------------------------------------
   get available(): Set<ViewName> {
-    const views = new Set<ViewName>(this.document.takeInfo ? ['input'] : []);
+    const views = new Set<ViewName>(this.document.takeInfo || this.document.compressed ? ['input'] : []);
     if (this.document.model) kLiveViews.forEach((view) => views.add(view));
     return views;
   }
@@ -226,8 +262,7 @@ export class Studio {
     this.viewport.setViews(shown.length ? shown : ['input']);
     this.set({views: this.viewport.shownViews.join(',')});
     for (const view of kLiveViews) {
-      if (this.document.model && shown.includes(view)) this.live.want(view, this.document.model.id, view === 'skinned');
-      else this.live.drop(view);
+      if (!this.document.model || !shown.includes(view)) this.live.drop(view);
     }
     this.changed();
   }
@@ -242,9 +277,7 @@ export class Studio {
     this.viewport.frame(surface.positions.length ? surface.positions : this.document.takes.current?.frames[0] ?? new Float32Array());
   }
   async color(by: Coloring): Promise<void> {
-    if (by === 'weights' && this.document.model && !this.weights) {
-      this.weights = strongestBones(await (await request(`/studio/models/${this.document.model.id}/rig`)).json() as RigFile);
-    }
+    if (by === 'weights' && this.document.model) await this.colors.loadWeights(this.document.model.id);
     this.set({coloring: by});
     Object.keys(this.viewport.surfaces).forEach((view) => this.recolor(view as ViewName));
   }
@@ -253,43 +286,14 @@ export class Studio {
     Object.keys(this.viewport.surfaces).forEach((view) => this.recolor(view as ViewName));
   }
   private recolor(view: ViewName): void {
-    const surface = this.viewport.surfaces[view], by = this.settings.coloring as Coloring;
-    const truth = this.document.takes.current?.frames[this.frameOf[view] ?? this.document.frame];
-    if (by === 'error' && view !== 'input' && truth && truth.length === surface.positions.length) {
-      const distances = distancesMm(surface.positions, truth);
-      surface.color((v) => turboLinear(distances[v]! / this.settings.scaleMm));
-    } else if (by === 'confidence' && view !== 'input' && this.confidence[view] !== undefined) {
-      const color = turboLinear(this.confidence[view]!);
-      surface.color(() => color);
-    } else if (by === 'weights' && this.weights && this.weights.length === surface.numVertices) {
-      surface.color((v) => jointColorLinear(this.weights![v]!));
-    } else {
-      surface.color(null);
-    }
+    const truth = view === 'input' ? undefined : this.document.takes.current?.frames[this.frameOf[view] ?? this.document.frame];
+    this.colors.paint(this.viewport.surfaces[view], this.settings.coloring as Coloring,
+      {truth, confidence: view === 'input' ? undefined : this.confidence[view], scaleMm: this.settings.scaleMm});
     this.viewport.redraw();
   }
 
-  // --- taking away ----------------------------------------------------------------------------
-  async exportAnimation(): Promise<void> {
-    const {model} = this.document;
-    if (!model || !this.document.motion) return;
-    const choice = await askExport(this.about.formats, model.name);
-    if (!choice) return;
-    if (choice.format === 'png') return save(await this.viewport.picture(), `${choice.name}.png`);
-    const motion = JSON.stringify(this.document.motionFile());
-    if (choice.format === 'json') return save(new Blob([motion], {type: 'application/json'}), `${choice.name}.json`);
-    say(`Writing ${choice.name}.${choice.format}…`);
-    save(await this.exported(choice.format, motion), `${choice.name}.${choice.format}`);
-  }
-  async exported(format: string, motion = JSON.stringify(this.document.motionFile())): Promise<Blob> {
-    return (await request(`/studio/models/${this.document.model!.id}/export?format=${format}`,
-      {method: 'POST', headers: {'Content-Type': 'application/json'}, body: motion})).blob();
-  }
-  async download(method: string, id: string, name: string): Promise<void> {
-    const response = await request(`/rpc/${method}`, {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({id})});
-    save(await response.blob(), name);
-  }
-  remove(method: string, id: string): Promise<unknown> { return call(method, {id}); }
+  // Whether every view shows the frame.
+  isShown(frame: number): boolean { return this.viewport.shownViews.every((view) => this.frameOf[view] === frame); }
 
   // --- drawing what has changed ---------------------------------------------------------------
   set(change: Partial<typeof this.settings>): void {
@@ -306,17 +310,25 @@ export class Studio {
     this.refresh();
   }
   private showFrame(): void {
-    const {document} = this, input = document.takes.current?.frames[document.frame];
+    const {document} = this;
+    document.takes.want(document.frame);
+    const input = document.takes.current?.frames[document.frame];
     if (input && this.viewport.shownViews.includes('input')) {
       this.viewport.surfaces.input.show(input);
       this.frameOf.input = document.frame;
       this.viewport.redraw();
     }
-    if (!document.model || !document.motion) return;
+    if (!document.model || !document.motion || document.rest) return;
     for (const view of kLiveViews) {
       if (!this.viewport.shownViews.includes(view)) continue;
+      const look = document.look(view === 'edited');
+      this.live.want(view, document.model.id, view === 'skinned' ? this.skinnedLook(look) : look);
       this.shownFrames.set(this.live.show(view, document.posesFor(view === 'edited')), document.frame);
     }
+  }
+  private skinnedLook(look: Look): Look {
+    if (this.skinned?.boneScales !== look.boneScales) this.skinned = {...kPlainLook, skinnedOnly: true, boneScales: look.boneScales};
+    return this.skinned;
   }
   private frameOnce(positions: Float32Array): void {
     if (this.framed || positions.length === 0) return;
@@ -329,17 +341,24 @@ export class Studio {
     this.bones.group.visible = settings.showBones && document.motion !== null;
     this.viewport.gizmo.getHelper().visible = this.bones.group.visible && joint >= 0;
     this.viewport.gizmo.enabled = this.bones.group.visible;
-    this.bones.mark(joint, new Set([...edits.turns.keys(), ...(edits.moves.length ? [0] : [])]));
+    this.bones.mark(joint, new Set(document.rest ? document.rest.placed.value.keys() : [...edits.turns.keys(), ...(edits.moves.length ? [0] : [])]));
     this.timeline.show({frame: document.frame, numFrames: document.numFrames, numLoaded: document.takes.current?.numLoaded ?? document.numFrames,
-      fps: document.fps, playing: this.playing, loop: settings.loop, keys, otherKeys: allKeys, errorsMm: this.measuring.errorsMm,
+      fps: document.fps, playing: this.playing, loop: settings.loop, showCurves: settings.showCurves, posable: document.motion !== null, keys, otherKeys: allKeys, errorsMm: this.measuring.errorsMm,
       confidences: this.measuring.confidences, scaleMm: settings.scaleMm});
+    this.curves.show({frame: document.frame, numFrames: document.motion ? document.numFrames : 0, joint, jointName: readableName(document.joints[joint]?.name ?? ''), edits},
+      settings.showCurves);
     this.side.show({views: this.viewport.shownViews, available: this.available, coloring: settings.coloring as Coloring,
       showBones: settings.showBones, showNames: settings.showNames, joints: document.joints, joint, pose: document.pose(true),
       change: document.changeOf(joint), keyed: keys.has(document.frame), edited: edits.turns.has(joint) || (joint === 0 && edits.moves.length > 0),
+      strengths: document.motion ? document.joints.map((_, b) => strengthOf(document.motion!, edits, b)) : [],
       gizmo: this.dragging.mode, model: document.model, report: document.report, worst: this.measuring.worst(5), measured: this.measuring.text,
-      undo: document.edits.undoLabel, redo: document.edits.redoLabel});
-    byId('title').textContent = document.model ? `${document.model.name}${document.isEdited ? ' · edited' : ''}` : document.takeInfo?.name ?? '';
+      undo: document.history.undoLabel, redo: document.history.redoLabel});
+    this.skeleton.show(document.model && !this.isShared ? {open: document.rest !== null, why: document.takes.current?.done ? '' : 'The take of this character is not on the server.',
+      frame: document.rest?.frame ?? 0, numPlaced: document.rest?.placed.value.size ?? 0, sided: /^(left|right)/.test(document.joints[joint]?.name ?? ''),
+      placedHere: document.rest?.placed.value.has(joint) ?? false} : null);
+    byId('title').textContent = document.model ? `${document.model.name}${document.isEdited ? ' · edited' : ''}` : (document.takeInfo ?? document.compressed)?.name ?? '';
     byId<HTMLButtonElement>('train').disabled = !document.takeInfo;
+    globalThis.document.body.classList.toggle('shared', this.isShared);
     byId<HTMLButtonElement>('export').disabled = !document.model;
     showLegend(settings.coloring as Coloring, settings.scaleMm, (mm) => this.setScale(mm));
     this.captions();
@@ -362,15 +381,4 @@ export class Studio {
     this.viewport.setColors(style.getPropertyValue('--view').trim(), style.getPropertyValue('--grid').trim());
     this.refresh();
   }
-}
-
-// The strongest bone of each vertex, of a rig file with the weights of bones (docs/formats/rig.md): each
-// list is joint, weight, joint, weight, and so on.
-interface RigFile { weights: {vertices: number[][]} }
-function strongestBones(rig: RigFile): Uint16Array {
-  return Uint16Array.from(rig.weights.vertices, (row) => {
-    let best = 0;
-    for (let i = 2; i < row.length; i += 2) if (row[i + 1]! > row[best + 1]!) best = i;
-    return row[best]!;
-  });
 }

@@ -52,6 +52,7 @@ void Introduce(const ForeignCaller& caller, grpc::ClientContext* context) {
   if (!caller.peer.empty() && IsPlain(caller.peer)) {
     context->AddMetadata(kForeignPeerKey, caller.peer);
   }
+  if (!caller.shared.empty()) context->AddMetadata(kSharedContentKey, caller.shared);
   if (!caller.request_id.empty() && IsPlain(caller.request_id)) {
     context->AddMetadata("x-request-id", caller.request_id);
   }

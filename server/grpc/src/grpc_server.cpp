@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "call_listening.h"
 #include "certificate_check.h"
 #include "channel_gateway.h"
@@ -29,6 +30,7 @@
 #include "health_watch.h"
 #include "pleat/base/status.h"
 #include "pleat/reactors/admission.h"
+#include "pleat/service/shared_service.h"
 #include "revocation_watch.h"
 #include "services.h"
 #include "tls_version.h"
@@ -124,6 +126,9 @@ class GrpcServerImpl final : public GrpcServer {
         return ContextOf(project, of_project);
       };
     }
+    context_.calls->of_share = [this](HandlerContext* all, const std::string& ids) {
+      return ContextOfShare(all, ids);
+    };
     services_.push_back(MakeSequenceService(&context_));
     services_.push_back(MakeJobService(&context_));
     services_.push_back(MakeModelService(&context_));
@@ -189,8 +194,9 @@ class GrpcServerImpl final : public GrpcServer {
   uint64_t num_refused_connections() const override { return listener_->num_refused(); }
 
   CallGateway& gateway() override { return *gateway_; }
-  absl::StatusOr<AdmittedServices> Admit(const std::string& token, const char* rpc) override {
-    PLEAT_ASSIGN_OR_RETURN(HandlerContext* const of, AdmitToken(&context_, token, rpc));
+  absl::StatusOr<AdmittedServices> Admit(const ForeignCaller& caller, const char* rpc) override {
+    PLEAT_ASSIGN_OR_RETURN(HandlerContext* const of,
+                           AdmitToken(&context_, caller.token, caller.shared, rpc));
     return AdmittedServices{.models = of->models, .poses = of->poses};
   }
 
@@ -237,6 +243,22 @@ class GrpcServerImpl final : public GrpcServer {
     return context.get();
   }
 
+  // Shares come from flags of this process alone, so there are few.
+  HandlerContext* ContextOfShare(HandlerContext* all, const std::string& ids) {
+    std::lock_guard lock(contexts_mutex_);
+    Share& share = shares_[{all, ids}];
+    if (share.context == nullptr) {
+      share.service = MakeSharedService({.sequences = all->sequences,
+                                         .jobs = all->jobs,
+                                         .models = all->models,
+                                         .poses = all->poses},
+                                        absl::StrSplit(ids, ','));
+      share.context = std::make_unique<HandlerContext>(*all);
+      SetServices(share.service.get(), share.context.get());
+    }
+    return share.context.get();
+  }
+
   // The share of gRPC is taken for as long as the server lives.
   absl::Status LimitMessages(MemoryBudget* memory, grpc::ServerBuilder* builder) {
     uint64_t bytes = kMaxMessageBytes;
@@ -271,6 +293,11 @@ class GrpcServerImpl final : public GrpcServer {
   HandlerContext context_;
   std::mutex contexts_mutex_;
   std::map<std::string, std::unique_ptr<HandlerContext>> contexts_;  // guarded by contexts_mutex_
+  struct Share {
+    std::unique_ptr<CharacterService> service;
+    std::unique_ptr<HandlerContext> context;
+  };
+  std::map<std::pair<HandlerContext*, std::string>, Share> shares_;  // guarded by contexts_mutex_
   std::optional<Executor> own_pose_executor_;
   Executor storage_executor_, transfer_executor_;
   std::vector<std::unique_ptr<grpc::Service>> services_;

@@ -19,19 +19,19 @@ namespace pleat {
 struct ModelRoutes {
   CallGateway* gateway = nullptr;
   // GrpcServer::Admit.
-  std::function<absl::StatusOr<AdmittedServices>(const std::string& token, const char* rpc)> admit;
+  std::function<absl::StatusOr<AdmittedServices>(const ForeignCaller& caller, const char* rpc)>
+      admit;
   UploadFolders* uploads = nullptr;
   MemoryBudget* memory = nullptr;  // may be null
   MeshLimits limits{};
 
   // GET  /studio/models/ID/rig                      the rig as JSON (docs/formats/rig.md)
+  // GET  /studio/models/ID/page                     the character for the shader of the page
+  //                                                 (docs/formats/page_character.md)
   // POST /studio/models/ID/motion?sequence=ID       the motion of a stored take, fitted as training
   //                                                 does; or ?upload=ID, of a file that was sent
   // POST /studio/models/ID/export?format=glb&save=N the frames of the motion in the body
   HttpResponse Answer(const RequestTarget& target, const HttpRequest& request) const;
 };
-
-// The formats that Answer exports, as a page offers them: {"glb", "abc", ...}.
-const std::vector<std::string>& ExportFormats();
 
 }  // namespace pleat

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "model_export.h"
 #include "model_routes.h"
 #include "page_routes.h"
 #include "pleat/base/limit_refusal.h"
@@ -18,6 +19,7 @@
 #include "request_guard.h"
 #include "request_target.h"
 #include "rpc_routes.h"
+#include "shared_gateway.h"
 #include "take_reader.h"
 #include "upload_folders.h"
 
@@ -41,14 +43,16 @@ class Studio final : public HttpHandler {
  public:
   Studio(const StudioOptions& options, GrpcServer* server)
       : options_(options),
-        gateway_(&server->gateway()),
+        shared_gateway_(&server->gateway(), absl::StrJoin(options.shared, ",")),
         uploads_(options.scratch_dir,
                  {.max_files = static_cast<int>(options.limits.max_frames),
                   .max_bytes = static_cast<uint64_t>(options.limits.max_upload_bytes)},
                  MonotonicSeconds),
         models_{.gateway = gateway_,
-                .admit = [server](const std::string& token,
-                                  const char* rpc) { return server->Admit(token, rpc); },
+                .admit =
+                    [this, server](const ForeignCaller& caller, const char* rpc) {
+                      return server->Admit(shared_gateway_.Restricted(caller), rpc);
+                    },
                 .uploads = &uploads_,
                 .memory = options.memory,
                 .limits = FileLimits(options.limits)} {}
@@ -178,6 +182,7 @@ class Studio final : public HttpHandler {
   HttpResponse About() const {
     return JsonResponse(nlohmann::json{{"version", options_.version},
                                        {"formats", ExportFormats()},
+                                       {"shared", options_.shared},
                                        {"maxUploadBytes", options_.limits.max_upload_bytes},
                                        {"maxVertices", options_.limits.max_vertices},
                                        {"maxFrames", options_.limits.max_frames}}
@@ -198,7 +203,8 @@ class Studio final : public HttpHandler {
   }
 
   const StudioOptions options_;
-  CallGateway* const gateway_;
+  SharedGateway shared_gateway_;
+  CallGateway* const gateway_ = &shared_gateway_;
   UploadFolders uploads_;
   const ModelRoutes models_;
   std::vector<std::string> hosts_;

@@ -44,6 +44,22 @@ constexpr RpcRule kRules[] = {
     {"LiveSession", Scope::kPose, true},
 };
 
+// The context of the token's project.
+absl::StatusOr<HandlerContext*> AdmitToProject(HandlerContext* context,
+                                               const std::string& token_text, const char* rpc) {
+  ServerCalls& calls = *context->calls;
+  if (calls.tokens == nullptr || !calls.tokens->required()) return context;
+  const RpcRule* rule = FindRpcRule(rpc);
+  if (rule == nullptr) return absl::InternalError(absl::StrCat("nobody says who may call ", rpc));
+  PLEAT_ASSIGN_OR_RETURN(const Token token, calls.tokens->Authenticate(token_text));
+  if (!token.scopes.Has(rule->scope)) {
+    return absl::PermissionDeniedError(absl::StrCat("the token '", token.name, "' allows ",
+                                                    ScopesText(token.scopes), "; ", rpc, " needs ",
+                                                    ScopeName(rule->scope)));
+  }
+  return calls.of_project ? calls.of_project(token.project) : context;
+}
+
 }  // namespace
 
 const RpcRule* FindRpcRule(std::string_view rpc) {
@@ -64,24 +80,20 @@ std::string ShownToken(const grpc::ServerContextBase& call) {
 }
 
 absl::StatusOr<HandlerContext*> AdmitToken(HandlerContext* context, const std::string& token_text,
-                                           const char* rpc) {
-  ServerCalls& calls = *context->calls;
-  if (calls.tokens == nullptr || !calls.tokens->required()) return context;
-  const RpcRule* rule = FindRpcRule(rpc);
-  if (rule == nullptr) return absl::InternalError(absl::StrCat("nobody says who may call ", rpc));
-  PLEAT_ASSIGN_OR_RETURN(const Token token, calls.tokens->Authenticate(token_text));
-  if (!token.scopes.Has(rule->scope)) {
-    return absl::PermissionDeniedError(absl::StrCat("the token '", token.name, "' allows ",
-                                                    ScopesText(token.scopes), "; ", rpc, " needs ",
-                                                    ScopeName(rule->scope)));
+                                           const std::string& shared, const char* rpc) {
+  const ServerCalls& calls = *context->calls;
+  const bool may_show_token = calls.tokens != nullptr && calls.tokens->required();
+  if (shared.empty() || (may_show_token && !token_text.empty())) {
+    return AdmitToProject(context, token_text, rpc);
   }
-  return calls.of_project ? calls.of_project(token.project) : context;
+  if (!calls.of_share) return absl::InternalError("this server shares nothing");
+  return calls.of_share(context, shared);
 }
 
 absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::ServerContextBase& call,
                                       const char* rpc) {
   PLEAT_ASSIGN_OR_RETURN(HandlerContext* const admitted,
-                         AdmitToken(context, ShownToken(call), rpc));
+                         AdmitToken(context, ShownToken(call), SharedContentOf(call), rpc));
   context->calls->running_calls.NoteProject(call, admitted->project);
   return admitted;
 }

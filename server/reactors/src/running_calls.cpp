@@ -1,5 +1,6 @@
 #include "pleat/reactors/running_calls.h"
 
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -16,14 +17,23 @@ std::string HostOfPeer(const std::string& peer) {
                                                                 : peer;
 }
 
+// What a call of this process says with a key of its metadata; nothing where it says nothing, or
+// comes from elsewhere.
+std::optional<std::string> SaidHere(const grpc::ServerContextBase& call, const char* key) {
+  if (!call.peer().starts_with("inproc")) return std::nullopt;
+  const auto said = call.client_metadata().find(key);
+  if (said == call.client_metadata().end()) return std::nullopt;
+  return std::string(said->second.data(), said->second.size());
+}
+
 }  // namespace
 
 std::string PeerOf(const grpc::ServerContextBase& call) {
-  std::string peer = call.peer();
-  if (!peer.starts_with("inproc")) return peer;
-  const auto said = call.client_metadata().find(kForeignPeerKey);
-  if (said == call.client_metadata().end()) return peer;
-  return std::string(said->second.data(), said->second.size());
+  return SaidHere(call, kForeignPeerKey).value_or(call.peer());
+}
+
+std::string SharedContentOf(const grpc::ServerContextBase& call) {
+  return SaidHere(call, kSharedContentKey).value_or("");
 }
 
 CallOrigin OriginOf(const grpc::ServerContextBase& call) {

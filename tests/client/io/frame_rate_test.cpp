@@ -36,12 +36,5 @@ TEST(FrameRate, RefusesTheRest) {
   }
 }
 
-TEST(FrameRate, RecognizesTheFractionsOfVideo) {
-  EXPECT_EQ(FrameRateFromFps(30), (FrameRate{30, 1}));
-  EXPECT_EQ(FrameRateFromFps(30000 / 1001.0), (FrameRate{30000, 1001}));
-  EXPECT_EQ(FrameRateFromFps(24000 / 1001.0), (FrameRate{24000, 1001}));
-  EXPECT_EQ(FrameRateFromFps(12.5), (FrameRate{25, 2}));
-}
-
 }  // namespace
 }  // namespace pleat

@@ -1,3 +1,5 @@
+#include <set>
+
 #include "server/http/studio_fixture.h"
 #include "support/token_files.h"
 
@@ -17,6 +19,58 @@ TEST_F(StudioServerTest, AForeignPageCannotDriveIt) {
   EXPECT_EQ(ask("/rpc/ModelService/ListModels", {"X-Pleat-Studio: 1", "Host: evil.example"}), 403);
   EXPECT_EQ(ask("/rpc/ModelService/ListModels", {"X-Pleat-Studio: 1"}), 200);
   EXPECT_EQ(HttpClient::StatusOf(HttpClient::Ask(studio_->address(), "GET", "/")), 200);
+}
+
+// A page beside the fixture's own that shares some content with whoever has no token.
+class SharedPage {
+ public:
+  SharedPage(RunningService* running, std::set<std::string> ids)
+      : studio_(StudioServer::Start({.listen = "127.0.0.1:0",
+                                     .scratch_dir = running->data_dir() + "/shared-uploads",
+                                     .version = "test",
+                                     .shared = std::move(ids)},
+                                    &running->server())
+                    .value()) {}
+  std::string Ask(const std::string& method, const std::string& target, const std::string& body,
+                  const std::string& token = "") {
+    std::vector<std::string> headers = {"X-Pleat-Studio: 1"};
+    if (!token.empty()) headers.push_back("Authorization: Bearer " + token);
+    return HttpClient::Ask(studio_->address(), method, target, headers, body);
+  }
+  int Status(const std::string& rpc, const std::string& body, const std::string& token = "") {
+    return HttpClient::StatusOf(Ask("POST", "/rpc/" + rpc, body, token));
+  }
+
+ private:
+  const std::unique_ptr<StudioServer> studio_;
+};
+
+TEST_F(StudioServerTest, ALinkShowsOneCharacterAndChangesNothing) {
+  const std::string other = UploadTube(4)["sequence"]["id"];
+  const std::string take = UploadTube(5)["sequence"]["id"];
+  const std::string model = running_.TrainModel();
+  SharedPage page(&running_, {model, take});
+  const nlohmann::json about =
+      nlohmann::json::parse(HttpClient::BodyOf(page.Ask("GET", "/studio/about", "")));
+  EXPECT_EQ(about["shared"].size(), 2u);
+  const nlohmann::json takes = nlohmann::json::parse(
+      HttpClient::BodyOf(page.Ask("POST", "/rpc/SequenceService/ListSequences", "{}")));
+  ASSERT_EQ(takes["sequences"].size(), 1u);
+  EXPECT_EQ(takes["sequences"][0]["id"], take);
+  const auto id = [](const std::string& of) { return nlohmann::json{{"id", of}}.dump(); };
+  EXPECT_EQ(page.Status("ModelService/GetModel", id(model)), 200);
+  EXPECT_EQ(page.Status("SequenceService/GetSequence", id(other)), 404);
+  EXPECT_EQ(page.Status("SequenceService/DownloadSequence", id(other)), 404);
+  EXPECT_EQ(page.Status("ModelService/DeleteModel", id(model)), 403);
+  EXPECT_EQ(page.Status("JobService/CreateTrainingJob", R"({"sequenceIds":[")" + take + ""]
+}"),
+            403);
+EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/uploads", "")), 403);
+EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/example", "")), 403);
+EXPECT_EQ(HttpClient::StatusOf(page.Ask("GET", "/studio/models/" + model + "/page", "")), 200);
+// No token is known here, so none opens more.
+EXPECT_EQ(page.Status("ModelService/DeleteModel", id(model), "pleat_made_up"), 403);
+EXPECT_EQ(page.Status("SequenceService/GetSequence", id(other), "pleat_made_up"), 404);
 }
 
 // The same with tokens.
@@ -49,6 +103,14 @@ TEST_F(StudioTokensTest, TokensAreThoseOfTheServer) {
   EXPECT_EQ(Status("POST", "/studio/uploads", tokens().reader), 403);
   EXPECT_EQ(Status("POST", "/studio/uploads", tokens().trainer), 200);
   EXPECT_EQ(HttpClient::StatusOf(Ask("GET", "/")), 200);  // the page itself is no secret
+}
+
+TEST_F(StudioTokensTest, ALinkNeedsNoTokenAndATokenShowsMore) {
+  SharedPage page(&running_, {std::string(64, 'a')});
+  EXPECT_EQ(page.Status("ModelService/ListModels", "{}"), 200);
+  EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/uploads", "")), 403);
+  EXPECT_EQ(page.Status("ModelService/ListModels", "{}", "wrong"), 401);
+  EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/uploads", "", tokens().trainer)), 200);
 }
 
 }  // namespace

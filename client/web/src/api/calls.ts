@@ -1,5 +1,5 @@
 // Calls of the server: JSON in, JSON out. Each shows the marker that foreign pages cannot send.
-import type {Job, Model, Sequence} from './types';
+import type {CompressedSequence, Job, Model, Sequence} from './types';
 
 export class CallError extends Error {
   constructor(readonly code: string, message: string) { super(message); }
@@ -80,6 +80,7 @@ async function listAll<T>(method: string, key: string): Promise<T[]> {
   }
 }
 export const listSequences = (): Promise<Sequence[]> => listAll('SequenceService/ListSequences', 'sequences');
+export const listCompressed = (): Promise<CompressedSequence[]> => listAll('CompressedSequenceService/ListCompressedSequences', 'compressedSequences');
 export const listJobs = (): Promise<Job[]> => listAll('JobService/ListJobs', 'jobs');
 export const listModels = (): Promise<Model[]> => listAll('ModelService/ListModels', 'models');
 

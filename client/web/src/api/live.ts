@@ -1,7 +1,8 @@
 // The live sessions of the page: which views have one, what they were asked for last, and how soon they
 // answered. A session that is lost is opened again, later each time it fails.
 import type {Pose} from '../math/skeleton';
-import type {FrameArrived, FromWorker, SessionReady, ToWorker} from '../worker/messages';
+import type {Look} from '../store/motion';
+import type {FrameArrived, FramesChoice, FromWorker, SessionReady, ToWorker} from '../worker/messages';
 import {currentToken} from './calls';
 
 export interface LiveEvents {
@@ -11,7 +12,7 @@ export interface LiveEvents {
   lost(view: string, code: string, message: string, retrySeconds: number | null): void;
 }
 interface Open {
-  view: string; modelId: string; skinnedOnly: boolean; session: number; ready: boolean; last: Pose[] | null;
+  view: string; modelId: string; look: Look; started: Look; session: number; ready: boolean; last: Pose[] | null;
   asked: Map<number, number>; failures: number; timer: number;
 }
 const kFinal = new Set(['NOT_FOUND', 'PERMISSION_DENIED', 'INVALID_ARGUMENT', 'UNAUTHENTICATED', 'UNIMPLEMENTED']);
@@ -23,17 +24,28 @@ export class Live {
   private nextSession = 1;
   private nextNumber = 1;
 
-  constructor(private readonly events: LiveEvents) {
+  constructor(private readonly events: LiveEvents, private readonly frames: FramesChoice) {
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => this.take(event.data);
   }
 
-  // Opens a session for a view unless it has the same one already.
-  want(view: string, modelId: string, skinnedOnly: boolean): void {
+  // Opens a session for a view unless it has the same one already. A look that changes while its session
+  // opens waits for that, so that a slider which is dragged opens no more than one at a time.
+  want(view: string, modelId: string, look: Look): void {
     const old = this.open.get(view);
-    if (old?.modelId === modelId && old.skinnedOnly === skinnedOnly) return;
+    if (old?.modelId === modelId) {
+      if (old.look === look) return;
+      old.look = look;
+      if (old.ready || old.timer) this.restart(old);
+      return;
+    }
     this.drop(view);
-    const entry: Open = {view, modelId, skinnedOnly, session: 0, ready: false, last: null, asked: new Map(), failures: 0, timer: 0};
+    const entry: Open = {view, modelId, look, started: look, session: 0, ready: false, last: null, asked: new Map(), failures: 0, timer: 0};
     this.open.set(view, entry);
+    this.start(entry);
+  }
+  private restart(entry: Open): void {
+    clearTimeout(entry.timer);
+    this.post({kind: 'close', session: entry.session});
     this.start(entry);
   }
   drop(view: string): void {
@@ -69,9 +81,10 @@ export class Live {
     entry.timer = 0;
     entry.session = this.nextSession++;
     entry.ready = false;
+    entry.started = entry.look;
     entry.asked.clear();
     const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/live`;
-    this.post({kind: 'open', session: entry.session, modelId: entry.modelId, skinnedOnly: entry.skinnedOnly,
+    this.post({kind: 'open', session: entry.session, modelId: entry.modelId, look: entry.look, frames: this.frames,
       token: currentToken(), url, maxInFlight: kMaxInFlight});
     if (entry.last) this.show(entry.view, entry.last);
   }
@@ -82,6 +95,7 @@ export class Live {
     if (message.kind === 'ready') {
       entry.ready = true;
       entry.failures = 0;
+      if (entry.started !== entry.look) return this.restart(entry);
       this.events.ready(entry.view, message);
     } else if (message.kind === 'frame') {
       const asked = entry.asked.get(message.number) ?? performance.now();

@@ -4,6 +4,7 @@ export interface Sequence {
   id: string; name: string; numFrames: number; numVertices: number; numFaces: number;
   frameRate: Rate; sizeBytes: string; created?: string;
 }
+export interface CompressedSequence extends Sequence { record?: {maxErrorMm: number; kgPercent: number; bpvf: number; sequenceId: string} }
 export interface Note { severity: 'note' | 'warning'; kind: string; text: string; frame?: number }
 export interface StoredTake {
   sequence: Sequence; notes: Note[]; faults: string[]; closed: boolean; numComponents: number; diagonalM: number;
@@ -29,11 +30,13 @@ export interface Model {
     worstFrames: {clip: number; frame: number; meanPercent: number}[]; jointFitPercent: number[];
   };
 }
-export interface About { version: string; formats: string[]; maxUploadBytes: number; maxVertices: number; maxFrames: number }
+// shared: the ids of what callers without a token see, or nothing.
+export interface About { shared: string[]; version: string; formats: string[]; maxUploadBytes: number; maxVertices: number; maxFrames: number }
 // docs/formats/motion.md
 export interface MotionFile {
   schema: 'pleat.motion/1'; fps: number; joints: string[];
   frames: {root_translation: number[]; rotations: number[][]}[]; clip_starts?: number[];
+  bone_scales?: Record<string, number>; detail_strengths?: Record<string, number>; vertex_strengths?: number[];
 }
 
 export const fpsOf = (rate: Rate): number => rate.numerator / rate.denominator;

@@ -1,6 +1,6 @@
 // Poses and forward kinematics, as lib/skeleton has them: bone b ends in joint b and turns about the
 // parent of b; rotations are relative to the bone before, in the axes of the rest pose.
-import {add, kIdentity, multiply, rotate, subtract, type Quaternion, type Vector3} from './quaternion';
+import {add, kIdentity, multiply, rotate, scale, subtract, type Quaternion, type Vector3} from './quaternion';
 
 export interface Joint { name: string; parent: number; rest: Vector3 }
 export interface Pose { root: Vector3; rotations: readonly Quaternion[] }
@@ -18,6 +18,15 @@ export function placeJoints(joints: readonly Joint[], pose: Pose): PlacedPose {
     positions[b] = add(positions[parent]!, rotate(turns[b]!, subtract(joints[b]!.rest, joints[parent]!.rest)));
   }
   return {positions, turns};
+}
+
+// The skeleton with other lengths of bones. factors: one for each joint, or none.
+export function scaledJoints(joints: readonly Joint[], factors: readonly number[]): readonly Joint[] {
+  if (factors.length === 0) return joints;
+  const scaled: Joint[] = [];
+  joints.forEach((joint, b) => scaled.push(joint.parent < 0 ? joint : {...joint,
+    rest: add(scaled[joint.parent]!.rest, scale(subtract(joint.rest, joints[joint.parent]!.rest), factors[b]!))}));
+  return scaled;
 }
 
 export function childrenOf(joints: readonly Joint[], joint: number): number[] {

@@ -1,7 +1,7 @@
 // The scale of the colors, with an end that can be typed.
 import {turbo} from '../scene/colors';
 import {byId, element} from './dom';
-import type {Coloring} from './side';
+import type {Coloring} from './coloring';
 
 let shown = '';
 export function showLegend(coloring: Coloring, scaleMm: number, setScale: (mm: number) => void): void {

@@ -1,12 +1,13 @@
 // Takes, models and jobs of the server, and what can be done with each.
-import type {Job, Model, Sequence} from '../api/types';
+import type {CompressedSequence, Job, Model, Sequence} from '../api/types';
 import {fpsOf, isFinal} from '../api/types';
 import {byId, bytesText, durationText, element} from './dom';
 
-export interface LibraryState { takes: Sequence[]; models: Model[]; jobs: Job[]; takeId: string; modelId: string }
+export interface LibraryState { takes: Sequence[]; models: Model[]; jobs: Job[]; compressed: CompressedSequence[]; takeId: string; modelId: string }
 export interface LibraryActions {
   openTake(id: string): void; openModel(id: string): void; deleteTake(take: Sequence): void; deleteModel(model: Model): void;
   cancelJob(job: Job): void; deleteJob(job: Job): void; downloadModel(model: Model): void; downloadTake(take: Sequence): void;
+  openCompressed(id: string): void; deleteCompressed(take: CompressedSequence): void; downloadCompressed(take: CompressedSequence): void; compress(take: Sequence): void;
 }
 
 const kStates: Record<string, string> = {
@@ -46,8 +47,13 @@ export function showLibrary(state: LibraryState, actions: LibraryActions): void 
   byId('takes').replaceChildren(...(state.takes.length ? newestFirst(state.takes).map((take) => row(
     take.name, `${take.numFrames} frames · ${take.numVertices.toLocaleString('en')} vertices · ${Math.round(fpsOf(take.frameRate))} fps`,
     take.id === state.takeId, () => actions.openTake(take.id),
-    [['↓', `Download (${bytesText(Number(take.sizeBytes))})`, () => actions.downloadTake(take)], ['×', 'Delete', () => actions.deleteTake(take)]]))
+    [['⇣', 'Compress', () => actions.compress(take)], ['↓', `Download (${bytesText(Number(take.sizeBytes))})`, () => actions.downloadTake(take)], ['×', 'Delete', () => actions.deleteTake(take)]]))
     : [none('Drop files anywhere.')]));
+  byId('compressed-section').hidden = state.compressed.length === 0;
+  byId('compressed').replaceChildren(...newestFirst(state.compressed).map((take) => row(
+    take.name, `${take.numFrames} frames · ${bytesText(Number(take.sizeBytes))}${take.record ? ` · within ${take.record.maxErrorMm.toFixed(2)} mm` : ''}`,
+    take.id === state.takeId, () => actions.openCompressed(take.id),
+    [['↓', 'Download', () => actions.downloadCompressed(take)], ['×', 'Delete', () => actions.deleteCompressed(take)]])));
   byId('models').replaceChildren(...(state.models.length ? newestFirst(state.models).map((model) => row(
     model.name, model.record.reconstruction ? `error ${model.record.reconstruction.meanMm.toFixed(2)} mm · ${model.record.learner}` : model.record.learner,
     model.id === state.modelId, () => actions.openModel(model.id),
@@ -55,7 +61,7 @@ export function showLibrary(state: LibraryState, actions: LibraryActions): void 
     : [none('Train a take to get one.')]));
   byId('jobs').replaceChildren(...(state.jobs.length ? newestFirst(state.jobs).slice(0, 30).map((job) => {
     const bar = job.state === 'JOB_STATE_RUNNING' ? element('progress', {max: 1, value: job.fraction, 'aria-label': `Progress of ${job.name}`}) : null;
-    const open = job.resultId && job.training ? (): void => actions.openModel(job.resultId) : null;
+    const open = job.resultId ? (): void => job.training ? actions.openModel(job.resultId) : actions.openCompressed(job.resultId) : null;
     return row(job.name, jobFacts(job), false, open,
       [isFinal(job.state) ? ['×', 'Forget', () => actions.deleteJob(job)] : ['■', 'Cancel', () => actions.cancelJob(job)]], bar);
   }) : [none('None yet.')]));

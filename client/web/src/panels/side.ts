@@ -2,25 +2,48 @@
 import type {Model, StoredTake} from '../api/types';
 import {toDegrees, type Vector3} from '../math/quaternion';
 import {readableName, type Joint, type Pose} from '../math/skeleton';
+import {kMaxStrength} from '../store/motion';
 import {kViewNames, type ViewName} from '../scene/viewport';
+import type {Coloring} from './coloring';
 import {byId, element} from './dom';
 
-export type Coloring = 'none' | 'error' | 'confidence' | 'weights';
 export interface SideState {
   views: readonly ViewName[]; available: ReadonlySet<ViewName>; coloring: Coloring; showBones: boolean; showNames: boolean;
   joints: readonly Joint[]; joint: number; pose: Pose | null; change: Vector3; keyed: boolean; edited: boolean; gizmo: 'rotate' | 'translate';
+  strengths: readonly number[];  // of the learned detail, by joint
   model: Model | null; report: StoredTake | null; worst: readonly {frame: number; mm: number}[]; measured: string;
   undo: string | undefined; redo: string | undefined;
 }
 export interface SideActions {
   toggleView(view: ViewName): void; color(by: Coloring): void; bones(on: boolean): void; names(on: boolean): void;
   select(joint: number): void; turn(joint: number, degrees: Vector3, gesture: string): void; key(): void; unkey(): void; reset(): void;
-  gizmo(mode: 'rotate' | 'translate'): void; seek(frame: number): void; undo(): void; redo(): void;
+  strength(value: number, all: boolean, gesture: string): void; gizmo(mode: 'rotate' | 'translate'): void; seek(frame: number): void; undo(): void; redo(): void;
 }
 
 const kViewTitles: Record<ViewName, string> = {input: 'Input', skinned: 'Skinned', hybrid: 'Hybrid', edited: 'Edited'};
 const button = (text: string, act: () => void, more: Record<string, string | boolean> = {}): HTMLButtonElement =>
   element('button', {type: 'button', click: act, ...more}, text);
+
+// A slider of the strength of the folds, 0 (skinning alone) to twice what was learned.
+class StrengthRow {
+  readonly row: HTMLElement;
+  private readonly slider: HTMLInputElement;
+  private readonly text = element('output', {class: 'soft'});
+  private gesture = 0;
+
+  constructor(label: string, id: string, set: (value: number, gesture: string) => void) {
+    this.slider = element('input', {type: 'range', id, min: 0, max: kMaxStrength, step: .05});
+    this.slider.addEventListener('pointerdown', () => { ++this.gesture; });
+    this.slider.addEventListener('input', () => set(Number(this.slider.value), `${id}${this.gesture}`));
+    this.row = element('div', {class: 'row'}, element('label', {for: id}, label), this.slider, this.text);
+  }
+  // strength: undefined where joints have different ones.
+  show(strength: number | undefined, enabled = true): void {
+    this.slider.disabled = !enabled;
+    if (document.activeElement !== this.slider && strength !== undefined) this.slider.value = String(strength);
+    this.text.textContent = strength === undefined ? enabled ? 'mixed' : '–' : `${Math.round(100 * strength)} %`;
+  }
+}
 
 // Elements are kept while they are used, so that a slider that is dragged is not replaced.
 export class SidePanel {
@@ -29,6 +52,9 @@ export class SidePanel {
   private readonly quality = element('section');
   private readonly angles: {slider: HTMLInputElement; number: HTMLInputElement}[] = [];
   private readonly jointSelect = element('select', {id: 'joint', 'aria-label': 'Joint'});
+  private readonly folds = element('section');
+  private readonly foldsOfAll: StrengthRow;
+  private readonly foldsOfJoint: StrengthRow;
   private readonly jointButtons = element('div', {class: 'buttons'});
   private readonly place = element('p', {class: 'soft', id: 'place'});
   private joints: readonly Joint[] = [];
@@ -54,12 +80,19 @@ export class SidePanel {
     });
     this.jointSelect.addEventListener('change', () => actions.select(Number(this.jointSelect.value)));
     this.joint.append(element('h2', {}, 'Joint'), this.jointSelect, element('div', {class: 'angles'}, ...rows), this.place, this.jointButtons);
-    byId('side').append(this.views, this.joint, this.quality);
+    this.foldsOfAll = new StrengthRow('everywhere', 'folds-all', (value, gesture) => actions.strength(value, true, gesture));
+    this.foldsOfJoint = new StrengthRow('at the joint', 'folds-joint', (value, gesture) => actions.strength(value, false, gesture));
+    this.folds.append(element('h2', {}, 'Folds'), this.foldsOfAll.row, this.foldsOfJoint.row);
+    byId('side').append(this.views, this.joint, this.folds, this.quality);
   }
 
   show(state: SideState): void {
     this.showViews(state);
-    this.joint.hidden = state.joints.length === 0;
+    this.joint.hidden = this.folds.hidden = state.joints.length === 0;
+    const strengths = state.strengths.slice(1);  // that of the root is not used
+    const all = strengths.every((strength) => strength === strengths[0]) ? strengths[0] : undefined;
+    this.foldsOfAll.show(all);
+    this.foldsOfJoint.show(state.joint > 0 ? state.strengths[state.joint] : undefined, state.joint > 0);
     if (state.joints !== this.joints) {
       this.joints = state.joints;
       this.jointSelect.replaceChildren(...state.joints.map((joint, b) => element('option', {value: b}, readableName(joint.name))));

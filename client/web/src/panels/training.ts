@@ -12,20 +12,22 @@ const kPresets: [string, string, string, object][] = [
     {fit: 'walk', detailAxes: 'world', refine: 'none', learner: 'sgplvm', historyForm: 'poses', upsampling: 'rbf'}],
 ];
 
-// Asks for a preset and further clips, and starts the job. Its id, or null.
-export async function askTraining(take: Sequence, takes: readonly Sequence[]): Promise<string | null> {
+// Asks for a preset and further clips, and starts the job. Its id, or null. skeleton: joints that were
+// placed by hand in a rest frame, or null.
+export async function askTraining(take: Sequence, takes: readonly Sequence[], skeleton: {frame: number; text: string} | null): Promise<string | null> {
   const name = element('input', {value: take.name, id: 'model-name', maxlength: 200});
   const presets = kPresets.map(([value, title, text]) => element('label', {},
     element('input', {type: 'radio', name: 'preset', value, ...(value === 'balanced' ? {checked: true} : {})}),
     element('b', {}, title), element('small', {}, text)));
   const others = takes.filter((other) => other.id !== take.id && other.numVertices === take.numVertices && other.numFaces === take.numFaces);
   const clips = others.map((other) => element('input', {type: 'checkbox', value: other.id}));
-  const form = [element('label', {}, 'Name of the character', name), element('div', {class: 'presets'}, ...presets),
+  const form = [...(skeleton ? [element('p', {class: 'soft'}, `With the joints as you placed them in frame ${skeleton.frame}.`)] : []),
+    element('label', {}, 'Name of the character', name), element('div', {class: 'presets'}, ...presets),
     ...(others.length ? [element('p', {class: 'soft'}, 'Further clips of the same mesh:'),
       ...others.map((other, i) => element('div', {}, element('label', {}, clips[i]!, ` ${other.name} (${other.numFrames} frames)`)))] : [])];
   if (!await dialog(`Train ${take.name}`, form, 'Train')) return null;
   const chosen = presets.map((label) => label.querySelector('input')!).find((input) => input.checked)?.value;
-  const options = kPresets.find(([value]) => value === chosen)?.[3] ?? {};
+  const options = {...kPresets.find(([value]) => value === chosen)?.[3], ...(skeleton ? {restFrame: skeleton.frame, placedJoints: skeleton.text} : {})};
   const ids = [take.id, ...clips.filter((box) => box.checked).map((box) => box.value)];
   return (await createTraining(ids, name.value.trim() || take.name, options)).job.id;
 }

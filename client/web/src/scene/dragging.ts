@@ -2,7 +2,6 @@
 // turns or moves the selected one along its axes.
 import {Object3D, Plane, Quaternion as ThreeQuaternion, Raycaster, Vector2, Vector3} from 'three';
 import {inverse, multiply, normalize, type Quaternion, type Vector3 as Point} from '../math/quaternion';
-import {dragJoint} from '../math/inverse_kinematics';
 import type {Document} from '../store/document';
 import type {Bones} from './bones';
 import type {Viewport} from './viewport';
@@ -50,10 +49,8 @@ export class Dragging {
     const document = this.document, pose = document.pose(true), placed = document.placed(), joint = document.joint;
     if (!pose || !placed || joint < 0) return;
     const label = `${this.mode === 'rotate' ? 'turn' : 'move'} ${readableName(document.joints[joint]!.name)}`;
-    if (this.mode === 'translate') {
-      document.setPose(dragJoint(document.joints, pose, joint, this.handle.position.toArray() as Point), label, `gizmo${this.gesture}`);
-      return;
-    }
+    if (this.mode === 'translate') return document.dragTo(joint, this.handle.position.toArray() as Point, label, `gizmo${this.gesture}`);
+    if (document.rest) return;
     const {x, y, z, w} = this.handle.quaternion, parent = document.joints[joint]!.parent;
     const wanted: Quaternion = [w, x, y, z];
     const rotations = [...pose.rotations];
@@ -81,11 +78,8 @@ export class Dragging {
   private move(event: PointerEvent): void {
     if (this.dragged < 0) return;
     event.stopPropagation();
-    const pose = this.document.pose(true), point = this.pointAt(event);
-    if (!pose || !point) return;
-    const target = point.add(this.offset).toArray() as Point;
-    this.document.setPose(dragJoint(this.document.joints, pose, this.dragged, target),
-      `move ${readableName(this.document.joints[this.dragged]!.name)}`, `drag${this.gesture}`);
+    const point = this.pointAt(event);
+    if (point) this.document.dragTo(this.dragged, point.add(this.offset).toArray() as Point, `move ${readableName(this.document.joints[this.dragged]!.name)}`, `drag${this.gesture}`);
   }
   private release(): void { this.dragged = -1; }
 

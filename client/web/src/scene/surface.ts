@@ -15,7 +15,10 @@ export class Surface {
     this.mesh.visible = false;
   }
 
+  // A mesh that has the same shape already keeps what it shows.
   setShape(numVertices: number, triangles: Uint32Array): void {
+    if (numVertices === this.numVertices && triangles.length === this.triangles.length
+      && triangles.every((corner, i) => corner === this.triangles[i])) return;
     this.triangles = triangles as Uint32Array<ArrayBuffer>;
     this.mesh.geometry.dispose();
     const geometry = new BufferGeometry();

@@ -101,6 +101,9 @@ export class Viewport {
     return new Promise((done, fail) => this.canvas.toBlob((blob) => blob ? done(blob) : fail(new Error('the view cannot be read')), 'image/png'));
   }
 
+  // What is drawn from now on, as a film.
+  stream(fps: number): MediaStream { return this.canvas.captureStream(fps); }
+
   private resize(): void {
     const {clientWidth: width, clientHeight: height} = this.canvas.parentElement!;
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));

@@ -1,13 +1,15 @@
 // What is open: a take, a model, the motion and its edits, and the moment that is shown. Whoever
 // changes it calls changed(); it knows nothing of elements.
 import {readMotion} from '../api/upload';
-import {fpsOf, type Job, type Model, type Sequence, type StoredTake} from '../api/types';
-import {multiply, inverse, toDegrees, type Vector3} from '../math/quaternion';
-import {placeJoints, type Joint, type PlacedPose, type Pose} from '../math/skeleton';
+import {fpsOf, type CompressedSequence, type Job, type Model, type Sequence, type StoredTake} from '../api/types';
+import {dragJoint} from '../math/inverse_kinematics';
+import {inverse, kIdentity, multiply, toDegrees, type Vector3} from '../math/quaternion';
+import {placeJoints, scaledJoints, type Joint, type PlacedPose, type Pose} from '../math/skeleton';
 import {slerp} from '../math/quaternion';
 import {History} from './history';
-import {editsFromJson, editsToJson, isEdited, keyPose, kNoEdits, motionFromFile, motionToFile, poseAt, restMotion, type Edits,
-  type Motion} from './motion';
+import {editsFromJson, editsToJson, isEdited, keyPose, kNoEdits, lookWith, motionFromFile, motionToFile, poseAt, restMotion, type Edits,
+  type Look, type Motion} from './motion';
+import {RestSkeleton} from './rest_skeleton';
 import {loadEdits, saveEdits} from './settings';
 import {Takes} from './takes';
 
@@ -16,13 +18,16 @@ const kRestFrames = 60;
 export class Document {
   model: Model | null = null;
   joints: readonly Joint[] = [];
+  private bones: readonly Joint[] = [];  // the same with the proportions of the motion
   motion: Motion | null = null;
   readonly takes = new Takes();
   takeInfo: Sequence | null = null;
+  compressed: CompressedSequence | null = null;  // in place of a take
   report: StoredTake | null = null;
   frame = 0;
   joint = -1;
   readonly edits: History<Edits>;
+  rest: RestSkeleton | null = null;  // while its joints are moved
 
   constructor(private readonly changed: () => void) {
     this.edits = new History<Edits>(kNoEdits, () => {
@@ -31,12 +36,24 @@ export class Document {
     });
   }
 
+  // What undo and redo go through now.
+  get history(): History<unknown> { return (this.rest?.placed ?? this.edits) as History<unknown>; }
   get numFrames(): number { return this.motion?.frames.length ?? this.takes.current?.shape.numFrames ?? 0; }
-  get fps(): number { return this.motion?.fps ?? (this.takeInfo ? fpsOf(this.takeInfo.frameRate) : 30); }
+  get fps(): number {
+    const shown = this.takeInfo ?? this.compressed;
+    return this.motion?.fps ?? (shown ? fpsOf(shown.frameRate) : 30);
+  }
   get isEdited(): boolean { return isEdited(this.edits.value); }
 
+  openCompressed(info: CompressedSequence): void {
+    this.closeModel();
+    this.takeInfo = this.report = null;
+    this.compressed = info;
+    this.frame = 0;
+  }
   openTake(info: Sequence, report: StoredTake | null): void {
     this.takeInfo = info;
+    this.compressed = null;
     this.report = report;
     this.closeModel();
     this.frame = 0;
@@ -46,6 +63,15 @@ export class Document {
     this.joints = [];
     this.motion = null;
     this.joint = -1;
+    this.rest = null;
+  }
+  // False where the take does not have the frame in which the skeleton rests.
+  openRest(): boolean {
+    const frame = this.model?.record.restFrame ?? -1;
+    if (!this.takes.current?.frames[frame]) return false;
+    this.rest = new RestSkeleton(this.joints, frame, this.changed);
+    this.frame = frame;
+    return true;
   }
 
   // Opens a model with the motion of its take, when the server still has that.
@@ -58,7 +84,9 @@ export class Document {
     const motion = take ? motionFromFile(await readMotion(model.id, {sequence: take.id}), joints)
       : restMotion(joints, kRestFrames, fpsOf(model.frameRate));
     this.model = model;
-    this.joints = joints;
+    this.compressed = null;
+    this.rest = null;
+    this.joints = this.bones = joints;
     this.motion = motion;
     if (take?.id !== this.takeInfo?.id) this.report = null;
     this.takeInfo = take;
@@ -73,23 +101,32 @@ export class Document {
   }
   setMotion(motion: Motion): void {
     this.motion = motion;
+    this.bones = scaledJoints(this.joints, motion.look.boneScales);
     this.frame = 0;
     this.edits.reset(kNoEdits);
   }
+  look(edited: boolean): Look { return lookWith(this.motion!, edited ? this.edits.value : kNoEdits); }
   motionFile(): object { return motionToFile(this.motion!, this.edits.value, this.joints); }
 
   pose(edited: boolean, frame = this.frame): Pose | null {
     return this.motion ? poseAt(this.motion, edited ? this.edits.value : kNoEdits, frame) : null;
   }
   placed(): PlacedPose | null {
+    if (this.rest) return {positions: this.rest.positions, turns: this.joints.map(() => kIdentity)};
     const pose = this.pose(true);
-    return pose ? placeJoints(this.joints, pose) : null;
+    return pose ? placeJoints(this.bones, pose) : null;
   }
   // How the joint differs from the take, degrees about x, y and z.
   changeOf(joint: number): Vector3 {
     const base = this.pose(false), now = this.pose(true);
     if (!base || !now || joint < 0) return [0, 0, 0];
     return toDegrees(multiply(inverse(base.rotations[joint]!), now.rotations[joint]!));
+  }
+  // The joint with its bone dragged to a place: of the pose, or of the rest skeleton while that is open.
+  dragTo(joint: number, target: Vector3, label: string, gesture: string): void {
+    const pose = this.pose(true);
+    if (this.rest) this.rest.move(joint, target, label, gesture);
+    else if (pose) this.setPose(dragJoint(this.bones, pose, joint, target), label, gesture);
   }
   setPose(pose: Pose, label: string, gesture: string | null): void {
     if (!this.motion) return;

@@ -3,6 +3,7 @@
 import type {Live} from '../api/live';
 import {distancesMm, mean} from '../scene/surface';
 import type {Document} from './document';
+import {kPlainLook} from './motion';
 
 export class Measuring {
   errorsMm: (number | undefined)[] = [];
@@ -22,7 +23,7 @@ export class Measuring {
       && document.takes.current.shape.numFrames === document.motion.frames.length);
     this.live.drop('measure');
     if (!this.running) return;
-    this.live.want('measure', document.model!.id, false);
+    this.live.want('measure', document.model!.id, kPlainLook);
     this.ask();
   }
   stop(): void {

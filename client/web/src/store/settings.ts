@@ -1,12 +1,15 @@
 // What the page remembers on this machine.
+import type {FramesChoice} from '../worker/messages';
+
 export interface Settings {
   modelId: string; takeId: string; views: string; coloring: string; scaleMm: number; showBones: boolean;
-  showNames: boolean; libraryOpen: boolean; sideOpen: boolean; loop: boolean;
+  showNames: boolean; libraryOpen: boolean; sideOpen: boolean; loop: boolean; showCurves: boolean;
+  frames: FramesChoice;  // how live frames come
 }
 const kKey = 'pleat.settings';
 const kDefaults: Settings = {
   modelId: '', takeId: '', views: 'edited', coloring: 'none', scaleMm: 25, showBones: true, showNames: false,
-  libraryOpen: true, sideOpen: true, loop: true,
+  libraryOpen: true, sideOpen: true, loop: true, showCurves: false, frames: 'auto',
 };
 
 export function loadSettings(): Settings {

@@ -2,11 +2,11 @@
 import {byId, element} from '../panels/dom';
 
 export interface TimelineState {
-  frame: number; numFrames: number; numLoaded: number; fps: number; playing: boolean; loop: boolean;
+  frame: number; numFrames: number; numLoaded: number; fps: number; playing: boolean; loop: boolean; showCurves: boolean; posable: boolean;
   keys: ReadonlySet<number>; otherKeys: ReadonlySet<number>;
   errorsMm: readonly (number | undefined)[]; confidences: readonly (number | undefined)[]; scaleMm: number;
 }
-export interface TimelineActions { seek(frame: number): void; play(): void; loop(on: boolean): void; step(by: number): void }
+export interface TimelineActions { seek(frame: number): void; play(): void; loop(on: boolean): void; curves(on: boolean): void; step(by: number): void }
 
 const kTop = 14, kBottom = 14;
 
@@ -16,6 +16,7 @@ export class Timeline {
   private readonly frameInput = element('input', {type: 'number', min: 0, 'aria-label': 'Frame number', id: 'frame'});
   private readonly count = element('span', {class: 'soft', id: 'frame-count'});
   private readonly loopBox = element('input', {type: 'checkbox', id: 'loop'});
+  private readonly curvesButton = element('button', {type: 'button', id: 'toggle-curves', title: 'V'}, 'Curves');
   private state: TimelineState | null = null;
 
   constructor(actions: TimelineActions) {
@@ -24,9 +25,10 @@ export class Timeline {
         element('button', {type: 'button', class: 'icon', 'aria-label': 'Previous frame', click: () => actions.step(-1)}, '◂'),
         this.playButton,
         element('button', {type: 'button', class: 'icon', 'aria-label': 'Next frame', click: () => actions.step(1)}, '▸'),
-        this.frameInput, this.count, element('label', {for: 'loop'}, ' '), this.loopBox, element('label', {for: 'loop'}, 'loop')),
+        this.frameInput, this.count, element('label', {for: 'loop'}, ' '), this.loopBox, element('label', {for: 'loop'}, 'loop'), this.curvesButton),
       element('div', {class: 'right'}, this.canvas));
     this.playButton.addEventListener('click', () => actions.play());
+    this.curvesButton.addEventListener('click', () => actions.curves(!this.state?.showCurves));
     this.frameInput.addEventListener('change', () => actions.seek(Number(this.frameInput.value)));
     this.loopBox.addEventListener('change', () => actions.loop(this.loopBox.checked));
     const scrub = (event: PointerEvent): void => {
@@ -50,6 +52,8 @@ export class Timeline {
     this.frameInput.max = String(state.numFrames - 1);
     this.count.textContent = `of ${state.numFrames} · ${Number(state.fps.toFixed(2))} fps`;
     this.loopBox.checked = state.loop;
+    this.curvesButton.hidden = !state.posable;
+    this.curvesButton.setAttribute('aria-pressed', String(state.showCurves));
     this.canvas.setAttribute('aria-valuemax', String(state.numFrames - 1));
     this.canvas.setAttribute('aria-valuenow', String(state.frame));
     this.draw();

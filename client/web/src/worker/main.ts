@@ -1,13 +1,15 @@
 // The worker of the page: it holds the live sessions, decodes their frames and computes normals, so
 // that the page's own thread only draws.
 import {create, fromBinary, toBinary} from '@bufbuild/protobuf';
-import {FrameEncoding, LiveSessionRequestSchema, LiveSessionResponseSchema, type Frame, type LiveReport,
+import {FrameEncoding, LiveSessionRequestSchema, LiveSessionResponseSchema, StreamContent, type Frame, type LiveReport,
   type StreamHeader} from '../generated/pleat/v1/pose_service_pb';
 import type {Pose} from '../math/skeleton';
-import {DeltaDecoder, type Box} from './delta';
-import {decodeCloud, decodeResiduals, decodeTopology, loadDraco} from './draco';
+import {characterFor} from './characters';
+import {loadDraco} from './draco';
+import {MeshFrames, ParameterFrames, type Frames} from './frames';
 import type {FromWorker, OpenSession, ShowPose, ToWorker} from './messages';
 import {computeNormals} from './normals';
+import type {ShaderCharacter} from './shader_character';
 
 const post = (message: FromWorker, transfer: Transferable[] = []): void => self.postMessage(message, {transfer});
 
@@ -18,9 +20,9 @@ const poseMessage = (pose: Pose): object => ({
 
 class Session {
   private readonly socket: WebSocket;
-  private decoder: DeltaDecoder | undefined;
-  private triangles = new Uint32Array();
-  private order = new Int32Array();
+  private frames: Frames | undefined;
+  private shader: ShaderCharacter | null = null;
+  private taken = Promise.resolve();  // messages are taken one after the other
   private received = 0n;
   private ended = false;
   private wanted: ShowPose | undefined;  // before the session is open
@@ -28,26 +30,23 @@ class Session {
   constructor(private readonly options: OpenSession) {
     this.socket = new WebSocket(options.url);
     this.socket.binaryType = 'arraybuffer';
-    this.socket.onopen = () => this.begin();
+    this.socket.onopen = () => void this.begin();
     this.socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => {
-      try {
-        this.take(event.data);
-      } catch (error) {
-        this.end('INTERNAL', error instanceof Error ? error.message : String(error));
-      }
+      this.taken = this.taken.then(() => this.take(event.data)).catch((error: unknown) =>
+        this.end('INTERNAL', error instanceof Error ? error.message : String(error)));
     };
     this.socket.onclose = () => this.end('OFFLINE', 'The connection to the server is lost.');
   }
 
   show(message: ShowPose): void {
-    if (!this.decoder) {
+    if (!this.frames) {
       this.wanted = message;
       return;
     }
     const [pose, ...history] = message.poses.map(poseMessage);
     this.send({case: 'pose', value: {
       number: BigInt(message.number), pose, history, restart: history.length === 0,
-      keyframe: this.decoder.needsKeyFrame, framesReceived: this.received,
+      keyframe: this.frames.needsKeyFrame, framesReceived: this.received,
     }});
   }
   close(): void {
@@ -55,11 +54,15 @@ class Session {
     this.socket.close();
   }
 
-  private begin(): void {
-    this.socket.send(JSON.stringify({token: this.options.token}));
+  private async begin(): Promise<void> {
+    const {look, token, modelId} = this.options;
+    this.socket.send(JSON.stringify({token}));
+    this.shader = await characterFor(modelId, token, this.options.frames);
+    // Parameters carry no strengths: the shader has them.
+    const strengths = this.shader ? {} : {detailStrengths: [...look.jointStrengths], vertexStrengths: [...look.vertexStrengths]};
     this.send({case: 'start', value: {
-      character: {modelId: this.options.modelId, skinnedOnly: this.options.skinnedOnly},
-      options: {encoding: FrameEncoding.DRACO_DELTA}, latestWins: true, maxInFlight: this.options.maxInFlight,
+      character: {modelId, skinnedOnly: look.skinnedOnly, boneScales: [...look.boneScales], ...strengths},
+      options: this.shader ? {content: StreamContent.PARAMETERS} : {encoding: FrameEncoding.DRACO_DELTA}, latestWins: true, maxInFlight: this.options.maxInFlight,
     }});
   }
   private send(part: object): void {
@@ -68,7 +71,7 @@ class Session {
     this.socket.send(toBinary(LiveSessionRequestSchema, request));
   }
 
-  private take(data: string | ArrayBuffer): void {
+  private async take(data: string | ArrayBuffer): Promise<void> {
     if (typeof data === 'string') {
       const {code, message} = JSON.parse(data) as {code: string; message: string};
       this.end(code, message);
@@ -77,7 +80,7 @@ class Session {
     const response = fromBinary(LiveSessionResponseSchema, new Uint8Array(data));
     if (response.part.case === 'header') return this.open(response.part.value);
     ++this.received;
-    if (response.part.case === 'frame') this.frame(response.part.value, response.report);
+    if (response.part.case === 'frame') await this.frame(response.part.value, response.report, data.byteLength);
     if (response.part.case === 'rejection') {
       const {number, message} = response.part.value;
       post({kind: 'refused', session: this.options.session, number: Number(number), message});
@@ -86,37 +89,22 @@ class Session {
   }
 
   private open(header: StreamHeader): void {
-    const {originX, originY, originZ, range, bits} = header.box!;
-    const box: Box = {origin: [originX, originY, originZ], step: range / (2 ** bits - 1)};
-    const topology = decodeTopology(header.topologyDraco, header.numVertices);
-    this.triangles = topology.triangles as Uint32Array<ArrayBuffer>;
-    this.order = Int32Array.from(header.vertexOrder);
-    this.decoder = new DeltaDecoder(topology.triangles, topology.positions, box);
-    post({kind: 'ready', session: this.options.session, numVertices: header.numVertices,
-      triangles: topology.triangles, gridStep: box.step});
+    this.frames = this.shader ? new ParameterFrames(this.shader, this.options.look) : new MeshFrames(header);
+    const {numVertices, triangles, gridStep} = this.frames;
+    post({kind: 'ready', session: this.options.session, numVertices, triangles, gridStep});
     if (this.wanted) this.show(this.wanted);
     this.wanted = undefined;
   }
 
-  private frame(frame: Frame, report: LiveReport | undefined): void {
+  private async frame(frame: Frame, report: LiveReport | undefined, bytes: number): Promise<void> {
     const start = performance.now();
-    const decoder = this.decoder!;
-    const good = frame.difference ? decoder.addResiduals(decodeResiduals(frame.draco), frame.checksum)
-      : decoder.setKeyFrame(this.inVertexOrder(decodeCloud(frame.draco)), frame.checksum);
-    if (!good) return;  // the next pose asks for a key frame
-    const positions = decoder.positions();
-    const normals = computeNormals(positions, this.triangles);
+    const positions = await this.frames!.decode(frame);
+    if (!positions || this.ended) return;
+    const normals = computeNormals(positions, this.frames!.triangles);
     post({kind: 'frame', session: this.options.session, number: Number(frame.number), positions, normals,
-      confidence: frame.confidence, bytes: frame.draco.length, evaluateUs: report?.evaluateUs ?? 0,
+      confidence: frame.confidence, bytes, evaluateUs: report?.evaluateUs ?? 0,
       encodeUs: report?.encodeUs ?? 0, queueUs: report?.queueUs ?? 0, decodeUs: 1e3 * (performance.now() - start)},
     [positions.buffer, normals.buffer]);
-  }
-  private inVertexOrder(points: Float32Array): Float32Array {
-    const positions = new Float32Array(points.length);
-    for (let k = 0; k < this.order.length; ++k) {
-      for (let c = 0; c < 3; ++c) positions[3 * this.order[k]! + c] = points[3 * k + c]!;
-    }
-    return positions;
   }
 
   private end(code: string, message: string): void {

@@ -1,8 +1,12 @@
 // What the page and its worker tell each other.
 import type {Pose} from '../math/skeleton';
+import type {Look} from '../store/motion';
 
+// auto: parameters where the machine shows them fast, meshes elsewhere.
+export type FramesChoice = 'auto' | 'mesh' | 'parameters';
 export interface OpenSession {
-  kind: 'open'; session: number; modelId: string; skinnedOnly: boolean; token: string; url: string; maxInFlight: number;
+  frames: FramesChoice;
+  kind: 'open'; session: number; modelId: string; look: Look; token: string; url: string; maxInFlight: number;
 }
 // poses[0] is shown, poses[h] is the pose h training-frame intervals earlier.
 export interface ShowPose { kind: 'show'; session: number; number: number; poses: Pose[] }

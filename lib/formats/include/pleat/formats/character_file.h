@@ -9,7 +9,9 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "pleat/character/character_model.h"
 #include "pleat/character/morph_basis.h"
+#include "pleat/formats/motion_file.h"
 #include "pleat/mesh/mesh_sequence.h"
 #include "pleat/mesh/topology.h"
 #include "pleat/skeleton/pose_track.h"
@@ -30,6 +32,13 @@ struct CharacterFile {
   // The whole mesh in every frame of the track, or nothing; only for USD.
   std::vector<Eigen::Matrix3Xf> points;
 };
+
+// The character as it moves in `motion`, or, with a motion of no frames, in its rest pose, with the
+// strongest `influences` bones of every vertex (1 to kMaxInfluences, asserted). Clips become one,
+// since these files know none. kInvalidArgument when the motion has bone_scales, which joints of
+// other programs cannot hold. Strengths of the detail are in none of it.
+absl::StatusOr<CharacterFile> MakeCharacterFile(const CharacterModel& model, const Motion& motion,
+                                                int influences);
 
 // Binary glTF 2.0: a skinned mesh with names, normals, texture coordinates, materials and
 // _VERTEX_ID, one set of four influences for each four that a vertex has at most, the animation of

@@ -17,6 +17,8 @@ struct ForeignCaller {
   std::string token{};  // without "Bearer "; empty: none
   std::string peer{};   // as gRPC writes it: "ipv4:10.0.0.7:52114"
   std::string request_id{};
+  // Ids, separated by commas, of the content that it sees without a token; empty: as tokens say.
+  std::string shared{};
 };
 
 // One call with at most one message under way in each direction. Not for two threads at once.

@@ -126,9 +126,9 @@ class GrpcServer {
   virtual MemoryUse memory_use() const = 0;
   // The way in for calls that come from elsewhere, such as from browsers.
   virtual CallGateway& gateway() = 0;
-  // The services of the project of a token, for work that is no RPC but needs the same permission
-  // as `rpc`. The errors are those of Admit (admission.h).
-  virtual absl::StatusOr<AdmittedServices> Admit(const std::string& token, const char* rpc) = 0;
+  // The services that a caller sees, for work that is no RPC but needs the same permission as
+  // `rpc`. The errors are those of Admit (admission.h).
+  virtual absl::StatusOr<AdmittedServices> Admit(const ForeignCaller& caller, const char* rpc) = 0;
   // A channel that needs no network, for tests and embedding.
   virtual std::shared_ptr<grpc::Channel> InProcessChannel() = 0;
   // Refuses new calls with kUnavailable, lets running ones go on for up to `drain_seconds`, then

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct StudioOptions {
   ServiceLimits limits{};
   MemoryBudget* memory = nullptr;  // must outlive the server; null: not counted
   std::string version{};           // that the page shows
+  // The ids of a model and of its sequences, which callers without a token see and cannot change.
+  // Empty: they see what the server lets them see.
+  std::set<std::string> shared{};
 };
 
 class StudioServer {

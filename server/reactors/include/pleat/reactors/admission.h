@@ -39,8 +39,10 @@ absl::StatusOr<HandlerContext*> Admit(HandlerContext* context, const grpc::Serve
                                       const char* rpc);
 
 // The same for what is no call of gRPC: the page of a browser, which shows its token otherwise.
+// shared: as SharedContentOf. A caller that shows no good token sees that content then, in place of
+// an error, and can change nothing.
 absl::StatusOr<HandlerContext*> AdmitToken(HandlerContext* context, const std::string& token_text,
-                                           const char* rpc);
+                                           const std::string& shared, const char* rpc);
 
 // The same for a stream. kResourceExhausted when its client has too many others.
 absl::StatusOr<HandlerContext*> AdmitStream(HandlerContext* context,

@@ -45,6 +45,8 @@ struct ServerCalls {
   }
   // The context of a project, which lives as long as the server. Empty: there is one for all.
   std::function<HandlerContext*(const std::string& project)> of_project{};
+  // The context of a view that shows the content with these ids alone, which lives as long.
+  std::function<HandlerContext*(HandlerContext* all, const std::string& ids)> of_share{};
 };
 
 struct HandlerContext {

@@ -20,6 +20,10 @@ struct CallOrigin {
 };
 // Metadata in which a call of this process says for whom it is made (call_gateway.h).
 inline constexpr char kForeignPeerKey[] = "x-pleat-peer";
+// The same for the ids, separated by commas, of the content that such a call sees without a token.
+inline constexpr char kSharedContentKey[] = "x-pleat-shared";
+// Empty: nothing is shared with callers without a token.
+std::string SharedContentOf(const grpc::ServerContextBase& call);
 // The address that a call comes from. A call of this process says for whom it is made, and is
 // believed; what others say with the same key is not looked at.
 std::string PeerOf(const grpc::ServerContextBase& call);
