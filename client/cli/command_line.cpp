@@ -38,6 +38,7 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddDecompressVerb(*app, session);
   AddGenerateVerb(*app, session);
   AddStudioVerb(*app, session);
+  AddBatchVerb(*app, session);
   AddUploadVerb(*app, session);
   AddSequencesVerb(*app, session);
   AddJobsVerb(*app, session);

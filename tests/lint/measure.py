@@ -68,7 +68,7 @@ def whole_line_comments(tree, paths):
 # Where the tests of a folder are when they are not in the folder of its name.
 OTHER_TEST_FOLDERS = {
     "client/c": ["tests/c/"],
-    "client/cli": [f"tests/client/{part}" for part in ("io/", "load/", "show/", "verbs/")],
+    "client/cli": [f"tests/client/{part}" for part in ("batch/", "io/", "load/", "show/", "verbs/")],
     "client/draco_child": ["tests/client/io/draco_process_test"],
     "client/examples": ["tests/c/godot_test", "tests/python/figures_test"],
     "client/python": ["tests/python/"],

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
-#include "cli/exit_code.h"
 #include "cli/io/input.h"
 #include "cli/io/output_path.h"
 #include "cli/service.h"
@@ -15,6 +14,7 @@
 #include "cli/show/progress_display.h"
 #include "cli/show/report_json.h"
 #include "cli/show/text_table.h"
+#include "cli/verbs/compress_flags.h"
 #include "cli/verbs/verbs.h"
 #include "pleat/base/file.h"
 #include "pleat/base/status.h"
@@ -26,32 +26,9 @@ namespace {
 
 struct CompressVerbOptions {
   std::string input, output, report, fps;
-  double max_error_mm = 0, kg_percent = 0;  // 0: not given
-  int grid_bits = 0;
+  CompressFlags goal;
   int num_threads = 0;
-  bool any_face_order = false;
 };
-
-absl::StatusOr<CompressOptions> ChooseGoal(const CompressVerbOptions& flags) {
-  CompressOptions options;
-  options.num_threads = flags.num_threads;
-  options.keep_face_order = !flags.any_face_order;
-  const int given = (flags.max_error_mm != 0) + (flags.kg_percent != 0) + (flags.grid_bits != 0);
-  if (given != 1) {
-    return UsageError("say one of --max-error-mm E, --kg PERCENT and --lossless-at-bits B");
-  }
-  if (flags.max_error_mm != 0) {
-    options.goal = CompressionGoal::kMaxError;
-    options.max_error_mm = flags.max_error_mm;
-  } else if (flags.kg_percent != 0) {
-    options.goal = CompressionGoal::kKg;
-    options.kg_percent = flags.kg_percent;
-  } else {
-    options.goal = CompressionGoal::kGrid;
-    options.grid_bits = flags.grid_bits;
-  }
-  return options;
-}
 
 struct Compressed {
   std::string bytes;
@@ -100,7 +77,8 @@ void PrintText(const CompressVerbOptions& flags, const MeshSequence& sequence,
 }
 
 absl::Status RunCompress(const CompressVerbOptions& flags, const Session& session) {
-  PLEAT_ASSIGN_OR_RETURN(const CompressOptions options, ChooseGoal(flags));
+  PLEAT_ASSIGN_OR_RETURN(CompressOptions options, ResolveCompressFlags(flags.goal));
+  options.num_threads = flags.num_threads;
   PLEAT_RETURN_IF_ERROR(CheckOutputFiles(
       session, {{"-o", flags.output, {".plt"}}, {"--report", flags.report, {".json"}}}));
   std::vector<InputNote> notes;
@@ -133,19 +111,7 @@ void AddCompressVerb(CLI::App& app, Session& session) {
               [options, &session] { return RunCompress(*options, session); });
   verb->add_option("INPUT", options->input, "any animation that pleat reads")->required();
   verb->add_option("-o,--output", options->output, "the compressed sequence, OUT.plt")->required();
-  verb->add_option("--max-error-mm", options->max_error_mm,
-                   "no vertex of any frame is further off than this, mm")
-      ->check(CLI::Range(1e-3, 1e6));
-  verb->add_option("--kg", options->kg_percent,
-                   "the error of all positions is at most PERCENT of their spread about each "
-                   "frame's centroid (Karni and Gotsman)")
-      ->check(CLI::Range(1e-4, 50.0));
-  verb->add_option(
-          "--lossless-at-bits", options->grid_bits,
-          "positions are exact on a grid of 2^B points along the longest side of the bounds")
-      ->check(CLI::Range(8, 20));
-  verb->add_flag("--any-face-order", options->any_face_order,
-                 "faces may change their order (vertices never do): about 1.5 bytes less per face");
+  AddCompressFlags(verb, &options->goal);
   verb->add_option("--report", options->report, "JSON report (pleat.compress/1)");
   verb->add_option("--fps", options->fps, "frames per second, where the input does not say");
   AddObjectFlag(verb, session);

@@ -52,6 +52,7 @@ void AddMotionVerb(CLI::App& app, Session& session);
 void AddBenchVerb(CLI::App& app, Session& session);
 void AddEvaluateVerb(CLI::App& app, Session& session);
 void AddStudioVerb(CLI::App& app, Session& session);
+void AddBatchVerb(CLI::App& app, Session& session);
 void AddUploadVerb(CLI::App& app, Session& session);
 void AddSequencesVerb(CLI::App& app, Session& session);
 void AddJobsVerb(CLI::App& app, Session& session);
