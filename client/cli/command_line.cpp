@@ -48,6 +48,8 @@ std::unique_ptr<CLI::App> MakeParser(Session& session) {
   AddStoreVerb(*app, session);
   AddTokenVerb(*app, session);
   AddStatusVerb(*app, session);
+  AddCompletionVerb(*app, session);
+  AddManualVerb(*app, session);
   AddVersionVerb(*app, session);
   return app;
 }

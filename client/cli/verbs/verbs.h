@@ -61,6 +61,8 @@ void AddCompressedVerb(CLI::App& app, Session& session);
 void AddStoreVerb(CLI::App& app, Session& session);
 void AddTokenVerb(CLI::App& app, Session& session);
 void AddStatusVerb(CLI::App& app, Session& session);
+void AddCompletionVerb(CLI::App& app, Session& session);
+void AddManualVerb(CLI::App& app, Session& session);
 void AddVersionVerb(CLI::App& app, Session& session);
 
 }  // namespace pleat
