@@ -30,12 +30,6 @@ struct MotionVerbOptions {
   MotionEdits edits;
 };
 
-// A retargeted motion keeps the skeleton of the character, so that later edits need no model.
-std::string EncodeResult(const CharacterModel& model, const Motion& motion, bool is_retargeted) {
-  if (is_retargeted) return EncodeMotionWithSkeleton(model.skeleton(), motion);
-  return EncodeMotion(model.skeleton(), motion.track, motion.bone_scales);
-}
-
 void PrintWritten(const MotionVerbOptions& options, const Motion& motion,
                   const std::optional<RetargetSummary>& summary, const Session& session) {
   if (session.json) {
@@ -65,8 +59,7 @@ absl::Status RunMotion(const MotionVerbOptions& options, const Session& session)
   std::optional<RetargetSummary> summary = RetargetSummary();
   PLEAT_ASSIGN_OR_RETURN(std::optional<Motion> motion,
                          RetargetForeignClip(options.input, *model, &*summary));
-  const bool is_retargeted = motion.has_value();
-  if (!is_retargeted) {
+  if (!motion.has_value()) {
     if (options.input.clean_feet) {
       return UsageError(
           "--clean-feet is for clips of other skeletons; 'pleat motion edit FILE --clean-feet' "
@@ -84,7 +77,9 @@ absl::Status RunMotion(const MotionVerbOptions& options, const Session& session)
   PLEAT_ASSIGN_OR_RETURN(std::vector<double> scales,
                          ParseJointFactors(joint_names, options.bone_scales));
   if (!scales.empty()) motion->bone_scales = std::move(scales);
-  PLEAT_RETURN_IF_ERROR(WriteFile(options.output, EncodeResult(*model, *motion, is_retargeted)));
+  // With the skeleton of the character, so that later edits need no model.
+  PLEAT_RETURN_IF_ERROR(
+      WriteFile(options.output, EncodeMotionWithSkeleton(model->skeleton(), *motion)));
   PrintWritten(options, *motion, summary, session);
   return absl::OkStatus();
 }

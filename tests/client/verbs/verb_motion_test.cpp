@@ -48,6 +48,17 @@ TEST_F(MotionVerbTest, TheMotionOfASequenceIsItsPoses) {
   EXPECT_EQ(Read(output_).track.num_frames(), TubeFiles::kNumFrames);
 }
 
+TEST_F(MotionVerbTest, TheMotionOfASequenceCanBeEditedWithoutTheModel) {
+  ASSERT_EQ(Edit(files_.sequence_path(), {}).code, ExitCode::kOk);
+  const Outcome edit = RunPleat({"motion", "edit", output_, "--detail", "all=.5"});
+  ASSERT_EQ(edit.code, ExitCode::kOk) << edit.err;
+  // What it says of the detail stays, whatever is done to it.
+  const std::string again = files_.File("again.json");
+  ASSERT_EQ(RunPleat({"motion", files_.model_path(), output_, "-o", again}).code, ExitCode::kOk);
+  EXPECT_THAT(Read(again).detail_strengths, testing::Each(.5));
+  EXPECT_EQ(Read(again).detail_strengths.size(), 3u);
+}
+
 TEST_F(MotionVerbTest, EditsAreAppliedAndBoneLengthsKept) {
   const Outcome outcome =
       Edit(files_.motion_path(), {"--offset-root", "0,1,0", "--time-scale", "2", "--bone-scale",
