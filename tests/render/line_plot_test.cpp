@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "support/status_matchers.h"
 
@@ -63,6 +64,18 @@ TEST(LinePlot, LongLegendsTakeMoreRowsAndStayInside) {
     return image.height();
   };
   EXPECT_GT(highest(second), highest(first) + 5);
+}
+
+TEST(LinePlot, SvgHasTheSameCurves) {
+  LinePlotOptions options;
+  options.title = "error";
+  PLEAT_ASSERT_OK_AND_ASSIGN(const std::string svg,
+                             RenderLinePlotSvg({{"a", {1, 2, 3}}, {"b", {3, 2, 1}}}, options));
+  EXPECT_THAT(svg, testing::StartsWith("<?xml"));
+  EXPECT_THAT(svg, HasSubstr("</svg>"));
+  EXPECT_THAT(svg, HasSubstr("stroke-width"));
+  EXPECT_THAT(RenderLinePlotSvg({}, {}),
+              HasStatus(absl::StatusCode::kInvalidArgument, HasSubstr("no finite value")));
 }
 
 TEST(LinePlot, RefusesNothingToDraw) {

@@ -152,7 +152,7 @@ void PrintLoadReport(const LoadReport& report, std::ostream& out) {
              report.frames_per_cpu_second() / report.draco_frames_per_cpu_second());
 }
 
-absl::StatusOr<Image> PlotLoad(const LoadReport& report) {
+absl::StatusOr<std::string> PlotLoad(const LoadReport& report, const std::string& path) {
   std::vector<PlotSeries> series = {
       {"pose to frame", {}}, {"waiting in the server", {}}, {"evaluation", {}}, {"encoding", {}}};
   const std::vector<double>* parts[] = {&report.latency_ms, &report.queue_ms, &report.evaluate_ms,
@@ -162,11 +162,12 @@ absl::StatusOr<Image> PlotLoad(const LoadReport& report) {
       series[i].values.push_back(Percentile(*parts[i], percent));
     }
   }
-  return RenderLinePlot(
-      series, {.title = absl::StrFormat("%d clients, %s, %d vertices", report.options.num_clients,
-                                        ContentAndEncoding(report), report.num_vertices),
-               .x_label = "percent of the frames",
-               .y_label = "at most (ms)"});
+  return EncodeLinePlot(
+      path, series,
+      {.title = absl::StrFormat("%d clients, %s, %d vertices", report.options.num_clients,
+                                ContentAndEncoding(report), report.num_vertices),
+       .x_label = "percent of the frames",
+       .y_label = "at most (ms)"});
 }
 
 }  // namespace pleat

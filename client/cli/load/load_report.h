@@ -8,7 +8,6 @@
 
 #include "absl/status/statusor.h"
 #include "cli/load/load_run.h"
-#include "pleat/render/image.h"
 
 namespace pleat {
 
@@ -43,7 +42,7 @@ struct LoadReport {
 
 nlohmann::ordered_json LoadReportJson(const LoadReport& report);  // "pleat.bench/1"
 void PrintLoadReport(const LoadReport& report, std::ostream& out);
-// Plots milliseconds over the percentile of the frames.
-absl::StatusOr<Image> PlotLoad(const LoadReport& report);
+// Plots milliseconds over the percentile of the frames: the bytes of `path` (EncodeLinePlot).
+absl::StatusOr<std::string> PlotLoad(const LoadReport& report, const std::string& path);
 
 }  // namespace pleat

@@ -174,8 +174,10 @@ absl::StatusOr<std::map<std::string, std::string>> ExperimentPlots(
       }
       series.push_back(SeriesOf(HybridName(row), measured.hybrid, measured.test_frames));
     }
-    PLEAT_ASSIGN_OR_RETURN(const Image image, RenderLinePlot(series, options));
-    plots[PlotName(report, group)] = EncodePng(image);
+    const std::string name = PlotName(report, group);
+    for (const std::string& file : {name, name.substr(0, name.rfind('.')) + ".svg"}) {
+      PLEAT_ASSIGN_OR_RETURN(plots[file], EncodeLinePlot(file, series, options));
+    }
   }
   return plots;
 }

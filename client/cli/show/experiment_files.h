@@ -29,8 +29,8 @@ nlohmann::ordered_json ExperimentJson(const ExperimentReport& report,
 // Returns the table, what it means, and links to the plots.
 std::string ExperimentMarkdown(const ExperimentReport& report, const ExperimentSubject& subject);
 
-// Returns PNG bytes by file name, one plot for each group of variants: the mean vertex error of
-// every test frame, with gaps where frames were trained on.
+// Returns PNG and SVG bytes by file name, one plot for each group of variants: the mean vertex
+// error of every test frame, with gaps where frames were trained on.
 absl::StatusOr<std::map<std::string, std::string>> ExperimentPlots(
     const ExperimentReport& report, const ExperimentSubject& subject);
 

@@ -152,16 +152,16 @@ absl::StatusOr<LoadReport> Measure(const BenchVerbOptions& options, const Sessio
 }
 
 absl::Status RunBench(const BenchVerbOptions& options, const Session& session) {
-  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(
-      session, {{"--report", options.report, {".json"}}, {"--plot", options.plot, {".png"}}}));
+  PLEAT_RETURN_IF_ERROR(CheckOutputFiles(session, {{"--report", options.report, {".json"}},
+                                                   {"--plot", options.plot, {".png", ".svg"}}}));
   PLEAT_ASSIGN_OR_RETURN(const LoadReport report, Measure(options, session));
   const nlohmann::ordered_json json = LoadReportJson(report);
   if (!options.report.empty()) {
     PLEAT_RETURN_IF_ERROR(WriteFile(options.report, JsonText(json)));
   }
   if (!options.plot.empty()) {
-    PLEAT_ASSIGN_OR_RETURN(const Image plot, PlotLoad(report));
-    PLEAT_RETURN_IF_ERROR(WriteFile(options.plot, EncodePng(plot)));
+    PLEAT_ASSIGN_OR_RETURN(const std::string plot, PlotLoad(report, options.plot));
+    PLEAT_RETURN_IF_ERROR(WriteFile(options.plot, plot));
   }
   if (session.json) {
     *session.out << JsonText(json);
@@ -220,7 +220,8 @@ void AddBenchVerb(CLI::App& app, Session& session) {
                  "the next pose when the last frame is there: finds the throughput")
       ->excludes(arrivals);
   verb->add_option("--report", options->report, "JSON report (pleat.bench/1)");
-  verb->add_option("--plot", options->plot, "PNG: percentiles of the latency and its parts");
+  verb->add_option("--plot", options->plot,
+                   ".png or .svg: percentiles of the latency and its parts");
   AddForceFlag(verb, session);
   AddServerFlags(verb, session);
 }

@@ -37,10 +37,10 @@ class Image {
   // Draws an anti-aliased line from (x0, y0) to (x1, y1); pixel centers lie at whole numbers.
   void DrawLine(double x0, double y0, double x1, double y1, double thickness, Rgb color);
   void DrawDot(double x, double y, double radius, Rgb color);
-
- private:
+  // Mixes the color into a pixel. opacity: 0 to 1.
   void Blend(int x, int y, double opacity, Rgb color);
 
+ private:
   int width_, height_;
   std::vector<Rgb> pixels_;
 };

@@ -25,5 +25,12 @@ struct LinePlotOptions {
 // out of range.
 absl::StatusOr<Image> RenderLinePlot(const std::vector<PlotSeries>& series,
                                      const LinePlotOptions& options);
+// The same as SVG, whose text is outlines.
+absl::StatusOr<std::string> RenderLinePlotSvg(const std::vector<PlotSeries>& series,
+                                              const LinePlotOptions& options);
+// A file of a plot: SVG where `path` ends in .svg, and otherwise PNG.
+absl::StatusOr<std::string> EncodeLinePlot(const std::string& path,
+                                           const std::vector<PlotSeries>& series,
+                                           const LinePlotOptions& options);
 
 }  // namespace pleat
