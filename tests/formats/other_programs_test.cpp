@@ -12,6 +12,7 @@
 #include "pleat/base/file.h"
 #include "pleat/formats/bvh.h"
 #include "pleat/formats/glb_writer.h"
+#include "pleat/formats/mdd.h"
 #include "pleat/formats/motion_reader.h"
 #include "pleat/formats/rig_file.h"
 #include "support/programs.h"
@@ -158,6 +159,29 @@ TEST(OtherProgramsTest, ThreeJsPlacesTheJointsOfABvh) {
                   .norm()
                   .maxCoeff(),
               1e-4);  // centimeters
+  }
+}
+
+TEST(OtherProgramsTest, ThreeJsReadsTheFramesOfAnMdd) {
+  if (!HasNodePackage("three")) {
+    GTEST_SKIP() << "node with the package three is not on this machine (NODE_PATH)";
+  }
+  const TemporaryFolder folder;
+  const MeshSequence box = PaintedBox(3, true);
+  MddCache cache;
+  for (int t = 0; t < box.num_frames(); ++t) {
+    cache.times_s.push_back(static_cast<float>(t) / 30);
+    cache.frames.push_back(box.frame(t));
+  }
+  ASSERT_THAT(WriteMdd(folder.File("box.mdd"), cache), IsOk());
+  std::istringstream text(Node("three_figure.mjs", folder.File("box.mdd")));
+  const Eigen::Matrix3Xd shown = ReadPoints(text);
+  ASSERT_EQ(shown.cols(), 3 * box.num_vertices()) << text.str();
+  for (int t = 0; t < 3; ++t) {
+    EXPECT_LT((shown.middleCols(t * box.num_vertices(), box.num_vertices()) - box.FrameAsDouble(t))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-6);
   }
 }
 

@@ -1,5 +1,5 @@
-// node three_figure.mjs FILE: what three.js shows of a skinned GLB or USD text, or of a BVH clip, as
-// text: for each key of the animation, the places of all vertices (of all corners of USD, which it
+// node three_figure.mjs FILE: what three.js shows of a skinned GLB or USD text, of a BVH clip or of an
+// MDD cache, as text: for each key of the animation, the places of all vertices (of all corners of USD, which it
 // splits) or of all joints (BVH), a line each.
 import fs from 'fs';
 import path from 'path';
@@ -62,6 +62,14 @@ function showBvh({ clip, skeleton }) {
 if (file.endsWith('.bvh')) {
   const { BVHLoader } = await load(path.join(loaders, 'BVHLoader.js'));
   showBvh(new BVHLoader().parse(fs.readFileSync(file, 'utf8')));
+} else if (file.endsWith('.mdd')) {
+  const { MDDLoader } = await load(path.join(loaders, 'MDDLoader.js'));
+  const bytes = fs.readFileSync(file);
+  const { morphTargets } = new MDDLoader().parse(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+  for (const target of morphTargets) {
+    for (let v = 0; v < target.count; ++v) add(new THREE.Vector3().fromBufferAttribute(target, v));
+    endKey();
+  }
 } else if (file.endsWith('.usda')) {
   const { USDLoader } = await load(path.join(loaders, 'USDLoader.js'));
   const scene = new USDLoader().parse(fs.readFileSync(file, 'utf8'));
