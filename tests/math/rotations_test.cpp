@@ -75,6 +75,15 @@ TEST(RotationsTest, UnwrapIsTheNearestBranchOfTheSameRotation) {
   }
 }
 
+TEST(RotationsTest, AWholeTurnHasTheAxisOfTheReference) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, 2, -2) / 3;
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d whole = UnwrapExponentialMap(none, 6.1 * axis);
+  EXPECT_LT((whole - 2 * std::numbers::pi * axis).norm(), 1e-12);
+  EXPECT_EQ(UnwrapExponentialMap(none, .1 * axis), none);
+  EXPECT_EQ(UnwrapExponentialMap(none, none), none);
+}
+
 TEST(RotationsTest, UnwrapChainsASpinWithoutJumps) {
   Vector3d previous(0, 0.01, 0);
   for (double angle = 0.01; angle < 20; angle += 0.2) {

@@ -78,7 +78,9 @@ TEST_F(SharedServiceTest, EverythingElseIsNotThere) {
   EXPECT_THAT(shared_->models().Download("other", {}), HasStatus(kNotFound, _));
   EXPECT_THAT(shared_->models().OpenDownload("other", 0), HasStatus(kNotFound, _));
   EXPECT_THAT(shared_->sequences().OpenDownload("secret", 0), HasStatus(kNotFound, _));
-  EXPECT_THAT(shared_->poses().EvaluateClip({.model_id = "other"}, {}), HasStatus(kNotFound, _));
+  ClipQuery query;
+  query.model_id = "other";
+  EXPECT_THAT(shared_->poses().EvaluateClip(query, {}), HasStatus(kNotFound, _));
   EXPECT_THAT(shared_->poses().OpenSession("other", {}), HasStatus(kNotFound, _));
   EXPECT_THAT(shared_->poses().OpenClip("other", {}, {}), HasStatus(kNotFound, _));
   EXPECT_THAT(shared_->poses().OpenStream("other", {}, {}, nullptr), HasStatus(kNotFound, _));

@@ -12,6 +12,7 @@ const {values} = parseArgs({options: {
 }});
 const studio = await StudioPage.open(values);
 const {server, browser, page, problems, requests} = studio;
+const port = Number(new URL(server.page).port);  // the same after a restart
 const shot = (name) => studio.shot(name), settle = () => studio.settle(), positions = () => studio.positions();
 
 await studio.run(async () => {

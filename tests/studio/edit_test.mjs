@@ -72,6 +72,7 @@ await studio.run(async () => {
   await studio.drag({x: keyAt.x, y: keyAt.y - 45}, 60, 0);
   const keys = await page.evaluate(() => [...window.studio.document.edits.value.turns.values()][0].map((key) => key.frame));
   assert.ok(keys.length === 1 && keys[0] > 9, `the key is at ${keys}`);
+  await page.evaluate((frame) => window.studio.seek(frame), keys[0]);
   await page.click('#ease');
   await studio.shot('curves');
   await noFaults('a character with curves');

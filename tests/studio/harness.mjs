@@ -52,6 +52,7 @@ export class Server {
     this.grpc = /listening on (\S+)/.exec(out)[1];
   }
   async stop() {
+    if (this.child.exitCode !== null) return;
     const ended = new Promise((done) => this.child.removeAllListeners('exit').on('exit', done));
     this.child.kill('SIGTERM');
     await ended;

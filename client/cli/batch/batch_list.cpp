@@ -102,7 +102,8 @@ absl::StatusOr<std::vector<BatchTake>> ParseBatchList(std::string_view text,
                                                       const std::string& folder) {
   std::vector<BatchTake> takes;
   int line = 0;
-  for (const std::string_view raw : absl::StrSplit(text, '\n')) {
+  for (const absl::string_view raw :
+       absl::StrSplit(absl::string_view(text.data(), text.size()), '\n')) {
     ++line;
     const std::string entry(absl::StripAsciiWhitespace(raw));
     if (entry.empty() || entry.front() == '#') continue;

@@ -10,9 +10,9 @@
 namespace pleat {
 
 struct BatchTake {
-  std::string name;                 // of the result; no two takes have the same
-  std::vector<std::string> inputs;  // paths; several are clips of one character
-  int line = 0;                     // of the list, from 1
+  std::string name{};                 // of the result; no two takes have the same
+  std::vector<std::string> inputs{};  // paths; several are clips of one character
+  int line = 0;                       // of the list, from 1
 };
 
 // A line is a path, or JSON: {"input": PATH or [PATH, ...], "name": NAME}. Empty lines and lines

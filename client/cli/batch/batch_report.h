@@ -15,13 +15,13 @@
 namespace pleat {
 
 struct BatchRow {
-  std::string name;
-  std::vector<std::string> inputs;
+  std::string name{};
+  std::vector<std::string> inputs{};
   // Stands for the inputs as they were and for the options: another one is another attempt.
-  std::string fingerprint;
-  absl::Status status;                    // OK: the result is there
-  std::vector<std::string> sequence_ids;  // on the service, as far as it came
-  std::string job_id, result_id, output;
+  std::string fingerprint{};
+  absl::Status status{};                    // OK: the result is there
+  std::vector<std::string> sequence_ids{};  // on the service, as far as it came
+  std::string job_id{}, result_id{}, output{};
   int num_frames = 0, num_vertices = 0;  // of the first input
   double mean_error_mm = -1;             // of the result; below 0: not known
   double seconds = 0;

@@ -13,9 +13,9 @@
 namespace pleat {
 
 struct BatchJob {
-  JobOptions options;      // training or compression
-  std::string fps;         // of inputs that do not say; as --fps
-  std::string output_dir;  // NAME.pleat or NAME.plt; empty: results stay on the service
+  JobOptions options{};      // training or compression
+  std::string fps{};         // of inputs that do not say; as --fps
+  std::string output_dir{};  // NAME.pleat or NAME.plt; empty: results stay on the service
   absl::Duration ttl = kKeepForEver;
 };
 

@@ -9,10 +9,10 @@
 namespace pleat {
 
 struct CommandFlag {
-  std::vector<std::string> names;  // with dashes, short ones first; empty: a positional
-  std::string positional;          // "INPUT"
-  std::string value;               // "TEXT", or empty for a flag without one
-  std::string description;
+  std::vector<std::string> names{};  // with dashes, short ones first; empty: a positional
+  std::string positional{};          // "INPUT"
+  std::string value{};               // "TEXT", or empty for a flag without one
+  std::string description{};
   bool required = false;
 };
 

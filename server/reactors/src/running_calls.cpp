@@ -1,9 +1,11 @@
 #include "pleat/reactors/running_calls.h"
 
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "pleat/base/random_id.h"
 #include "pleat/base/sha256.h"
 #include "pleat/identity/token.h"
 #include "pleat/reactors/admission.h"
@@ -11,29 +13,41 @@
 namespace pleat {
 namespace {
 
+constexpr int kSecretWords = 8;  // 256 bits
+
 // "ipv4:10.0.0.7:52114" without the port, which is another one for each connection.
 std::string HostOfPeer(const std::string& peer) {
   return peer.starts_with("ipv4:") || peer.starts_with("ipv6:") ? peer.substr(0, peer.rfind(':'))
                                                                 : peer;
 }
 
-// What a call of this process says with a key of its metadata; nothing where it says nothing, or
+std::string_view MetadataOf(const grpc::ServerContextBase& call, const char* key) {
+  const auto found = call.client_metadata().find(key);
+  if (found == call.client_metadata().end()) return {};
+  return {found->second.data(), found->second.size()};
+}
+
+// What a call of this process says with a key of its metadata; empty where it says nothing, or
 // comes from elsewhere.
-std::optional<std::string> SaidHere(const grpc::ServerContextBase& call, const char* key) {
-  if (!call.peer().starts_with("inproc")) return std::nullopt;
-  const auto said = call.client_metadata().find(key);
-  if (said == call.client_metadata().end()) return std::nullopt;
-  return std::string(said->second.data(), said->second.size());
+std::string SaidInside(const grpc::ServerContextBase& call, const char* key) {
+  if (MetadataOf(call, kInsideKey) != InsideSecret()) return "";
+  return std::string(MetadataOf(call, key));
 }
 
 }  // namespace
 
+const std::string& InsideSecret() {
+  static const std::string& secret = *new std::string(RandomHexId(kSecretWords));
+  return secret;
+}
+
 std::string PeerOf(const grpc::ServerContextBase& call) {
-  return SaidHere(call, kForeignPeerKey).value_or(call.peer());
+  const std::string said = SaidInside(call, kForeignPeerKey);
+  return said.empty() ? call.peer() : said;
 }
 
 std::string SharedContentOf(const grpc::ServerContextBase& call) {
-  return SaidHere(call, kSharedContentKey).value_or("");
+  return SaidInside(call, kSharedContentKey);
 }
 
 CallOrigin OriginOf(const grpc::ServerContextBase& call) {

@@ -60,7 +60,9 @@ TEST(ExperimentFiles, MarkdownNamesWhatWasMeasuredAndThePlots) {
       ElementsAre(Key("representations-details.png"), Key("representations-details.svg"),
                   Key("representations-rotations.png"), Key("representations-rotations.svg")));
   for (const auto& [name, bytes] : plots) {
-    if (name.ends_with(".png")) EXPECT_THAT(text, HasSubstr("](" + name + ")"));
+    if (name.ends_with(".png")) {
+      EXPECT_THAT(text, HasSubstr("](" + name + ")"));
+    }
   }
 }
 

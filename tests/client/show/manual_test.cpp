@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "absl/strings/str_split.h"
 #include "client/run_pleat.h"
 
@@ -35,7 +38,8 @@ TEST(ManualTest, ThePageOfTheProgramHasEveryVerb) {
     EXPECT_THAT(outcome.out, HasSubstr(std::string(".SS ") + verb)) << verb;
   }
   // Requests alone begin with a dot.
-  for (const std::string& line : absl::StrSplit(outcome.out, '\n')) {
+  const std::vector<std::string> lines = absl::StrSplit(outcome.out, '\n');
+  for (const std::string& line : lines) {
     if (!line.starts_with(".")) continue;
     EXPECT_TRUE(line.starts_with(".TH ") || line.starts_with(".SH ") || line.starts_with(".SS ") ||
                 line.starts_with(".B ") || line.starts_with(".I ") || line == ".TP" ||

@@ -1,5 +1,6 @@
 #include <set>
 
+#include "pleat/v1/model_service.grpc.pb.h"
 #include "server/http/studio_fixture.h"
 #include "support/token_files.h"
 
@@ -62,15 +63,32 @@ TEST_F(StudioServerTest, ALinkShowsOneCharacterAndChangesNothing) {
   EXPECT_EQ(page.Status("SequenceService/GetSequence", id(other)), 404);
   EXPECT_EQ(page.Status("SequenceService/DownloadSequence", id(other)), 404);
   EXPECT_EQ(page.Status("ModelService/DeleteModel", id(model)), 403);
-  EXPECT_EQ(page.Status("JobService/CreateTrainingJob", R"({"sequenceIds":[")" + take + ""]
-}"),
-            403);
-EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/uploads", "")), 403);
-EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/example", "")), 403);
-EXPECT_EQ(HttpClient::StatusOf(page.Ask("GET", "/studio/models/" + model + "/page", "")), 200);
-// No token is known here, so none opens more.
-EXPECT_EQ(page.Status("ModelService/DeleteModel", id(model), "pleat_made_up"), 403);
-EXPECT_EQ(page.Status("SequenceService/GetSequence", id(other), "pleat_made_up"), 404);
+  EXPECT_EQ(
+      page.Status("JobService/CreateTrainingJob", nlohmann::json{{"sequenceIds", {take}}}.dump()),
+      403);
+  EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/uploads", "")), 403);
+  EXPECT_EQ(HttpClient::StatusOf(page.Ask("POST", "/studio/example", "")), 403);
+  EXPECT_EQ(HttpClient::StatusOf(page.Ask("GET", "/studio/models/" + model + "/page", "")), 200);
+  // No token is known here, so none opens more.
+  EXPECT_EQ(page.Status("ModelService/DeleteModel", id(model), "pleat_made_up"), 403);
+  EXPECT_EQ(page.Status("SequenceService/GetSequence", id(other), "pleat_made_up"), 404);
+}
+
+// Whoever comes over the network may say what it wants of itself.
+TEST_F(StudioServerTest, NobodyOutsideCanSpeakAsTheServerItself) {
+  const std::string body = "{}";
+  EXPECT_EQ(HttpClient::StatusOf(Ask("POST", "/rpc/ModelService/ListModels", body,
+                                     {"x-pleat-shared: nothing", "x-pleat-inside: guessed"})),
+            200);
+  auto stub = v1::ModelService::NewStub(running_.server().InProcessChannel());
+  grpc::ClientContext context;
+  context.AddMetadata("x-pleat-shared", std::string(64, 'a'));
+  context.AddMetadata("x-pleat-inside", std::string(64, '0'));
+  UploadTube();
+  const std::string model = running_.TrainModel();
+  v1::ListModelsResponse response;
+  EXPECT_TRUE(stub->ListModels(&context, {}, &response).ok());
+  EXPECT_EQ(response.models_size(), 1) << "a share was taken from outside";
 }
 
 // The same with tokens.
