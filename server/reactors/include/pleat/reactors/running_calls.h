@@ -18,9 +18,9 @@ struct CallOrigin {
   std::string client;
   std::string token_id;  // as the call says; empty: it shows none
 };
-// Metadata in which a call of this process says for whom it is made (call_gateway.h). It is believed
-// only beside kInsideKey with the secret of this process: the peer of a call inside the process is
-// "unknown" to gRPC, and others may come to be so too.
+// Metadata in which a call of this process says for whom it is made (call_gateway.h). It is
+// believed only beside kInsideKey with the secret of this process: the peer of a call inside the
+// process is "unknown" to gRPC, and others may come to be so too.
 inline constexpr char kInsideKey[] = "x-pleat-inside";
 const std::string& InsideSecret();  // random, the same until the process ends
 inline constexpr char kForeignPeerKey[] = "x-pleat-peer";
