@@ -22,9 +22,14 @@ def skip(why):
     sys.exit(77)
 
 
-def installed(package):
-    state = subprocess.run(["dpkg-query", "-W", "-f=${Status}", package], capture_output=True, text=True)
-    return "install ok installed" in state.stdout
+def installed_packages():
+    """The packages of this machine, and the names that they provide."""
+    names = set()
+    for line in run("dpkg-query", "-W", "-f=${Status}|${Package}|${Provides}\n").splitlines():
+        state, package, provided = line.split("|", 2)
+        if state == "install ok installed":
+            names |= {package} | {part.split()[0] for part in provided.split(",") if part.strip()}
+    return names
 
 
 def check_fields(deb):
@@ -33,7 +38,7 @@ def check_fields(deb):
     depends = re.search(r"^Depends: (.*)$", fields, re.M)[1]
     packages = [re.match(r"[^ (|]+", part.strip())[0] for part in depends.split(",")]
     assert any(package.startswith("libgrpc++") for package in packages), depends
-    missing = [package for package in packages if not installed(package)]
+    missing = set(packages) - installed_packages()
     assert not missing, f"the package asks for {missing}, with which it was not built"
 
 
@@ -55,7 +60,7 @@ def check_files(root):
     manual = gzip.decompress((root / "usr/share/man/man1/pleat.1.gz").read_bytes()).decode()
     assert ".SS train" in manual
     if shutil.which("groff"):
-        drawn = subprocess.run(["groff", "-man", "-ww", "-Tutf8"], input=manual, capture_output=True, text=True, check=True)
+        drawn = subprocess.run(["groff", "-man", "-ww", "-Tascii", "-P-cbou"], input=manual, capture_output=True, text=True, check=True)
         assert "EXIT STATUS" in drawn.stdout
         assert not drawn.stderr.strip(), drawn.stderr
     script = root / "usr/share/bash-completion/completions/pleat"
@@ -63,7 +68,7 @@ def check_files(root):
 
 
 def main():
-    build = pathlib.Path(sys.argv[1])
+    build = pathlib.Path(sys.argv[1]).resolve()
     for tool in ("cpack", "dpkg-deb", "dpkg-shlibdeps"):
         if not shutil.which(tool):
             skip(f"{tool} is not there")

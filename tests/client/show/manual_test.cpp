@@ -34,7 +34,7 @@ TEST(ManualTest, ThePageOfTheProgramHasEveryVerb) {
   const Outcome outcome = RunPleat({"manual"});
   ASSERT_EQ(outcome.code, ExitCode::kOk);
   for (const char* verb :
-       {"train", "motion edit", "batch LIST", "studio [INPUT]", "store backup"}) {
+       {"train", "motion edit", "batch LIST", "studio [INPUT]", "store ACTION"}) {
     EXPECT_THAT(outcome.out, HasSubstr(std::string(".SS ") + verb)) << verb;
   }
   // Requests alone begin with a dot.
